@@ -1,5 +1,5 @@
 #pragma once
-// A simulated rig for tests: two fingers of the model bench_twin on a board without delay, an optional stone
+// Simulates a rig for tests: two fingers of the model bench_twin, a board without delay, an optional stone
 // between the fingers, and all faults that the tests inject.
 
 #include <array>
@@ -18,59 +18,62 @@
 
 namespace softgrip::control {
 
-/// A controlled rig in virtual time: plants, board and controller.
+/// Simulates fingers and board in virtual time, together with the controller of the rig.
 class SimulatedRig {
  public:
-  /// The plants follow `truth`; the controller uses the models in the settings.
+  /// Creates the rig. `truth` is the model of the simulated fingers. The controller uses the models in the
+  /// settings.
   explicit SimulatedRig(const RigSettings& settings, std::uint64_t seed = 1,
                         const model::Model& truth = twin());
 
-  /// Puts a stone at `position_mm`, which stops both fingers. With nullopt, the stone is pulled out at the
-  /// speed of a hand.
+  /// Places a stone at `position_mm`, which stops both fingers. With nullopt, a person pulls the stone out at
+  /// the speed of a hand.
   void stone(std::optional<double> position_mm);
-  bool stone_only_left = false;  ///< the stone stops only the left finger
-  double yields = 0.1;           ///< the share of the free motion that remains beyond the stone
+  bool stone_only_left = false;  ///< true: the stone stops only the left finger
+  double yields = 0.1;           ///< motion beyond the surface of the stone, as a share of the free motion
 
-  // Faults. Each remains until the test resets it.
-  bool wire_cut = false;    ///< no exchange succeeds; the board vents after its watchdog time-out
-  bool board_vents = true;  ///< the board's watchdog puts the outputs to the rest pressure
-  bool bus_quiet = false;   ///< the bus has sent no report since the previous tick
+  // The injected faults. Each fault remains until the test resets it.
+  bool wire_cut = false;    ///< true: no exchange succeeds, and the board vents after its watchdog time-out
+  bool board_vents = true;  ///< true: a watchdog trip sets the outputs to the rest pressures
+  bool bus_quiet = false;   ///< true: the bus has sent no report since the last tick
   bool emergency_stop = false;
   bool inputs_lost = false;
   bool interlock_open = false;
-  std::uint32_t overrun_cycles = 0;  ///< for the next tick only
+  std::uint32_t overrun_cycles = 0;  ///< number of overrun cycles that the next tick reports; 0 afterwards
   FaultCode bus_fault = FaultCode::none;
-  std::vector<double> outputs_kpa;  ///< the outputs that the bus reports; empty: no report
+  std::vector<double> outputs_kpa;  ///< the outputs that the bus reports; empty: the bus reports none
   struct OfChannel {
-    std::optional<model::Validity> validity;  ///< reported by the driver
-    double offset_mm = 0;                     ///< added to the reading
-    std::optional<double> frozen_mm;          ///< the reading keeps this value
+    std::optional<model::Validity> validity;  ///< validity that the driver reports; nullopt: that of the
+                                              ///< simulated sensor
+    double offset_mm = 0;                     ///< value that is added to the reading
+    std::optional<double> frozen_mm;          ///< constant value of the reading; nullopt: the sensor measures
     double readback_offset_kpa = 0;
     double pressure_offset_kpa = 0;
-    bool no_pressure = false;  ///< the pressure reading is missing: NaN
+    bool no_pressure = false;  ///< true: the pressure reading is missing (NaN)
   };
   std::array<OfChannel, 2> fault;
 
-  /// Called with `begins` = true immediately before every RigController::tick and with false immediately
-  /// after it.
+  /// Called immediately before every RigController::tick with `begins` = true, and immediately after it with
+  /// false.
   void (*around_tick)(bool begins) = [](bool) {};
 
-  /// Sends a request overrun cycles that the next tick reports.
+  /// Sends a request of this kind in the next tick and gives it the next number.
   void request(Request::Kind kind, const PreparedSequence* sequence = nullptr);
-  /// Sends this request, with its own number, in the next tick.
+  /// Sends this request in the next tick and keeps the number that it contains.
   void request(const Request& request) { request_ = request; }
-  /// Pauses the whole process for this duration.
+  /// Pauses the whole control process for this duration.
   void pause(double seconds) { now_ += static_cast<Nanoseconds>(std::llround(seconds * 1e9)); }
   /// Runs one period and checks all invariants of the commands.
   const TickOutput& tick();
   void run(double seconds);
-  /// Runs ticks until the state is `state`, for at most `seconds`. Returns false if this state is not
-  /// reached.
+  /// Runs ticks until the rig is in this state, for at most `seconds`. Returns false if the rig does not
+  /// reach the state.
   bool run_until(State state, double seconds);
-  /// Runs ticks until the step with this index runs, for at most `seconds`.
+  /// Runs ticks until the sequence is in the step with this index, for at most `seconds`. Returns false if it
+  /// does not reach the step.
   bool run_until_step(std::uint16_t step, double seconds);
-  /// Runs ticks until the state is idle, starts the sequence, and runs ticks until the step with this index
-  /// runs.
+  /// Waits until the rig is idle, starts the sequence, and runs ticks until the sequence is in the step with
+  /// this index.
   bool start_until_step(const PreparedSequence& sequence, std::uint16_t step, double seconds = 20);
 
   [[nodiscard]] const TickOutput& output() const { return output_; }
@@ -80,10 +83,10 @@ class SimulatedRig {
   [[nodiscard]] GripResult result(std::size_t channel) const { return output_.channels[channel].result; }
   [[nodiscard]] std::uint32_t last_request() const { return next_request_ - 1; }
 
-  /// All events so far.
+  /// All events since the rig was created.
   std::vector<Event> events;
   [[nodiscard]] std::size_t count(Event::Kind kind) const;
-  /// Returns the last event of this kind that answers the last request, if there is one.
+  /// Returns the last event of this kind that refers to the last request, or nullopt if there is none.
   [[nodiscard]] std::optional<Event> answer(Event::Kind kind) const;
 
  private:

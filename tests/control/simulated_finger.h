@@ -1,6 +1,6 @@
 #pragma once
-// A simulated finger with its own model, which has a smaller time step than the controller. The finger is
-// read and written like a board.
+// Simulates a finger with its own model, whose time step is smaller than the tick of the controller. The
+// controller reads and writes the finger as it reads and writes a board.
 
 #include <cmath>
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace softgrip::control::sim {
 inline constexpr double tick_s = 0.005;
 inline constexpr Nanoseconds tick_ns = 5'000'000;
 
-/// Reads a model of config/models/.
+/// Reads the model with this name in config/models/.
 inline model::Model model_named(const std::string& name) {
   document::Problems problems;
   auto model =
@@ -26,7 +26,7 @@ inline model::Model model_named(const std::string& name) {
   return *model;
 }
 
-/// Returns the settings of bench_twin that a rig file would contain.
+/// Returns channel settings for bench_twin, with the values that a rig file would contain.
 inline ChannelSettings twin_settings() {
   ChannelSettings settings;
   settings.name = "left";
@@ -38,14 +38,14 @@ inline ChannelSettings twin_settings() {
   return settings;
 }
 
-/// The board and the finger. write() sends a command and reads the sensor, like one exchange. The next tick
-/// uses this reading, which is then one tick old.
+/// The board and the finger together. write() sends a command and reads the sensor, as an exchange does. The
+/// next tick uses this reading, which is then one tick old.
 class SimulatedFinger {
  public:
   SimulatedFinger(const model::Model& model, double noise_mm, std::uint64_t seed)
       : chain_(model, {}, tick_s / sub_steps), noise_mm_(noise_mm), random_(seed) {}
 
-  /// Runs one tick with a held command and returns the reading at its start.
+  /// Simulates one tick in which the command is held. Returns the reading at the beginning of the tick.
   model::Reading write(double command_kpa, Nanoseconds now) {
     chain_.step(0, command_kpa);
     model::Reading reading;

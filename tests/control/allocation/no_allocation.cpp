@@ -1,4 +1,4 @@
-// A tick of one channel allocates no memory, in any of its states.
+// Tests that a tick of one channel allocates no memory in any state of the channel.
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,8 @@ TEST(ChannelControllerAllocation, NoTickAllocates) {
       if (k % 700 == 0) input.now += 7 * sim::tick_ns;
       input.demand.time_s = k * sim::tick_s;
       controller.tick(input, output);
-      test::count_allocations(false);  // only the controller is tested, not the simulated finger
+      test::count_allocations(false);  // the simulated finger may allocate memory, so do not count from here
+                                       // on
       input.reading = finger.write(output.command_kpa, input.now);
       test::count_allocations(true);
     }

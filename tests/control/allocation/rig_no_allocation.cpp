@@ -1,4 +1,4 @@
-// A tick of the whole rig allocates no memory, in any state.
+// Tests that a tick of the whole rig allocates no memory in any state.
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ TEST(TickAllocation, NoneInAnyState) {
   EXPECT_EQ(test::allocations(), before);
 }
 
-// Covers planned motion, a grip whose retry backs off without a plan, and a second start.
+// Tests motion along a plan, a grip whose second attempt moves back without a plan, and a second start.
 TEST(TickAllocation, NoneOfAPlan) {
   RigSettings settings = two_finger_settings();
   for (ChannelSettings& channel : settings.channels) channel.feedforward.kind = FeedforwardKind::planned;

@@ -68,7 +68,7 @@ std::string refusal_table() {
   return out.str();
 }
 
-/// Writes the table of docs/reference/faults.md.
+/// Returns the table of faults that docs/reference/faults.md must contain.
 std::string table() {
   std::ostringstream out;
   out << "| code | name | meaning | usual cause | what to do | latches within |\n|---|---|---|---|---|---|\n";

@@ -7,8 +7,8 @@
 namespace softgrip::control::follow_watch_test {
 namespace {
 
-/// Moves the model from 5 mm by `expected_mm` and the finger from 4 mm by `share` of that. Returns true if
-/// the watch then reports that the finger is held.
+/// Moves the model by `expected_mm` from 5 mm, and the finger by `share` times `expected_mm` from 4 mm.
+/// Returns true if the watch then reports that an object holds the finger.
 bool held_after(double expected_mm, double share) {
   FollowWatch watch;
   for (int i = 0; i <= 100; ++i) {

@@ -37,7 +37,8 @@ TEST(EvidenceWindow, NeedsTheWholeWindow) {
   double verified_at = -1;
   for (int i = 0; verified_at < 0 && i < 1000; ++i) {
     const double t = i * tick_s;
-    const bool evidence = t > 0.5 || (i % 10 != 0);  // for the first 0.5 s the evidence has a gap every 50 ms
+    const bool evidence = t > 0.5 || (i % 10 != 0);  // during the first 0.5 s, the evidence has a gap every
+                                                     // 50 ms
     if (window.observe(t, true, evidence) == EvidenceWindow::Verdict::verified) {
       verified_at = t;
     }
@@ -101,20 +102,21 @@ TEST(HoldWatch, IntervalsWithoutReadingsSayNothing) {
   }
 }
 
-/// bench_twin after each parameter has been multiplied by a random factor between 1 - share and 1 + share.
+/// Returns bench_twin with each parameter multiplied by a random factor between 1 - share and 1 + share.
 model::Model perturbed(double share, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> off(1 - share, 1 + share);
   model::Model model = twin();
   for (model::BlockSpec& block : model.blocks) {
     for (double& value : block.values) {
-      value *= std::round(value) == value && value < 10 ? 1 : off(random);  // the exponent remains unchanged
+      value *= std::round(value) == value && value < 10 ? 1 : off(random);  // the exponent, a whole number
+                                                                            // below 10, remains unchanged
     }
   }
   return model;
 }
 
-/// Returns the RMSE of the running model during signal tp1 with free fingers.
+/// Returns the RMSE of the model while free fingers follow the signal tp1.
 double free_rmse_mm(const RigSettings& settings, const model::Model& truth) {
   const PreparedSequence tp1 =
       sequence_of("name: x\nsteps:\n  - pressure: {signal: tp1, scale: 0.9}\n", settings);
@@ -131,8 +133,8 @@ double free_rmse_mm(const RigSettings& settings, const model::Model& truth) {
   return std::sqrt(sum / count);
 }
 
-/// With the required detection margin of three times the RMSE of the model, an inaccurate model causes no
-/// wrong grip result.
+/// If the detection margin is three times the RMSE of the model, as required, even an inaccurate model causes
+/// no wrong grip result.
 TEST(GripDetection, AMarginOfThreeTimesTheRmseIsEnoughForModelsThatAreOff) {
   double worst_mm = 0;
   for (std::uint64_t seed = 1; seed <= 25; ++seed) {

@@ -13,12 +13,12 @@ namespace {
 
 constexpr double tick_s = 0.01;
 
-/// Feeds the watch with readings of a finger. The model moves as `model` states, and the reading is `model` +
-/// `off`.
+/// Passes the readings of a finger to the watch. The displacement of the model is `model`, and the reading is
+/// `model` + `off`.
 class Watched {
  public:
   using Value = std::function<double(double)>;
-  /// Returns true if the watch reported an unsteady reading at any time.
+  /// Returns true if the watch reported an unsteady reading during the run.
   bool run(
       double seconds, const Value& off, const Value& model = [](double) { return 5.0; }) {
     bool ever = false;
@@ -34,7 +34,7 @@ class Watched {
   double time_s_ = 1;
 };
 
-/// Square wave: 0 mm and 5 mm in turn, each for `interval_s`.
+/// Returns a square wave: 0 mm and 5 mm in turn, each for `interval_s`.
 double square(double time_s, double interval_s) {
   return std::fmod(time_s, 2 * interval_s) < interval_s ? 0 : 5;
 }

@@ -111,7 +111,7 @@ TEST(Limits, ACeilingDoesNotEvacuate) {
   EXPECT_FALSE(limit(vacuum, 0, -30, 1, -20).capped);
 }
 
-// The command stays within its range and its slew limits for all requests.
+// For any sequence of requests, the command must stay within its range and its slew limits.
 TEST(Limits, NeverExceededUnderRandomRequests) {
   const unsigned seed = 4711;
   SCOPED_TRACE(testing::Message() << "seed " << seed);

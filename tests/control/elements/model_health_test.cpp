@@ -12,7 +12,8 @@ namespace {
 
 constexpr double tick_s = 0.005;
 
-// The settings are stated here, so that a change of the defaults does not change the numbers in these tests.
+// Returns settings for the tests. All values are given here, so that a change of the defaults does not change
+// the results.
 ModelHealthSettings short_intervals() {
   ModelHealthSettings settings;
   settings.model_error_mm = 0.2;
@@ -22,7 +23,7 @@ ModelHealthSettings short_intervals() {
   return settings;
 }
 
-// Generates samples of the residual that the settings describe as healthy.
+// Generates random residuals with the noise and the correlation that the settings describe as healthy.
 class HealthyResidual {
  public:
   HealthyResidual(const ModelHealthSettings& settings, unsigned seed)
@@ -42,7 +43,7 @@ class HealthyResidual {
   double keep_, drive_mm_, noise_mm_, slow_mm_;
 };
 
-// Simulates the mean run length of a two-sided CUSUM of standard normal values.
+// Simulates a two-sided CUSUM of standard normal values. Returns the average run length until an alarm.
 double simulated_run_length(double allowance, double threshold, int runs, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   double total = 0;
@@ -60,7 +61,7 @@ double simulated_run_length(double allowance, double threshold, int runs, std::m
 
 TEST(ModelHealth, RunLengthFormulaAgreesWithTheTablesAndWithSimulation) {
   // Source: Montgomery, Introduction to Statistical Quality Control. With the allowance 0.5, the thresholds 4
-  // and 5 give 168 and 465.
+  // and 5 give average run lengths of 168 and 465.
   EXPECT_NEAR(cusum_run_length(0.5, 4), 168, 0.02 * 168);
   EXPECT_NEAR(cusum_run_length(0.5, 5), 465, 0.02 * 465);
   const unsigned seed = 11;
@@ -68,7 +69,8 @@ TEST(ModelHealth, RunLengthFormulaAgreesWithTheTablesAndWithSimulation) {
   std::mt19937_64 random(seed);
   for (const double threshold : {3.0, 5.0, 6.0}) {
     const double stated = cusum_run_length(0.5, threshold);
-    // 2000 runs: the run length is nearly geometric, so the standard error of its mean is 2.2 %.
+    // With 2000 runs, the standard error of the mean is 2.2 %, because the run length has nearly a geometric
+    // distribution.
     EXPECT_NEAR(simulated_run_length(0.5, threshold, 2000, random), stated, 0.08 * stated);
   }
 }
@@ -103,11 +105,12 @@ TEST(ModelHealth, WhitenerGivesIndependentStandardNormalInnovations) {
   }
 }
 
-// The measured false-alarm rate equals the stated rate, although successive samples of the residual are
+// The measured false-alarm rate must equal the rate in the settings, although successive residuals are
 // correlated.
 TEST(ModelHealth, FalseAlarmsComeAtTheStatedRate) {
   ModelHealthSettings settings = short_intervals();
-  settings.false_alarm_interval_s = 100;  // 200 intervals, so that alarms are frequent enough to count
+  settings.false_alarm_interval_s = 100;  // 200 correlation intervals: short, so that alarms are frequent
+                                          // enough for a count
   settings.unfit_mm = 1e9;
   double seconds = 0;
   constexpr int runs = 1000;
@@ -119,12 +122,12 @@ TEST(ModelHealth, FalseAlarmsComeAtTheStatedRate) {
       seconds += tick_s;
     }
   }
-  // The standard error of the mean of 1000 nearly exponential times is 3.2 %.
+  // With 1000 times of nearly exponential distribution, the standard error of the mean is 3.2 %.
   EXPECT_NEAR(seconds / runs, settings.false_alarm_interval_s, 0.1 * settings.false_alarm_interval_s)
       << "seeds 1 to " << runs;
 }
 
-// Without whitening, the same threshold would give many more false alarms.
+// Without whitening of the residual, the same threshold would cause many more false alarms.
 TEST(ModelHealth, ACusumOfThePlainResidualWouldAlarmFarMoreOften) {
   ModelHealthSettings settings = short_intervals();
   settings.correlation_time_s = 5;
@@ -146,7 +149,7 @@ TEST(ModelHealth, ACusumOfThePlainResidualWouldAlarmFarMoreOften) {
 }
 
 TEST(ModelHealth, FindsAnAgeingFinger) {
-  const ModelHealthSettings settings = short_intervals();  // average time between false alarms: 1000 h
+  const ModelHealthSettings settings = short_intervals();  // the average time between false alarms is 1000 h
   HealthyResidual residual(settings, 5);
   ModelHealth health(settings, tick_s);
   for (int i = 0; i < 12000; ++i) health.observe(residual.next());
@@ -158,7 +161,7 @@ TEST(ModelHealth, FindsAnAgeingFinger) {
   }
   EXPECT_EQ(health.state(), HealthState::suspect);
   EXPECT_LT(ticks * tick_s, 60);
-  // The state becomes healthy again when the model fits again.
+  // The state must become healthy when the model fits the finger again.
   for (int i = 0; i < 40000; ++i) health.observe(residual.next());
   EXPECT_EQ(health.state(), HealthState::healthy);
 }
@@ -183,7 +186,7 @@ TEST(ModelHealth, GapsAreNotCounted) {
   ModelHealth health(settings, tick_s);
   for (int i = 0; i < 10000; ++i) health.skip();
   EXPECT_EQ(health.state(), HealthState::unknown);
-  // An interval needs more than a quarter of its readings.
+  // An interval is evaluated only if more than a quarter of its readings are present.
   for (int i = 0; i < 10000; ++i) i % 4 == 0 ? health.observe(50) : health.skip();
   EXPECT_EQ(health.state(), HealthState::unknown);
 }

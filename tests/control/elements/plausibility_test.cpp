@@ -80,7 +80,8 @@ TEST(Plausibility, AFrozenReadingIsFoundOnlyWhileTheCommandMoves) {
   EXPECT_EQ(moving.next(5.001, 40), Validity::valid) << "the reading moves again";
 }
 
-// A finger that is stopped by a part also stays in place, but the reading of a noisy sensor still varies.
+// If a part stops a finger, the displacement is constant, but the reading of a noisy sensor varies. If the
+// reading of such a sensor does not vary, it is frozen.
 TEST(Plausibility, ALivelySensorThatRepeatsItselfStandsStillAndIsFrozenWhereTheFreeFingerMoves) {
   for (const bool lively : {true, false}) {
     Channel channel;

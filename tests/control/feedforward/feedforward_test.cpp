@@ -28,7 +28,7 @@ model::Model with_value(const model::Model& model, const std::string& path, doub
   return model::with_values(model, values);
 }
 
-/// Moves from rest to 6 mm, then follows the sine of the tracking studies.
+/// Returns a reference that moves from rest to 6 mm and then follows the sine of the tracking studies.
 Reference sine_reference(double frequency_hz) {
   Reference reference;
   reference.start(0, 0);
@@ -45,8 +45,8 @@ struct Outcome {
   int out_of_reach = 0;
 };
 
-/// Runs the feedforward without a PID on a finger that equals the model. All error is caused by the
-/// feedforward.
+/// Runs the feedforward without a PID on a finger that equals the model, so that the feedforward alone causes
+/// the error.
 Outcome run_alone(const model::Model& model, const FeedforwardSettings& settings, const Reference& reference,
                   double finger_late_s = 0) {
   Feedforward feedforward(model, settings, limits, tick_s);
@@ -99,12 +99,13 @@ TEST(FullModelFeedforward, LooksAheadByAllDeadTime) {
 
 TEST(FullModelFeedforward, WithoutALagTheHoldsHalfSampleIsCompensated) {
   const model::Model fast = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
-  // The remaining error is caused by the held command: at most half a step, where the reference is steepest.
+  // The board holds each command for one tick. This causes the remaining error, which is at most half the
+  // largest step of the reference.
   const Outcome run = run_alone(fast, {FeedforwardKind::full_model, 0}, sine_reference(0.1));
   EXPECT_LT(run.worst_mm, 0.02);
 }
 
-// Filling and venting have different lags upstream and downstream of the pressure sensor.
+// Tests a valve whose lags upstream and downstream of the pressure sensor differ between filling and venting.
 TEST(FullModelFeedforward, TracksThroughLagsThatDifferByDirection) {
   model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
   model =
@@ -115,8 +116,8 @@ TEST(FullModelFeedforward, TracksThroughLagsThatDifferByDirection) {
   EXPECT_EQ(run.out_of_reach, 0);
 }
 
-// bench_twin with the blocks of an electro-pneumatic regulator on the command only, and with the dead band of
-// a worn linkage.
+// Returns bench_twin with two further parts: an electro-pneumatic regulator, of which only the command is
+// known, and the dead band of a worn linkage.
 model::Model regulated_twin() {
   model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
   model = model::with_block(model, model::block_of<model::ValveDeadband>({{"band_kpa", 1.2}}));
@@ -135,8 +136,8 @@ TEST(FullModelFeedforward, TracksThroughADeadBandAndARegulator) {
   EXPECT_LT(run.worst_mm, 0.01);
 }
 
-// The valve openings, the integral of the regulator and the dead band start in the state that the earlier
-// commands have produced.
+// The feedforward must start with the valve openings, the integral of the regulator and the position in the
+// dead band that earlier commands have produced.
 TEST(FullModelFeedforward, TakesOverARegulatorAndADeadBandAsTheyStand) {
   const model::Model model = regulated_twin();
   RunningModel running(model, tick_s, 0, 0.1);
@@ -164,7 +165,7 @@ TEST(FullModelFeedforward, TakesOverARegulatorAndADeadBandAsTheyStand) {
   EXPECT_LT(worst_mm, 0.05);
 }
 
-// The command compensates for the pressure that is lost in the line.
+// The command must compensate for the pressure that the line loses by a leak.
 TEST(FullModelFeedforward, TracksThroughALineThatLeaks) {
   const model::Model twin = model_named("bench_twin");
   const Reference sine = sine_reference(0.1);
@@ -219,7 +220,7 @@ TEST(FullModelFeedforward, OutOfReachSaysSoAndResumesWithoutWindUp) {
   reference.start(0, 0);
   (void)reference.ramp_for(18, 2);
   (void)reference.hold_for(10);
-  (void)reference.ramp_for(0, 0.6);  // faster than creep decays at 0 kPa
+  (void)reference.ramp_for(0, 0.6);  // faster than the creep decays at 0 kPa
   (void)reference.hold_for(5);
   (void)reference.ramp_for(10, 2);
   (void)reference.hold_for(2);
@@ -257,7 +258,7 @@ TEST(FullModelFeedforward, ASaturatingValveBoundsThePlan) {
   EXPECT_GT(run.out_of_reach, 100);
 }
 
-// A corner or a jump in the reference must not make the planned command oscillate.
+// A corner or a jump of the reference must not make the planned command oscillate.
 TEST(FullModelFeedforward, AJumpOfTheReferenceDoesNotRing) {
   const model::Model twin = model_named("bench_twin");
   for (const double slew : {60.0, 120.0, 400.0}) {
@@ -269,7 +270,7 @@ TEST(FullModelFeedforward, AJumpOfTheReferenceDoesNotRing) {
     reference.start(0, 0);
     (void)reference.ramp_for(6, 1);
     (void)reference.hold_for(0.5);
-    (void)reference.sine(12, 0, 0.2, 1);  // jumps to 12 mm and stays there for 5 s
+    (void)reference.sine(12, 0, 0.2, 1);  // the reference jumps to 12 mm and stays there for 5 s
     FeedforwardQuery query{&reference, 0, 0};
     feedforward.enter(running, query, 0);
     model::Chain<double> finger(twin, {}, tick_s);
@@ -299,7 +300,7 @@ TEST(FullModelFeedforward, AJumpOfTheReferenceDoesNotRing) {
   }
 }
 
-/// A feedforward that follows `reference` from rest, tick by tick, on a finger that equals the model.
+/// Simulates a finger that equals the model while the feedforward follows `reference` from rest.
 struct Follower {
   Follower(const model::Model& model, const Reference& followed)
       : reference(followed),
@@ -311,7 +312,7 @@ struct Follower {
   [[nodiscard]] FeedforwardQuery query() const { return {&reference, time_s(), offset_mm}; }
   [[nodiscard]] double time_s() const { return ticks * tick_s; }
 
-  /// Returns the command of one tick.
+  /// Runs one tick and returns its command.
   double tick() {
     const double command = feedforward.step(query()).pressure_kpa;
     finger.step(0, command);
@@ -327,8 +328,8 @@ struct Follower {
   int ticks = 0;
 };
 
-// If one part of the finger follows the pressure at once and another part creeps, the part that needs less
-// pressure performs the jump. In a finger without creep, the elastic part performs the jump.
+// In a finger with an elastic part and a creeping part, the part that needs less pressure makes the jump. In
+// a finger without creep, the elastic part makes the jump.
 TEST(FullModelFeedforward, AJumpTakesAsLongAsTheEasierWayThere) {
   const model::Model twin = model_named("bench_twin");
   struct Case {
@@ -343,15 +344,15 @@ TEST(FullModelFeedforward, AJumpTakesAsLongAsTheEasierWayThere) {
     Reference reference;
     reference.start(0, 0);
     (void)reference.hold_for(0.5);
-    (void)reference.sine(8, 0, 0.2, 1);  // from 0 to 8 mm at once
+    (void)reference.sine(8, 0, 0.2, 1);  // the reference jumps from 0 to 8 mm
     Follower follower(test.model, reference);
     while (follower.time_s() < 0.5 + test.within_s) (void)follower.tick();
     EXPECT_NEAR(follower.finger.reading_mm(), 8, 0.02);
   }
 }
 
-// After a displacement of the finger during a motion, the command has no kick. The finger continues its
-// motion and turns from it towards the reference.
+// If the finger is displaced during a motion, the command must not jump. The finger continues its motion and
+// gradually returns to the reference.
 TEST(FullModelFeedforward, AJumpInMotionDoesNotKick) {
   Reference reference;
   reference.start(0, 0);
@@ -360,7 +361,7 @@ TEST(FullModelFeedforward, AJumpInMotionDoesNotKick) {
   Follower follower(model_named("bench_twin"), reference);
   double before = 0, last = 0, worst = 0;
   while (follower.time_s() < 1.8) {
-    // In the middle of the ramp the finger is moved 2 mm away from the prediction of the model.
+    // In the middle of the ramp, displace the finger by 2 mm from the prediction of the model.
     if (follower.time_s() > 1.1) follower.offset_mm = 2;
     const double command = follower.tick();
     if (follower.time_s() > 0.7) worst = std::max(worst, std::abs(command - 2 * last + before));

@@ -70,7 +70,8 @@ TEST(Invertibility, PlaysAreAcceptedAsAWholeAlone) {
       "the inverse of the complete chain");
 }
 
-// A play does not move while the input stays within its threshold. There, only creep moves the finger.
+// A play operator does not move while its input stays within its threshold. In this range, creep alone moves
+// the finger.
 TEST(Invertibility, PlaysWithoutAnElasticPartAreRefused) {
   const model::Model creep =
       model::with_block({}, {model::block_type<model::KelvinVoigt>(), {1e9, 40, 20, 40, 200}});
@@ -88,8 +89,8 @@ TEST(Invertibility, PlaysWithoutAnElasticPartAreRefused) {
   EXPECT_TRUE(check(with_plays(0), FeedforwardKind::full_model));
 }
 
-// The gain is positive at the start and becomes negative by hysteresis within the range. Only the evaluation
-// of the whole range detects this.
+// The gain of this model is positive at the start, but hysteresis makes it negative within the pressure
+// range. The check must evaluate the whole range to find this.
 TEST(Invertibility, AGainThatTurnsNegativeInsideTheRangeIsFound) {
   const model::Model twin = model_named("bench_twin");
   const model::Model hidden = with_value(twin, "bouc_wen.alpha_mm_per_kpa", 0.1800);
@@ -98,13 +99,13 @@ TEST(Invertibility, AGainThatTurnsNegativeInsideTheRangeIsFound) {
   EXPECT_NE(refused.error().text.find("the instantaneous gain is -"), std::string::npos)
       << refused.error().text;
   EXPECT_NE(refused.error().text.find("kPa while the pressure"), std::string::npos) << refused.error().text;
-  // In a smaller range the gain of the same model remains positive.
+  // In a smaller pressure range, the gain of the same model is positive everywhere.
   LimitSettings small = limits;
   small.pressure_max_kpa = 5;
   EXPECT_TRUE(check_feedforward(hidden, {FeedforwardKind::full_model, 0}, small, sim::tick_s));
 }
 
-// A hysteresis loop with different slopes at its ends may lack an inverse at one end only.
+// If a hysteresis loop has different slopes at its ends, the inverse may be missing at one end only.
 TEST(Invertibility, AGainThatIsNegativeOneWayOnlyIsFoundAndTheWayIsNamed) {
   const auto skewed = [](double epsilon_per_kpa) {
     model::Model even = with_value(model_named("bench_twin"), "bouc_wen.eta_per_kpa", 0.02);
@@ -141,8 +142,8 @@ TEST(Invertibility, WhatIsMissingIsNamed) {
   EXPECT_FALSE(check(valve_only, FeedforwardKind::full_model));
 }
 
-// For each block of the catalogue that is between the command and the displacement, either the feedforward
-// knows an inverse or the refusal names the block.
+// Tests each block of the catalogue that lies between command and displacement. Either the feedforward
+// inverts the block, or the refusal names it.
 TEST(Invertibility, EveryBlockIsUndoneOrNamed) {
   const model::Model twin = model_named("bench_twin");
   for (std::size_t type = 0; type < model::catalogue().size(); ++type) {
@@ -163,7 +164,7 @@ TEST(Invertibility, EveryBlockIsUndoneOrNamed) {
   }
 }
 
-// Tests blocks that are not in the catalogue.
+// Tests blocks that the catalogue does not contain.
 TEST(Invertibility, WhatFullModelCannotUndoIsNamedWhereverItStands) {
   using enum model::Inverse;
   const auto block = [](std::string_view id, model::Station station, model::Inverse inverse) {
@@ -179,7 +180,7 @@ TEST(Invertibility, WhatFullModelCannotUndoIsNamedWhereverItStands) {
     for (const model::Station station : {model::Station::actuator, model::Station::load}) {
       EXPECT_EQ(named(station, inverse), inverse != implicit && inverse != ignored);
     }
-    // The feedforward knows the inverse of a lag, a dead band or a bound of the valve.
+    // Among the blocks of the valve, the feedforward inverts a lag, a dead band and a bound.
     EXPECT_EQ(named(model::Station::valve, inverse), inverse == lead || inverse == play || inverse == bound);
   }
   const std::array three{block("first", model::Station::valve, lead),

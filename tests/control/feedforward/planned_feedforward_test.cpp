@@ -1,5 +1,5 @@
-// Tests the planned feedforward: with the finger on its plan, with the finger off its plan, without a plan,
-// and at each change between these cases.
+// Tests the planned feedforward in three cases and at each change between them: the finger follows the plan,
+// the finger deviates from the plan, and there is no plan.
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@ constexpr LimitSettings limits{0, 60, 400, 400, 0, 25, 1};
 constexpr FeedforwardSettings planned{FeedforwardKind::planned, 0};
 constexpr double fade_s = 3;
 
-/// A plan that is inaccurate but easy to recognise: the pressure rises by `kpa_per_s` from `from_kpa`. The
-/// reference and the displacement of the model are both `reference_mm` throughout.
+/// Returns an inaccurate plan that is easy to recognise: the pressure rises from `from_kpa` at `kpa_per_s`.
+/// The reference and the model's displacement are constant at `reference_mm`.
 PressurePlan plan_of(double from_kpa, double kpa_per_s, double reference_mm) {
   PressurePlan plan;
   plan.step_s = 0.1;
@@ -37,19 +37,19 @@ class PlannedFeedforwardTest : public testing::Test {
   void enter(double command_kpa) {
     feedforward_.enter(RunningModel(model_, tick_s, 0, 0.1), query_, command_kpa);
   }
-  /// Returns the step of this tick and advances the time by one tick.
+  /// Returns the feedforward of this tick and advances the time by one tick.
   FeedforwardStep step() {
     const FeedforwardStep result = feedforward_.step(query_);
     query_.time_s += tick_s;
     return result;
   }
-  /// Runs ticks for `duration_s` and returns the step of the last tick.
+  /// Runs ticks for `duration_s` and returns the feedforward of the last tick.
   FeedforwardStep step_for(double duration_s) {
     for (int i = 0; i + 1 < std::lround(duration_s / tick_s); ++i) (void)step();
     return step();
   }
-  /// Returns the planned command for the present time, which is the plan's value after the dead time plus
-  /// half a tick.
+  /// Returns the pressure that the plan requires now. It is the value of the plan at a later time: after the
+  /// dead time plus half a tick.
   [[nodiscard]] double on_plan(const PressurePlan& plan) const {
     return plan.at(query_.time_s - query_.plan_origin_s + plan_ahead_s(model_, planned, tick_s));
   }
@@ -102,7 +102,8 @@ TEST_F(PlannedFeedforwardTest, APlanForAnotherWayIsLeftAlone) {
   }
 }
 
-// A plan ends, begins, or is replaced by a plan whose clock has another origin.
+// In each case the plan ends, begins, or is replaced by a plan whose time has another origin. The command
+// must have no step.
 TEST_F(PlannedFeedforwardTest, NoChangeOfItsSourceIsAStep) {
   reference_.start(0, 5);
   const PressurePlan low = plan_of(8, 0, 5), high = plan_of(30, 1, 5);
@@ -123,13 +124,13 @@ TEST_F(PlannedFeedforwardTest, NoChangeOfItsSourceIsAStep) {
   }
 }
 
-// Near a jump of the reference, a rounding error of the time may place the time of the plan and the time of
-// the sequence on different sides of the jump.
+// A rounding error of the time may occur near a jump of the reference. Then the time of the plan may be
+// before the jump and the time of the sequence after it, or vice versa.
 TEST_F(PlannedFeedforwardTest, ClocksThatDifferByARoundingFollowTheSamePlan) {
   for (const double rounding_s : {-1e-9, 0.0, 1e-9}) {
     SCOPED_TRACE(rounding_s);
     query_ = {&reference_, 0, 0};
-    // The sine jumps from 0 to its lowest point, 5 mm, when it is read for the first time.
+    // At its start, the sine jumps from 0 to its lowest value, 5 mm.
     const double jump_s = plan_ahead_s(model_, planned, tick_s);
     reference_.start(0, 0);
     (void)reference_.hold_for(jump_s);

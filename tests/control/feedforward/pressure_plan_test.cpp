@@ -36,7 +36,8 @@ TEST(SettledLine, IsTheSlopeBetweenTheLimitsWhereverTheyBegin) {
   EXPECT_NEAR(line.pressure_kpa(at_highest_mm), 60, 1e-9);
 }
 
-// A plan is computed for the true position of the finger, so dead time, sensor and noise are not included.
+// The settled line belongs to the true position of the finger, so it must not depend on dead time, sensor and
+// noise of the model.
 TEST(SettledLine, KnowsNeitherDeadTimeNorSensorNorNoise) {
   const model::Model twin = sim::model_named("bench_twin");
   model::Model shown = twin;

@@ -18,17 +18,17 @@ double smooth_kpa(int tick) {
   return 15 - 15 * std::cos(1.3 * tick * tick_s);
 }
 
-// Returns a command that rises at a usual slew limit and then changes smoothly.
+// Returns a command that rises at an ordinary slew limit and then changes smoothly.
 double slewed_kpa(int tick) {
   const double t = tick * tick_s;
   if (t < 1.5) return std::clamp(400 * (t - 0.5), 0.0, 30.0);
   return 30 - 12 * std::sin(1.3 * (t - 1.5));
 }
 
-// Compares the chain with its delay line and the running model, which computes ahead and looks up past
-// values. They differ for two reasons. Within a tick the pressure is linear here and exponential in the
-// chain, which is a shift of T^2/(12 tau) = 47 us (0.4 um of creep at 20 kPa/s). The look-up interpolates
-// between ticks.
+// Compares two simulations. The chain contains a delay line; the running model computes ahead and reads
+// stored values of the past. They differ for two reasons. Within a tick, the pressure is linear in the
+// running model and exponential in the chain. This is a time shift of T^2/(12 tau) = 47 us (0.4 um of creep
+// at 20 kPa/s). In addition, the running model interpolates between stored values.
 void expect_same_as_the_chain(const model::Model& model, double (*command_kpa)(int), double tolerance_mm) {
   RunningModel running(model, tick_s, 0, 0.1);
   model::Chain<double> chain(model, {}, tick_s);

@@ -30,7 +30,7 @@ const model::BlockSpec regulator =
 
 model::Model valve_with(std::initializer_list<model::BlockSpec> blocks) {
   model::Model model;
-  model.blocks = blocks;  // the order of the blocks is part of the test
+  model.blocks = blocks;  // the order of the blocks is a part of the test
   return model;
 }
 
@@ -39,12 +39,11 @@ double wanted_kpa(double t) {
 }
 
 struct Course {
-  double worst_kpa = 0;           ///< largest difference between the pressure and the requested pressure
-  double worst_expected_kpa = 0;  ///< largest difference between pressure and predicted pressure
+  double worst_kpa = 0;           ///< largest difference between the resulting and the requested pressure
+  double worst_expected_kpa = 0;  ///< largest difference between the resulting and the predicted pressure
 };
 
-/// Requests a pressure in each tick, and simulates the chain of the same blocks to get the resulting
-/// pressure.
+/// In each tick, requests a pressure from the inverse and simulates the blocks to get the resulting pressure.
 Course course_through(const model::Model& model) {
   model::Chain<double> chain(model, {}, tick_s);
   chain.reset(wanted_kpa(0));
@@ -80,7 +79,8 @@ TEST(ValveInverse, BringsThePressureWhereItIsWanted) {
   }
 }
 
-// A dead band behind a lag has no exact inverse, so the command is not corrected for it.
+// A dead band behind a lag has no exact inverse. The inverse must then not correct the command for the dead
+// band.
 TEST(ValveInverse, ADeadBandBehindALagIsLeftAlone) {
   const double now_kpa = 10, next_kpa = 10.2;
   EXPECT_EQ(ValveInverse(valve_with({lag, band}), tick_s).command_for(now_kpa, next_kpa),
@@ -95,7 +95,7 @@ TEST(ValveInverse, GoesOnFromWhereTheValveStands) {
   for (int k = 0; k < 400; ++k) running.advance(wanted_kpa(k * tick_s));
   ValveInverse inverse(model, tick_s);
   inverse.take_over(running.valve());
-  // In the first tick the inverse learns how fast the valve vents, so the second tick is more accurate.
+  // The first tick shows the inverse how fast the valve vents, so the second tick must be more accurate.
   for (const double within_kpa : {0.03, 1e-3}) {
     const double now_kpa = running.pressure_kpa(), next_kpa = now_kpa - 0.2;
     const double command_kpa = inverse.command_for(now_kpa, next_kpa);

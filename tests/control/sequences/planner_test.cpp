@@ -23,7 +23,7 @@ using sim::tick_s;
 
 constexpr LimitSettings limits{0, 60, 400, 400, 0, 30, 1};
 
-/// Moves from 0 to the first value of a sine and follows the sine from 1 s later.
+/// A motion from 0 to the first value of a sine. The sine begins after a pause of 1 s.
 struct Motion {
   double begins_mm = 6;
   double after_s = 3;
@@ -41,7 +41,8 @@ Reference sine_reference(double frequency_hz, double cycles, const Motion& motio
   return reference;
 }
 
-/// Returns the largest error from `from_s` on of a finger that equals the model and is driven by the plan.
+/// Simulates a finger that equals the model and is driven by the plan. Returns its largest error after
+/// `from_s`.
 double worst_mm(const model::Model& model, const PressurePlan& plan, const Reference& reference,
                 double from_s) {
   constexpr double fine_s = 0.001;
@@ -73,8 +74,9 @@ TEST(Planner, FollowsThePublishedModelWhichHasNone) {
   EXPECT_LT(worst_mm(published, plan, reference, 0.5), 0.1);
 }
 
-// The reference stays between 11 and 19 mm. For a sine that goes down to 6 mm the search ends with errors of
-// up to 1.8 mm, but not if the plays are replaced by an elastic gain.
+// The reference stays between 11 and 19 mm. For a sine that goes down to 6 mm, the search ends with errors of
+// up to 1.8 mm because of the play operators. With an elastic gain in place of the play operators, it does
+// not.
 TEST(Planner, FollowsAMeasuredArmOfPlaysWhereItUnloadsLittle) {
   LimitSettings wide = limits;
   wide.pressure_max_kpa = 110;
@@ -89,8 +91,8 @@ TEST(Planner, FollowsAMeasuredArmOfPlaysWhereItUnloadsLittle) {
   EXPECT_LT(plan.rmse_mm, 0.02);
 }
 
-// The planning windows begin at different points of the cycle, and the command changes its direction within
-// them.
+// The planner works in time windows. In this test, the windows begin at different phases of the sine, and the
+// command changes its direction within a window.
 TEST(Planner, DoesNotComeToRestAtACorner) {
   for (const char* name : {"bench_twin", "zhang2025"}) {
     for (const double frequency : {0.05, 0.1, 0.13, 0.2}) {
@@ -102,9 +104,9 @@ TEST(Planner, DoesNotComeToRestAtACorner) {
   }
 }
 
-/// The settled gain includes creep that takes hours and is three times the gain within a motion. A command in
-/// proportion to the settled gain is therefore a third of the required command. A search that started from
-/// this command did not converge at the corners that this friction causes.
+/// The steady-state gain of this finger includes creep that takes hours. It is three times the gain during a
+/// motion, so the steady-state command is a third of the required command. A search that started from the
+/// steady-state command did not converge at the corners that the friction of this finger causes.
 TEST(Planner, IsNotMisledByTheGainOfCreepThatTakesHours) {
   model::Model finger = model::with_block({}, {*model::find_block("asymmetric_valve_lag"), {0.0374, 0.0374}});
   finger = model::with_block(std::move(finger), {*model::find_block("prandtl_ishlinskii"),
@@ -139,8 +141,8 @@ TEST(Planner, StaysWithinPressureAndSlew) {
   }
 }
 
-// The reference is out of reach for some time. The plan must prepare for this section in advance, and the
-// section must not disturb the rest of the plan.
+// For some time, the finger cannot reach the reference. The plan must begin to move before this time, and it
+// must be accurate after this time.
 TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
   LimitSettings slow = limits;
   slow.slew_up_kpa_per_s = 30;
@@ -156,8 +158,8 @@ TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
   EXPECT_LT(plan.miss_mm(9.5), 0.05) << "the error 3.4 s after the step is below 0.5 % of the step";
 }
 
-// The reference goes down to 0 mm faster than the creep recovers. No finger can follow it, so the lower
-// pressure limit bounds the search.
+// The reference goes down to 0 mm faster than the creep recovers. No finger can follow this reference, and
+// the plan reaches the lower pressure limit.
 TEST(Planner, BesideItsLowerBoundItIsBetterThanTheSettledLine) {
   const model::Model twin = model_named("bench_twin");
   const Reference reference = sine_reference(0.5, 4, {15, 2, 8, 8});
@@ -175,7 +177,7 @@ TEST(Planner, BesideItsLowerBoundItIsBetterThanTheSettledLine) {
   EXPECT_LT(plan.rmse_mm, 0.85 * std::sqrt(squares / static_cast<double>(plan.pressure_kpa.size() - 1)));
 }
 
-/// Returns the sum of the changes of slope of a command that starts at rest at its first value.
+/// Returns the sum of squared changes of slope of a command. Before its first value, the command is constant.
 double bend_of(const std::vector<double>& pressure_kpa) {
   double sum = 0;
   for (std::size_t i = 1; i < pressure_kpa.size(); ++i) {
@@ -185,7 +187,8 @@ double bend_of(const std::vector<double>& pressure_kpa) {
   return sum;
 }
 
-// Below its threshold the finger does not move at any pressure, so all commands have the same error.
+// Below its threshold the finger does not move, so all commands have the same error. The planner must then
+// choose a smooth command.
 TEST(Planner, WhereNothingMovesTheFingerItTakesTheCalmerCommand) {
   const model::Model dead = model::with_block(
       model_named("bench_twin"), model::block_of<model::ActuatorThreshold>({{"threshold_kpa", 20}}));
@@ -217,9 +220,10 @@ double processor_time_s(const std::function<void()>& work) {
   return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
-// The duration is counted in simulations of the model over the same motion at 1 ms, measured in the same run.
-// So the speed and the load of the machine do not matter. Today's counts are 350, 1,650 and 3,350. If a step
-// of the third model takes 29 ns, planning for this model takes 1 s per 10 s of motion.
+// The duration of planning is given as a number of simulations of the same motion with steps of 1 ms,
+// measured in the same run. This number does not depend on the speed and the load of the computer. The
+// present numbers are 350, 1,650 and 3,350. For the third model, planning takes 1 s per 10 s of motion if a
+// step takes 29 ns.
 TEST(Planner, TakesLessThanFourThousandSimulationsOfTheMotion) {
   LimitSettings narrow = limits;
   narrow.pressure_max_kpa = 30;

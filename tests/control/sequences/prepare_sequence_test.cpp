@@ -71,8 +71,8 @@ class MisfitSequence : public testing::TestWithParam<Misfit> {};
 
 TEST_P(MisfitSequence, IsRefusedAtItsStep) {
   RigSettings settings = two_finger_settings();
-  settings.channels[1].displacement_used = false;  // right has no displacement feedback
-  settings.channels[0].pressure_measured = false;  // left measures no pressure
+  settings.channels[1].displacement_used = false;  // the channel right has no displacement feedback
+  settings.channels[0].pressure_measured = false;  // the channel left has no pressure monitor
   document::Problems problems;
   const std::string text = std::string("name: x\nsteps:\n") + GetParam().steps;
   const auto sequence = read_sequence(document::parse("seq.yaml", text, problems), problems);
@@ -256,7 +256,7 @@ TEST(Prepare, ReleaseGoesForwardOnly) {
 }
 
 TEST(Prepare, WhatAParameterBreaksIsToldAtTheParameter) {
-  const RigSettings settings = two_finger_settings();  // up to 60 kPa
+  const RigSettings settings = two_finger_settings();  // the largest pressure of this rig is 60 kPa
   const std::string text =
       "name: x\nparameters:\n  level_kpa: {default: 20, range: [10, 70], about: how hard}\n"
       "steps:\n  - move: {pressure_kpa: $level_kpa, duration_s: 1}\n";

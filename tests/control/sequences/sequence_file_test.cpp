@@ -20,7 +20,7 @@ std::optional<Sequence> read(const std::string& text, document::Problems& proble
   return read_sequence(document, problems);
 }
 
-/// Returns a sequence of one step, which is given as YAML flow text.
+/// Returns a sequence with one step, which `step` contains as YAML flow text.
 std::string with_step(const std::string& step) {
   return "name: x\nsteps:\n  - " + step + "\n";
 }
@@ -115,7 +115,7 @@ steps:
   EXPECT_EQ(sequence->steps[5].profile.cycles, 2U);
 }
 
-/// Returns a pressure step of `count` points at intervals of 1 s.
+/// Returns a pressure step with `count` points at intervals of 1 s.
 std::string with_points(int count) {
   std::string points;
   for (int i = 0; i < count; ++i) {
@@ -130,7 +130,7 @@ std::string with_steps(int count) {
   return text;
 }
 
-/// Returns a grip step with the given keys of the verification.
+/// Returns a grip step whose key `verify` contains the given keys.
 std::string with_verify(const std::string& verify) {
   return with_step("grip: {pressure_kpa: 5, settle_s: 0" + verify + ", timeout_s: 9, on_fail: vent}");
 }
@@ -138,8 +138,8 @@ std::string with_verify(const std::string& verify) {
 struct Broken {
   const char* what;
   std::string text;
-  int line;             ///< line of the first problem
-  std::string message;  ///< text that at least one problem contains
+  int line;             ///< line in which the first problem must be
+  std::string message;  ///< text that one of the problems must contain
 };
 
 class BrokenSequence : public testing::TestWithParam<Broken> {};

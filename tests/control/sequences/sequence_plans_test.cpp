@@ -1,5 +1,5 @@
-// Tests the planned feedforward from the sequence to the control loop: checks the plans of a prepared
-// sequence and the motion of the rig along them, with and without disturbances.
+// Tests the planned feedforward from the sequence to the control loop. Checks the plans of a prepared
+// sequence, and the motion of the rig along these plans with and without disturbances.
 
 #include "control/sequences/sequence_plans.h"
 #include "control/sequences/prepare_sequence.h"
@@ -18,11 +18,11 @@
 namespace softgrip::control::sequence_plans_test {
 namespace {
 
-/// Gains printed by `softgrip tune --model config/models/zhang2025.yaml --feedforward planned` and `...
-/// none`.
+/// PID gains that `softgrip tune --model config/models/zhang2025.yaml` prints, with `--feedforward planned`
+/// and with `--feedforward none`.
 constexpr PidSettings for_planned{3.067, 12.68, 0, 0.01, 1, AntiWindup::back_calculation, 0.5};
 constexpr PidSettings for_pid_alone{4.402, 13.79, 0, 0.01, 1, AntiWindup::back_calculation, 0.5};
-/// PID gains for bench_twin.
+/// PID gains for the finger bench_twin.
 constexpr PidSettings twin_gains{2.7, 13, 0, 0.02, 1, AntiWindup::back_calculation, 0.5};
 
 RigSettings rig_with(const char* model, FeedforwardKind kind, const PidSettings& pid) {
@@ -40,7 +40,8 @@ RigSettings planned_rig(const char* model) {
   return rig_with(model, FeedforwardKind::planned, model[0] == 'z' ? for_planned : twin_gains);
 }
 
-/// Returns the RMSE [mm] between the true displacement of the finger and the reference during a step.
+/// Returns the RMS difference [mm] between the true displacement of the finger and the reference during a
+/// step.
 double tracking_rmse_mm(const RigSettings& settings, const char* truth, const char* sequence,
                         std::uint16_t step) {
   const PreparedSequence prepared = example_sequence(sequence, settings);
@@ -171,7 +172,7 @@ TEST(SequencePlans, ARigWithAnotherModelOrSlewNeedsOthers) {
   EXPECT_NE(rig_key(one), rig_key(other));
 }
 
-/// The largest slopes up and down of a plan, and its lowest and highest pressure.
+/// The largest upward and downward slope of a plan, and its lowest and highest pressure.
 struct PlanShape {
   double up_kpa_per_s = 0, down_kpa_per_s = 0, lowest_kpa = 1e9, highest_kpa = -1e9;
 };
@@ -191,7 +192,8 @@ PlanShape shape_of(const PreparedSequence& sequence, std::size_t channel) {
   return shape;
 }
 
-// Two equal fingers share one plan. If they differ in any setting, each has a plan within its own limits.
+// Two equal fingers share one plan. If any of their settings differs, each finger has its own plan within its
+// own limits.
 TEST(SequencePlans, AFingersPlanKeepsItsOwnLimitsHoweverAlikeItsNeighbourIs) {
   const std::string moves =
       "name: x\nsteps:\n  - move: {displacement_mm: 12, duration_s: 1}\n"
@@ -247,7 +249,8 @@ TEST(SequencePlans, OnlyPlannedFingersArePlannedFor) {
   EXPECT_EQ(move.steps[0].plan_of(7), nullptr) << "this channel does not exist";
 }
 
-// Grips a stone, then grips without a part with a retry (which backs off outside any plan), then grips again.
+// Grips a stone, then grips without a part, then grips the stone again. The grip without a part has a retry,
+// which moves back without a plan.
 TEST(SequencePlans, EveryGripHasItsAnswer) {
   for (const char* model : {"zhang2025", "bench_twin"}) {
     SCOPED_TRACE(model);
@@ -268,11 +271,11 @@ TEST(SequencePlans, EveryGripHasItsAnswer) {
   }
 }
 
-/// The largest change of a command between two ticks while the sequence runs, and the largest error at its
-/// end.
+/// Results of a motion: the largest change of a command between two ticks of the sequence, and the largest
+/// error at its end.
 struct Motion {
   double jump_kpa = 0;
-  double worst_mm = 0;  ///< largest |reference - finger|
+  double worst_mm = 0;  ///< largest absolute difference between reference and finger
 };
 Motion watch(SimulatedRig& rig, double seconds) {
   Motion motion;
@@ -294,8 +297,8 @@ steps:
   - move: {displacement_mm: 15, duration_s: 3, settle_s: 3}
 )";
 
-// The zero of the sensor is off by 1.5 mm. The plan assumes a sensor without offset, so the feedforward must
-// correct the planned motion by 1.5 mm.
+// The zero of the sensor is shifted by 1.5 mm, but the plan assumes a correct sensor. The feedforward must
+// shift the planned motion by 1.5 mm.
 TEST(SequencePlans, AFingerThatStandsOffItsModelArrivesAllTheSame) {
   for (const char* model : {"zhang2025", "bench_twin"}) {
     SCOPED_TRACE(model);
@@ -314,7 +317,7 @@ TEST(SequencePlans, AFingerThatStandsOffItsModelArrivesAllTheSame) {
   }
 }
 
-/// Stops a sequence half way, which leaves the finger inflated, and starts the next sequence from this state.
+/// Stops a sequence half way, so that the finger is still inflated, and then starts the next sequence.
 Motion from_half_way(RigSettings settings, const char* truth) {
   settings.safety.safe_action.fill(SafeAction::hold);
   const PreparedSequence move = sequence_of(slow_move, settings);
@@ -362,7 +365,7 @@ TEST(SequencePlans, BackingOffIsBumpless) {
   }
 }
 
-// A model whose prediction is not finite in one tick must not cause a command that is not finite.
+// If the prediction of a model is infinite or NaN in one tick, the command must still be a finite number.
 TEST(PlannedFeedforward, WithoutAPlanItFollowsAtTheSettledGainFromWhereItIs) {
   const model::Model twin = sim::model_named("bench_twin");
   const LimitSettings limits{0, 60, 400, 400, 0, 30, 1};

@@ -17,7 +17,7 @@ using sim::tick_s;
 using sim::twin_settings;
 using Mode = ChannelDemand::Mode;
 
-/// A controller and a finger with a common clock.
+/// Runs a controller and a simulated finger with a common clock.
 class Rig {
  public:
   explicit Rig(const ChannelSettings& settings, double noise_mm = 0, std::uint64_t seed = 1)
@@ -28,7 +28,7 @@ class Rig {
     exchange();
   }
 
-  /// Runs one tick with the current demand. The exchange follows immediately, as on a rig.
+  /// Runs one tick with the present demand. The exchange with the finger follows immediately, as on a rig.
   ChannelOutput tick() {
     now += tick_ns;
     input.now = now;
@@ -71,7 +71,8 @@ class Rig {
 Reference ramp_and_sine(double from_s) {
   Reference reference;
   reference.start(from_s, 0);
-  (void)reference.hold_for(0.2);  // longer than the preview, so that no motion starts earlier
+  (void)reference.hold_for(0.2);  // longer than the preview of the feedforward, so that no motion starts
+                                  // earlier
   (void)reference.ramp_for(6, 2);
   (void)reference.hold_for(1);
   (void)reference.sine(13, 7, 0.1, 3);
@@ -116,7 +117,8 @@ TEST(ChannelController, EveryChangeOfModeIsBumpless) {
   Rig rig(twin_settings(), 0.02);
   Reference reference;
   double before = 0;
-  // In one tick no mode may change the command by more than 1 kPa, half of the slew limit.
+  // No change of the control mode may change the command by more than 1 kPa in one tick, which is half of the
+  // slew limit.
   const auto expect_smooth = [&](const char* what) {
     rig.run(0.05, [&] {
       EXPECT_NEAR(rig.last.command_kpa, before, 1.0) << what;
@@ -251,7 +253,8 @@ TEST(ChannelController, AGapInTheReadingsHoldsTheFeedbackAndGoesOn) {
 }
 
 TEST(ChannelController, ResynchronisingFollowsAFingerThatIsNotWhereTheModelIs) {
-  // The controller restarts while the finger still creeps, and the sensor zero is off.
+  // The controller restarts under two difficulties: the finger still creeps, and the zero of the sensor is
+  // shifted.
   ChannelSettings settings = twin_settings();
   Rig rig(settings, 0.02);
   rig.press(30);
@@ -305,7 +308,7 @@ TEST(ChannelController, SlippedTicksAreCaughtUp) {
   const Reference reference = ramp_and_sine(rig.time_s());
   rig.track(reference);
   rig.run(5);
-  // Three periods pass without a tick, and the board holds its output.
+  // For three periods the controller has no tick, while the board holds its output.
   for (int i = 0; i < 3; ++i) {
     rig.now += tick_ns;
     rig.input.reading = rig.finger.write(rig.last.command_kpa, rig.now);
@@ -330,7 +333,7 @@ TEST(ChannelController, AnUnusedDisplacementIsNeverActedOn) {
   EXPECT_TRUE(rig.tick().synchronised);
 }
 
-// For all demands and readings, the command is a finite number within the range and the slew limits.
+// For all demands and readings, the command must be a finite number within its range and its slew limits.
 TEST(ChannelController, LimitsAreNeverExceededUnderRandomDemands) {
   for (const FeedforwardKind kind :
        {FeedforwardKind::none, FeedforwardKind::bouc_wen, FeedforwardKind::full_model}) {

@@ -1,5 +1,5 @@
-// Tests the demand of one channel in the tick in which a step begins, when no part of the step has been
-// played.
+// Tests the demand of one channel in the tick in which a step begins. At this time, no part of the step has
+// been executed.
 
 #include "control/tick/channel_player.h"
 
@@ -23,7 +23,7 @@ Step step_of(StepKind kind) {
   return step;
 }
 
-/// Returns the output of a channel whose finger is `shortfall_mm` behind its free motion.
+/// Returns the output of a channel whose displacement is `shortfall_mm` smaller than in free motion.
 ChannelOutput short_by(double shortfall_mm) {
   ChannelOutput seen;
   seen.validity = model::Validity::valid;
@@ -32,7 +32,7 @@ ChannelOutput short_by(double shortfall_mm) {
   return seen;
 }
 
-/// Returns a player whose finger touches a part and has no grip result yet.
+/// Returns a player whose finger touches a part but has no grip result so far.
 ChannelPlayer touching(const Step& closing) {
   ChannelPlayer player(traits);
   player.reset();
@@ -55,8 +55,8 @@ TEST(ChannelPlayer, AProfileBeginsWithItsFirstPressure) {
   EXPECT_EQ(player.demand(7.25).pressure_kpa, 21);
 }
 
-// Integral feedback against a part would increase the gripping pressure, so the integral is held. In steps
-// that neither grip nor hold a part, the feedback must continue.
+// While the finger presses on a part, an integral would increase the gripping pressure, so it is held. In a
+// step that neither grips nor holds a part, the integral must continue.
 TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
   const Step grip = step_of(StepKind::grip);
   for (const StepKind kind : {StepKind::move, StepKind::grip, StepKind::hold, StepKind::release,
@@ -79,7 +79,7 @@ TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
   }
 }
 
-/// Returns the output of a channel whose finger touches a part under this command.
+/// Returns the output of a channel whose finger touches a part at the pressure `command_kpa`.
 ChannelOutput touching_under(double command_kpa, double free_kpa) {
   ChannelOutput seen = short_by(2);
   seen.command_kpa = command_kpa;
@@ -113,7 +113,8 @@ TEST(ChannelPlayer, ASqueezeDoesNotEvacuate) {
   ASSERT_EQ(player.take_contact(), OnContact::squeeze);
   (void)player.tick(0.06, touching_under(10, 8));
   EXPECT_NEAR(player.demand(0.06).pressure_kpa, 10.3, 0.2);
-  (void)player.tick(0.07, touching_under(10, -20));  // an external force pushes the finger back beyond rest
+  (void)player.tick(0.07, touching_under(10, -20));  // an external force pushes the finger back beyond its
+                                                     // rest position
   EXPECT_EQ(player.demand(0.07).pressure_kpa, 0);
 }
 

@@ -1,4 +1,4 @@
-// Tests how a finger behaves in contact. Its gripping pressure never exceeds the limit of the step.
+// Tests a finger in contact with a part. Its gripping pressure must never exceed the limit of the step.
 
 #include <gtest/gtest.h>
 
@@ -15,13 +15,13 @@
 namespace softgrip::control::contact_test {
 namespace {
 
-/// Largest amount [kPa] by which noise and filter rounding may exceed a bound.
+/// Amount by which noise and the rounding of a filter may exceed a limit [kPa].
 constexpr double tolerance_kpa = 0.4;
 
 class ContactTest : public testing::Test {
  protected:
-  /// Returns the gripping pressure of the left finger: its pressure minus the free-motion pressure at its
-  /// true displacement.
+  /// Returns the gripping pressure of the left finger: its pressure minus the pressure at which it has its
+  /// present displacement in free motion.
   [[nodiscard]] double squeeze_kpa(const SimulatedRig& rig) const {
     return rig.output().channels[0].pressure_kpa - curve.command_kpa(rig.plant_mm(0));
   }
@@ -30,7 +30,7 @@ class ContactTest : public testing::Test {
     rig.request(Request::Kind::start, &sequence);
     ASSERT_TRUE(rig.run_until(State::running, 5));
   }
-  /// Runs the sequence to its end and returns the largest gripping pressure.
+  /// Runs the sequence to its end and returns the largest gripping pressure of the left finger.
   double play(SimulatedRig& rig, const PreparedSequence& sequence, double seconds = 60) {
     start(rig, sequence);
     double most = 0;
@@ -147,7 +147,7 @@ TEST_F(ContactTest, AMoveMayPressOnAndIsBoundedByItsPressure) {
   EXPECT_GE(rig.count(Event::Kind::limit_binds), 1U) << "the limit is active long enough to be reported";
 }
 
-// Each limit of the rig file and of a step is reported as an event if it is active for a longer time. The
+// Each limit of the rig file or of a step must be reported as an event if it is active for some time. The
 // table has one row per limit.
 TEST_F(ContactTest, EveryLimitThatLastsIsAnEvent) {
   const auto told = [](const SimulatedRig& rig) {
@@ -200,8 +200,8 @@ TEST_F(ContactTest, FreeMotionsMeetNothing) {
   EXPECT_EQ(rig.count(Event::Kind::limit_binds), 0U);
 }
 
-// A frozen reading looks like a finger that is stopped by a part. The result must not be HOLDING, regardless
-// of when the reading freezes.
+// A frozen reading looks like a finger that a part has stopped. The result must never be HOLDING, whenever
+// the reading freezes.
 TEST_F(ContactTest, ASensorThatFreezesIsNoPart) {
   for (const char* name : {"pick_stone", "hand_over", "pick_screw", "empty_grip"}) {
     const PreparedSequence sequence = example_sequence(name, settings);

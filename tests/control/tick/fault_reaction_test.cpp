@@ -1,5 +1,5 @@
-// Injects every fault in every phase. Each fault must latch within its time limit, the outputs must take the
-// configured safe action, and no motion may restart by itself.
+// Injects every fault in every phase. Each fault must be latched within its time limit. The outputs must then
+// take the configured safe action, and no motion may restart without a command.
 
 #include <gtest/gtest.h>
 
@@ -82,7 +82,7 @@ std::vector<FaultCase> fault_cases() {
 struct PhaseCase {
   const char* name;
   Phase phase;
-  int step;  ///< step of pick_stone; -1: idle
+  int step;  ///< index of the step in pick_stone; -1: idle
   double into_s;
 };
 const std::vector<PhaseCase> phase_cases{{"idle", Phase::idle, -1, 0.5},
@@ -91,7 +91,7 @@ const std::vector<PhaseCase> phase_cases{{"idle", Phase::idle, -1, 0.5},
                                          {"holding", Phase::holding, 2, 1.0},
                                          {"releasing", Phase::releasing, 3, 0.2}};
 
-/// The phases of the sequence vacuum_grip, which moves below the rest pressure and has no approach phase.
+/// The phases of the sequence vacuum_grip, which moves below the rest pressure. It has no approach phase.
 const std::vector<PhaseCase> vacuum_phases{{"idle", Phase::idle, -1, 0.5},
                                            {"evacuating", Phase::closing, 0, 0.4},
                                            {"gripping", Phase::closing, 0, 1.2},
@@ -102,11 +102,11 @@ using Parameters = std::tuple<std::size_t, std::size_t, SafeAction, bool>;
 
 class FaultReaction : public testing::TestWithParam<Parameters> {
  protected:
-  /// Brings a rig with a stone into this phase. The test then injects the fault.
+  /// Runs a rig with a stone until it is in this phase, so that the test can inject the fault.
   void reach(SimulatedRig& rig, const PhaseCase& phase) {
     rig.stone(12);
     ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.run(1.5);  // longer than any transient, so that from now on a wrong pressure is a fault
+    rig.run(1.5);  // longer than any transient, so that a deviation of the pressure is a fault from now on
     if (phase.step >= 0) {
       rig.request(Request::Kind::start, &pick);
       ASSERT_TRUE(rig.run_until_step(static_cast<std::uint16_t>(phase.step), 30));
@@ -144,7 +144,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
     EXPECT_EQ(rig.result(0), GripResult::error);
   }
 
-  rig.run(1);  // SimulatedRig checks that no command moves away from rest during this second
+  rig.run(1);  // SimulatedRig checks in each tick that no command moves away from rest
   const bool vents = fault.always_vents || action == SafeAction::vent;
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_NEAR(rig.board_kpa(i), vents ? 0 : at_latch_kpa, 1.5);
@@ -171,7 +171,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
   EXPECT_EQ(rig.output().channels[0].command_kpa, rest_kpa) << "an acknowledgement moves no finger";
   EXPECT_EQ(rig.result(0), GripResult::none);
 
-  if (rest_kpa != 0) {  // a held finger may hold a part, so the test vents it before it grips again
+  if (rest_kpa != 0) {  // a finger whose action is hold may hold a part, so vent it before the next grip
     rig.request(Request::Kind::vent);
     ASSERT_TRUE(rig.run_until(State::idle, 2));
   }
@@ -206,7 +206,7 @@ class SingleFault : public testing::Test {
   RigSettings settings = base();
 };
 
-// The fault latches after exactly the number of cycles that the rig file states.
+// A fault must be latched after exactly the number of faulty cycles that the rig file states.
 TEST_F(SingleFault, CyclesAreCountedOneByOne) {
   const auto ticks_until_fault = [&](const auto& inject) {
     SimulatedRig rig(settings);
@@ -227,7 +227,7 @@ TEST_F(SingleFault, CyclesAreCountedOneByOne) {
       << "the tick uses the reading of the previous tick";
 }
 
-// A single correct readback resets the count of deviations to 0.
+// One correct readback must reset the count of deviating readbacks to 0.
 TEST_F(SingleFault, AReadbackThatIsRightInBetweenIsNoFault) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
@@ -248,8 +248,8 @@ TEST_F(SingleFault, AFrozenReadingIsFoundWhileTheCommandMoves) {
 }
 
 TEST_F(SingleFault, ABurstLineIsNoPart) {
-  // The reading stops as if the finger had met a part. If the pressure were not checked, the result would be
-  // HOLDING.
+  // The reading stops as if a part had stopped the finger. Without a check of the pressure, the grip result
+  // would be HOLDING.
   SimulatedRig rig(settings);
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   start(rig, pick);
@@ -508,7 +508,8 @@ TEST_F(SingleFault, ABriefDropoutIsBridged) {
   EXPECT_EQ(rig.result(0), GripResult::holding);
 }
 
-// The end time of the last step can pass during a pause in which the board vents.
+// The end time of the last step passes during a pause of the process, in which the board may vent. The
+// sequence must not end before the first exchange after the pause.
 TEST(FaultAfterAPause, ASequenceDoesNotEndBeforeTheFirstExchangeAfterAPause) {
   const RigSettings settings = two_finger_settings();
   const PreparedSequence brief =

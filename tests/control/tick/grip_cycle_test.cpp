@@ -1,4 +1,4 @@
-// Whole grips in closed loop: each grip must report the correct result.
+// Tests complete grips in closed loop. Each grip must report the correct result.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 class GripCycle : public testing::Test {
  protected:
-  /// Starts a sequence after power-up and runs it to its end.
+  /// Waits for the end of the start-up, starts a sequence and runs it to its end.
   void play(SimulatedRig& rig, const PreparedSequence& sequence, double seconds = 60) {
     ASSERT_TRUE(rig.run_until(State::idle, 1));
     rig.request(Request::Kind::start, &sequence);
@@ -84,7 +84,7 @@ TEST_F(GripCycle, AStonePulledOutDuringHoldIsPartLostWithinTwoReverifications) {
   rig.run(1.13);
   ASSERT_EQ(rig.result(0), GripResult::holding);
   rig.stone(std::nullopt);
-  rig.run(0.05);  // the stone has been pulled out
+  rig.run(0.05);  // time in which the stone is pulled out
   rig.run(2 * pick.steps[2].step.reverify_every_s);
   EXPECT_EQ(rig.result(0), GripResult::part_lost);
   ASSERT_TRUE(rig.run_until(State::idle, 20));
@@ -127,7 +127,7 @@ TEST_F(GripCycle, APressureGripIsDetectedByTheSameEvidence) {
 TEST_F(GripCycle, AnObjectOutsideThePositionWindowIsNoPart) {
   const PreparedSequence screw = example_sequence("pick_screw", settings);
   SimulatedRig rig(settings);
-  rig.stone(6.8);  // a part is detected, but it is too thick for a screw
+  rig.stone(6.8);  // a part is detected, but at this position it is too thick for a screw
   play(rig, screw);
   EXPECT_EQ(rig.result(0), GripResult::no_part);
 }
@@ -200,7 +200,8 @@ steps:
 )",
                                             settings);
   SimulatedRig rig(settings);
-  rig.fault[0].validity = rig.fault[1].validity = model::Validity::out_of_range;  // the beam is blocked
+  rig.fault[0].validity = rig.fault[1].validity = model::Validity::out_of_range;  // the measuring beam of
+                                                                                  // both sensors is blocked
   ASSERT_TRUE(rig.start_until_step(grip, 1));
   EXPECT_EQ(rig.result(0), GripResult::holding);
   EXPECT_EQ(rig.output().channels[0].evidence, GripEvidence::pressure);
@@ -245,7 +246,7 @@ steps:
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   rig.request(Request::Kind::start, &grip);
   ASSERT_TRUE(rig.run_until(State::running, 5));
-  rig.run(1.55);  // the finger has arrived
+  rig.run(1.55);  // the finger has arrived at its target
   rig.fault[0].validity = model::Validity::out_of_range;
   ASSERT_TRUE(rig.run_until(State::idle, 10));
   EXPECT_EQ(rig.result(0), GripResult::error)
@@ -263,7 +264,7 @@ steps:
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   rig.request(Request::Kind::start, &grip);
   std::vector<double> begun_s;
-  double low_since_s = 0;  // last time [s] at which the output was above its start value
+  double low_since_s = 0;  // last time [s] at which the output exceeded its start value
   for (std::size_t steps = 0; rig.time_s() < 30 && begun_s.size() < 2; rig.tick()) {
     if (rig.board_kpa(0) > 0.1) low_since_s = rig.time_s();
     if (const std::size_t now = rig.count(Event::Kind::step_started); now > steps) {
@@ -302,7 +303,7 @@ steps:
   SimulatedRig rig(settings);
   rig.stone(6);
   ASSERT_TRUE(rig.start_until_step(grip, 1));
-  rig.fault[0].offset_mm = -3;  // the displacement shortfall is 3 mm
+  rig.fault[0].offset_mm = -3;  // causes a displacement shortfall of 3 mm
   rig.run(0.1);
   ASSERT_TRUE(rig.run_until(State::idle, 10));
   EXPECT_EQ(rig.result(0), GripResult::error);

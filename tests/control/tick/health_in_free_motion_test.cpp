@@ -1,4 +1,5 @@
-// Model health is evaluated in free motion only: a part causes no alarm, a changed finger does.
+// Tests that the model health is evaluated in free motion only. A part must cause no alarm, but a changed
+// finger must.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +27,7 @@ class HealthInFreeMotionTest : public testing::Test {
     }
     return false;
   }
-  /// Returns bench_twin with creep springs that are `times` as stiff.
+  /// Returns bench_twin with the stiffness of its creep springs multiplied by `times`.
   static model::Model stiffer(double times) {
     model::Model model = twin();
     auto values = model::flat_values(model);

@@ -1,5 +1,5 @@
-// Sends every request in every state and checks its effect, its refusals, and that the controller answers in
-// the same tick.
+// Sends every request in every state. Checks the effect of the request or its refusal. The controller must
+// respond in the same tick.
 
 #include <gtest/gtest.h>
 
@@ -102,8 +102,8 @@ TEST_F(Requests, StopActsAsThePhaseSays) {
   struct Case {
     int step;
     Phase phase;
-    GripResult held;    ///< result after a stop that holds
-    GripResult vented;  ///< result after a stop that vents
+    GripResult held;    ///< grip result after a stop whose safe action is hold
+    GripResult vented;  ///< grip result after a stop whose safe action is vent
   };
   for (const Case& test : {Case{0, Phase::closing, GripResult::error, GripResult::error},
                            Case{1, Phase::closing, GripResult::error, GripResult::error},
@@ -177,7 +177,8 @@ TEST_F(Requests, AStopOfOneStartThatPassesItKeepsItFromBeginning) {
       return event.kind == Event::Kind::request_refused && event.request == id;
     });
   };
-  // Both starts wait in the queue of the loop, and a stop of the second start overtakes them.
+  // A stop of the start with id 7 arrives before this start, because requests can overtake each other. The
+  // start must then be refused.
   rig.request({Request::Kind::stop, 9, nullptr, 7});
   rig.tick();
   rig.request({Request::Kind::start, 7, &pick});
@@ -254,7 +255,7 @@ TEST_F(Requests, AFingerThatDoesNotComeToRestIsNotStarted) {
   rig.request(Request::Kind::start, &pick);
   const double began = rig.time_s();
   for (bool up = false; rig.time_s() - began < settings.rest_timeout_s + 1; up = !up) {
-    rig.fault[0].offset_mm = up ? 0.5 : -0.5;  // a person shakes the finger
+    rig.fault[0].offset_mm = up ? 0.5 : -0.5;  // simulates that a person shakes the finger
     rig.run(0.1);
     ASSERT_NE(rig.output().state, State::running);
   }

@@ -1,5 +1,5 @@
-// Tests that the invariants of the rig hold for random requests and faults. A failure prints its seed. To
-// repeat the failure, set SOFTGRIP_SEED to this seed.
+// Tests that the invariants of the rig hold for random requests and faults. A failure prints its seed. Set
+// SOFTGRIP_SEED to this seed to repeat the failure.
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,8 @@ class Chaos {
     return std::uniform_int_distribution<Number>(lowest, highest)(random_);
   }
 
-  /// Every third rig can go above and below its rest pressure; every sixth has the rest pressure 10 kPa.
+  /// Returns random settings. Every third rig has pressures above and below its rest pressure; every sixth
+  /// has the rest pressure 10 kPa.
   RigSettings make_settings(std::uint64_t seed) {
     RigSettings settings = seed % 3 == 0 ? vacuum_settings() : two_finger_settings();
     if (seed % 6 == 0) {
@@ -56,7 +57,7 @@ class Chaos {
     return settings;
   }
 
-  /// Changes the faults. Most calls remove faults, so that sequences can progress.
+  /// Changes the injected faults at random. Most calls remove faults, so that sequences can progress.
   void change_the_world() {
     rig_.wire_cut = chance(0.05);
     rig_.emergency_stop = chance(0.05);
@@ -89,7 +90,7 @@ class Chaos {
   void step(Request::Kind asked) {
     const TickOutput before = rig_.output();
     const std::size_t told = rig_.events.size();
-    const TickOutput& now = rig_.tick();  // SimulatedRig checks the commands
+    const TickOutput& now = rig_.tick();  // SimulatedRig checks the commands of the tick
     if (before.state == State::faulted && now.state != State::faulted) {
       EXPECT_EQ(asked, Request::Kind::acknowledge) << "at " << rig_.time_s();
     }
@@ -137,7 +138,7 @@ TEST(RandomRig, KeepsItsPromises) {
     starts += chaos.rig().count(Event::Kind::sequence_started);
     ASSERT_FALSE(HasFailure()) << "seed " << seed;
   }
-  if (seeds.size() > 1) {  // enough grips, faults and starts have occurred
+  if (seeds.size() > 1) {  // with several seeds, enough grips, faults and starts must have occurred
     EXPECT_GT(grips, 500U);
     EXPECT_GT(faults, 500U);
     EXPECT_GT(starts, 500U);

@@ -1,4 +1,5 @@
-// Tests sequences whose steps fail, end at different times for the fingers, or are many and short.
+// Tests three kinds of sequences: a step fails, a step ends at different times for the fingers, or there are
+// many short steps.
 
 #include "control/tick/sequence_player.h"
 
@@ -48,10 +49,10 @@ class SequencePlayback : public testing::Test {
 TEST_F(SequencePlayback, EveryFailureActionDoesWhatItSays) {
   struct Case {
     const char* on_fail;
-    SafeAction closing;  ///< safe action of the rig file while closing
-    double left_kpa;     ///< pressure at the end
-    bool goes_on;        ///< true if the sequence continues with the move after the grip
-    bool lets_go;        ///< true if the release step vents the finger
+    SafeAction closing;  ///< safe action that the rig file states for the phase closing
+    double left_kpa;     ///< pressure of the left finger at the end
+    bool goes_on;        ///< true: after the grip, the sequence continues with the move
+    bool lets_go;        ///< true: the release step vents the finger
   };
   for (const Case& test :
        {Case{"vent", SafeAction::hold, 0, false, false}, Case{"hold", SafeAction::vent, 45, false, false},
@@ -62,7 +63,7 @@ TEST_F(SequencePlayback, EveryFailureActionDoesWhatItSays) {
     settings.safety.safe_action.fill(test.closing == SafeAction::vent ? SafeAction::hold : SafeAction::vent);
     settings.safety.safe_action[static_cast<std::size_t>(Phase::closing)] = test.closing;
     const PreparedSequence sequence = steps(grip_left + test.on_fail + "}\n" + move_on + let_go);
-    SimulatedRig rig(settings);  // without a part
+    SimulatedRig rig(settings);  // no part between the fingers
     play(rig, sequence);
     EXPECT_EQ(rig.result(0), GripResult::no_part);
     EXPECT_NEAR(rig.board_kpa(0), test.left_kpa, 1e-9);
@@ -114,7 +115,7 @@ TEST_F(SequencePlayback, FingersOfOneStepAnswerEachForItself) {
 }
 
 TEST_F(SequencePlayback, AStepBeginsWhenTheSlowestFingerIsThere) {
-  // The right finger starts from 20 kPa, so it arrives earlier at the same speed.
+  // The right finger starts from 20 kPa. At the same speed, it arrives before the left finger.
   const PreparedSequence sequence = steps(move_on +
                                           "  - move: {pressure_kpa: 40, speed_kpa_per_s: 20}\n"
                                           "  - move: {pressure_kpa: 41, duration_s: 0.1}\n");

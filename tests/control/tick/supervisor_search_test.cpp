@@ -1,4 +1,5 @@
-// Visits every reachable state of the supervisor by applying all combinations of the inputs of a tick.
+// Searches all reachable states of the supervisor. In each state, it applies all combinations of the inputs
+// of a tick.
 
 #include "control/tick/supervisor.h"
 
@@ -28,7 +29,7 @@ struct Tick {
   bool interlock_open = false;
   Phase phase = Phase::idle;
   Rest rest = Rest::pending;
-  bool sequence_ends = false;  // after the tick, if a sequence runs
+  bool sequence_ends = false;  // true: the sequence ends after this tick, if one runs
   std::uint32_t of_start = 0;  // number of the start to which a stop request refers
 };
 
@@ -60,7 +61,7 @@ std::vector<Tick> all_ticks() {
   return ticks;
 }
 
-/// The bytes of the object are its state, because all its members are plain values.
+/// All members of the object are plain values, so its bytes can represent its state.
 static_assert(std::is_trivially_copyable_v<Supervisor>);
 std::string bytes_of(const Supervisor& supervisor) {
   std::string bytes(sizeof supervisor, '\0');
@@ -72,11 +73,12 @@ class SupervisorSearch : public testing::Test {
  protected:
   SupervisorSearch() { sequence_.interlock = Interlock::always; }
 
-  /// Runs one tick and returns the rule that the supervisor violated, or an empty text.
+  /// Runs one tick. Returns the rule that the supervisor violated, or an empty text.
   std::string step(Supervisor& supervisor, const Tick& tick) {
     const State before = supervisor.state();
     TickInput input;
-    // A start is always newer than a request that would overtake it; another test covers this case.
+    // Here a start is always newer than a stop that refers to it. Another test covers a stop that overtakes
+    // its start.
     const bool names_one = tick.request == Kind::start || tick.request == Kind::check;
     const std::uint32_t id = tick.of_start != 0 ? own_start + 1 : names_one ? own_start : 1;
     input.request = {tick.request, id, names_one ? &sequence_ : nullptr, tick.of_start};

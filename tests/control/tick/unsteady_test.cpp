@@ -1,4 +1,4 @@
-// Tests that a reading that jumps back and forth is reported, and that the rig file can make it a fault. A
+// Tests a reading that jumps back and forth: it must be reported, and the rig file can make it a fault. A
 // sliding part must not be reported.
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 class UnsteadyTest : public testing::Test {
  protected:
-  /// Adds 5 mm to the left reading in every second interval of 0.1 s.
+  /// For `seconds`, adds 5 mm to the left reading in every second interval of 0.1 s.
   static void jump(SimulatedRig& rig, double seconds) {
     for (const double end_s = rig.time_s() + seconds; rig.time_s() < end_s;) {
       rig.fault[0].offset_mm = std::fmod(rig.time_s(), 0.2) < 0.1 ? 5 : 0;

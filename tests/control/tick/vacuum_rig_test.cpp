@@ -1,5 +1,5 @@
-// A rig with a range from -40 to 60 kPa that rests at 0 kPa: every return ends at rest, from above and from
-// below.
+// Tests a rig with a pressure range from -40 to 60 kPa and the rest pressure 0 kPa. Every return to rest must
+// end at the rest pressure, from above and from below.
 
 #include <gtest/gtest.h>
 
@@ -15,14 +15,14 @@ namespace {
 
 class VacuumRig : public testing::Test {
  protected:
-  /// Grips and holds with -30 kPa.
+  /// Runs a grip until the fingers hold a part with -30 kPa.
   void hold_vacuum(SimulatedRig& rig) {
     ASSERT_TRUE(rig.start_until_step(grip, 1));
     ASSERT_EQ(rig.result(0), GripResult::holding);
     ASSERT_NEAR(rig.board_kpa(0), -30, 1e-9);
   }
   static double command(const SimulatedRig& rig) { return rig.output().channels[0].command_kpa; }
-  /// Returns the reason for which this rig refuses a sequence; empty if it accepts the sequence.
+  /// Returns the reason why this rig refuses a sequence of these steps, or "" if it accepts the sequence.
   std::string refusal(const std::string& steps) const {
     document::Problems problems;
     const auto sequence =
@@ -58,7 +58,7 @@ TEST_F(VacuumRig, AVacuumIsGrippedHeldAndReleasedToRest) {
 
 TEST_F(VacuumRig, AVentAndAReleaseComeUpToRestWithinTheSlew) {
   for (const Request::Kind kind : {Request::Kind::vent, Request::Kind::release}) {
-    SimulatedRig rig(settings);  // SimulatedRig checks the slew
+    SimulatedRig rig(settings);  // SimulatedRig checks the slew limits in each tick
     hold_vacuum(rig);
     rig.request(kind);
     ASSERT_TRUE(rig.run_until(State::idle, 10));
@@ -201,8 +201,8 @@ TEST_F(VacuumRig, ABoundBelowRestIsRefused) {
   EXPECT_EQ(bounded_by("0"), "");
 }
 
-/// The steps of the published sequence are above the rest pressure. The upper pressure limit of a step must
-/// not evacuate a finger.
+/// All steps of the published sequence are above the rest pressure. An upper pressure limit of a step must
+/// not make the rig evacuate a finger.
 TEST_F(VacuumRig, StepsAboveRestWorkAsOnARigWithoutVacuum) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   SimulatedRig rig(settings);

@@ -20,7 +20,8 @@ namespace {
 using sim::model_named;
 using sim::tick_s;
 
-/// The gains that bench/tracking_study.cpp finds for all feedforwards at Ms <= 2.
+/// PID gains that bench/tracking_study.cpp finds for all feedforwards, with a maximum sensitivity Ms of at
+/// most 2.
 constexpr PidSettings found{2.7, 13, 0, 0.02, 1, AntiWindup::back_calculation, 0.5};
 
 constexpr LimitSettings to_60_kpa{0, 60};
@@ -79,7 +80,7 @@ TEST(TrackingRun, ItsTraceIsWhatTheErrorsAreTakenOf) {
     worst = std::max(worst, std::abs(error));
     squares += error * error;
   }
-  // The RMSE also uses the errors in the middle of each tick.
+  // The RMSE of the result also contains the errors in the middle of each tick, so it differs slightly.
   EXPECT_LE(worst, result.worst_mm);
   EXPECT_NEAR(std::sqrt(squares / static_cast<double>(trace.time_s.size())), result.rmse_mm,
               0.1 * result.rmse_mm);
@@ -108,8 +109,8 @@ TEST(TrackingRun, OneSeedOneResult) {
   EXPECT_NE(first.rmse_mm, track(run).rmse_mm);
 }
 
-// Compares the share of models with this scatter that are not judged healthy with the rate that
-// model_health.h states.
+// Computes the share of models that are not judged healthy, although their parameters deviate by this
+// scatter. The share must agree with the rate that model_health.h states.
 TEST(TrackingRun, ModelHealthToleratesAFewPercentAndNotTwenty) {
   const auto not_healthy = [](double scatter) {
     int count = 0;
@@ -131,8 +132,8 @@ TEST(TrackingRun, ModelHealthToleratesAFewPercentAndNotTwenty) {
   EXPECT_EQ(not_healthy(0.20), 23);
 }
 
-// For a plant 1/(c s) with a dead time and the controller gain K, |L| = 1 at the angular frequency K/c. The
-// phase there is -90 degrees minus the phase of the dead time.
+// Example for which the margins are known: a plant 1/(c s) with a dead time, and a controller with the gain
+// K. |L| = 1 at the angular frequency K/c. There the phase is -90 degrees minus the phase of the dead time.
 TEST(LoopMargins, AgreeWithAnIntegratorByHand) {
   model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("bouc_wen"));
   model = model::without_block(model, *model::find_block("valve_lag"));
@@ -151,7 +152,7 @@ TEST(LoopMargins, AgreeWithAnIntegratorByHand) {
       loop_margins(model, {5, 0, 0, 0.02, 1, AntiWindup::none, 1}, to_60_kpa, tick_s, tick_s);
   EXPECT_NEAR(half.crossover_hz, 5 / (2 * M_PI), 0.01);
   EXPECT_GT(half.sensitivity, 1.5);
-  // An integrator with a dead time is stable up to K L = pi/2.
+  // The loop of an integrator with a dead time is stable if K L < pi/2, with the dead time L.
   const double limit = M_PI / 2 / dead_s;
   EXPECT_TRUE(std::isfinite(
       loop_margins(model, {0.98 * limit, 0, 0, 0.02, 1, AntiWindup::none, 1}, to_60_kpa, tick_s, tick_s)
@@ -161,7 +162,8 @@ TEST(LoopMargins, AgreeWithAnIntegratorByHand) {
           .sensitivity));
 }
 
-/// Returns the smallest slope, for rising and falling pressure, while a finger is loaded and unloaded twice.
+/// Loads and unloads a finger twice. Returns the smallest slope of the displacement over pressure, for rising
+/// and falling pressure.
 double smallest_gain(const model::Model& model, double pressure_max_kpa) {
   constexpr int steps = 1000;
   constexpr double aside_kpa = 1e-4;
@@ -179,7 +181,8 @@ double smallest_gain(const model::Model& model, double pressure_max_kpa) {
   return smallest;
 }
 
-/// This finger is stiffest at the end of its second unloading: 2.7 times as stiff as anywhere before.
+/// Returns a finger that is stiffest at the end of its second unloading: 2.7 times as stiff as at any time
+/// before.
 model::Model stiff_at_its_end() {
   model::Model model = model::with_block({}, model::block_of<model::BoucWen>({{"alpha_mm_per_kpa", 0.39},
                                                                               {"beta_mm_per_kpa", 0.158},
@@ -194,8 +197,8 @@ model::Model stiff_at_its_end() {
   return model;
 }
 
-// With integral control alone, |L| = ki gain / (2 pi f). The crossover frequency therefore shows which
-// smallest gain the function used.
+// With integral control alone, |L| = ki gain / (2 pi f). Therefore the crossover frequency reveals which
+// smallest gain the function has used.
 TEST(LoopMargins, AreThoseOfTheStiffestPlaceOfTwoCycles) {
   const model::Model model = stiff_at_its_end();
   const double gain = smallest_gain(model, 60);

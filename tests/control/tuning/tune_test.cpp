@@ -38,7 +38,7 @@ TEST(Tune, KeepsTheMarginAndBeatsCautiousGains) {
 TEST(Tune, TellsTheMarginsOfTheWorstFinger) {
   TuneTask task = quick_task(FeedforwardKind::none);
   task.iterations = 4;
-  task.mismatch = 0;  // every finger equals the model
+  task.mismatch = 0;  // every simulated finger equals the model
   task.draws = 1;
   const Tuned tuned = tune(task);
   const double tick_s = 1 / task.rate_hz;
@@ -50,7 +50,8 @@ TEST(Tune, TellsTheMarginsOfTheWorstFinger) {
 
 TEST(Tune, WithoutAnyMarginLeftItFindsTheCalmestGains) {
   TuneTask task = quick_task(FeedforwardKind::none);
-  task.most_sensitivity = 0.5;  // lower than the sensitivity of any loop
+  task.most_sensitivity = 0.5;  // lower than the maximum sensitivity of any loop, so that no gains meet this
+                                // requirement
   const Tuned tuned = tune(task);
   task.most_sensitivity = 2;
   EXPECT_LT(tuned.sensitivity, tune(task).sensitivity);
@@ -65,7 +66,7 @@ TEST(Tune, LessSensitivityCostsError) {
   EXPECT_GT(careful.rmse_mm, bold.rmse_mm);
 }
 
-// The result text names what limits the gains and the largest part of the error. Both must agree with the
+// The result text names the limit of the gains and the largest part of the error. Both must agree with the
 // numbers of the case.
 TEST(Tune, SaysWhatLimitsItAndWhatTheErrorIs) {
   struct Case {
@@ -106,7 +107,8 @@ TEST(Tune, AValveWithoutALagIsNotSaidToHaveOne) {
   EXPECT_EQ(without.limited_by.find("s of lag"), std::string::npos) << without.limited_by;
 }
 
-// Below 0.1 Hz, half a cycle takes minutes of simulation, so a quarter of a cycle is used for settling.
+// Below 0.1 Hz, half a period would take minutes of simulation, so the loop settles for a quarter of a
+// period.
 TEST(Tune, SlowReferencesSettleForAQuarterOfACycle) {
   TuneTask task = quick_task(FeedforwardKind::none);
   task.iterations = 0;
@@ -161,8 +163,8 @@ TEST(Tune, TheReferenceIsWithinReachBelowRest) {
   EXPECT_GT(task.mean_mm - task.amplitude_mm, limits.displacement_min_mm);
 }
 
-// The published model has no inverse. Compares planned feedforward with PID alone, both tuned in the same
-// way.
+// The published model has no inverse. This test compares the planned feedforward with the PID alone. Both are
+// tuned in the same way.
 TEST(Tune, PlannedOnThePublishedModelIsThreeTimesBetterThanItsPid) {
   TuneTask task = quick_task(FeedforwardKind::none);
   task.finger = task.channel.model = sim::model_named("zhang2025");
