@@ -1,5 +1,5 @@
 #pragma once
-// Lines as softgripd sends them, and copies of them that are damaged in every place.
+// Lines as softgripd sends them, and damaged copies of these lines.
 
 #include <algorithm>
 #include <string>
@@ -37,7 +37,7 @@ inline Json good_status() {
   return status;
 }
 
-/// Returns one line of each kind.
+/// Returns one line of each kind that softgripd sends.
 inline std::vector<Json> good_lines() {
   const Json problem = Json::parse(
       R"({"file": "a.yaml", "line": 3, "column": 5, "line_text": "x", "message": "no", "hint": "h"})");
@@ -78,7 +78,8 @@ inline std::vector<Json> good_lines() {
   };
 }
 
-/// Returns copies of the line: each place is replaced by each other kind of value, and removed.
+/// Returns damaged copies of a line. For each value in the line, there is a copy without it, and one copy per
+/// other kind of value in its place.
 inline std::vector<Json> damaged(const Json& line) {
   const Json others =
       Json::parse(R"([null, true, 0, -1, 1.5, 1e300, "", "x", [], [1], [[]], {}, {"a": null}])");
@@ -86,7 +87,7 @@ inline std::vector<Json> damaged(const Json& line) {
   const Json flat = line.flatten();
   std::vector<std::string> places;
   for (const auto& [leaf, value] : flat.items()) {
-    // Visit each place on the path to the leaf once.
+    // Add each path from the root to the leaf once.
     for (std::size_t end = 0; end != std::string::npos;) {
       end = leaf.find('/', end + 1);
       const std::string place = leaf.substr(0, end);

@@ -9,7 +9,7 @@
 namespace softgrip::studies::control_study_test {
 namespace {
 
-/// One quick study serves all tests.
+/// Returns a short study that all tests use.
 const ControlStudy& quick_study() {
   static const ControlStudy study = [] {
     ControlStudyOptions options;

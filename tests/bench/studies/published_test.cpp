@@ -60,7 +60,7 @@ TEST(InvertibleMatch, KeepsTheBoundWhereTheResponseWouldLeaveIt) {
   EXPECT_GT(wrong_way_ratio(found), 0.79);
 }
 
-/// One quick study serves the tests below.
+/// Returns a short study that the following tests use.
 const PublishedStudy& quick_study() {
   static const PublishedStudy study = [] {
     PublishedOptions options;
@@ -98,8 +98,8 @@ TEST(PublishedStudy, TheExplicitInverseGrowsByBetaOverAlphaAndTheImplicitOneIsEx
     EXPECT_EQ(row.refused, row.ratio >= 1) << row.ratio;
     if (row.ratio < 1) {
       EXPECT_LT(row.implicit_error_kpa, 1e-8) << row.ratio;
-      // The lag of a contracting fixed-point iteration behind a moving target is at most ratio / (1 - ratio)
-      // jumps.
+      // The explicit inverse is a fixed-point iteration. If it contracts, its lag behind a moving target is
+      // at most ratio / (1 - ratio) times the change of the target per sample.
       EXPECT_LT(row.explicit_error_kpa, row.ratio / (1 - row.ratio) * row.true_jump_kpa) << row.ratio;
     } else if (row.ratio > 1) {
       EXPECT_GT(row.explicit_error_kpa, 20) << row.ratio;

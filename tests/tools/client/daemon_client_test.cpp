@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Accepts one client, waits for one line, sends the given reply and closes the connection.
+/// A server that accepts one client, waits for one line, sends the given reply and closes the connection.
 class ScriptedDaemon {
  public:
   explicit ScriptedDaemon(std::string reply)
@@ -50,7 +50,9 @@ class ScriptedDaemon {
     while (byte != '\n') {
       if (::recv(client.get(), &byte, 1, 0) < 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    for (const char out : reply_) ::send(client.get(), &out, 1, MSG_NOSIGNAL);  // one byte per send()
+    for (const char out : reply_)
+      ::send(client.get(), &out, 1, MSG_NOSIGNAL);  // send each byte with a
+                                                    // separate call
   }
 
   std::filesystem::path folder_;

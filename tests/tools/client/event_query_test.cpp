@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 class EventQueryTest : public ::testing::Test {
  protected:
   EventQueryTest() {
-    ::setenv("TZ", "UTC-1", 1);  // UTC + 1 h
+    ::setenv("TZ", "UTC-1", 1);  // local time is UTC + 1 h
     ::tzset();
   }
   static std::string since(const std::string& text) {

@@ -5,8 +5,8 @@
 namespace softgrip::tools::key_dialogue_test {
 namespace {
 
-/// Returns the request that is sent to the daemon, "leave" if the dialogue ends, or "" if no request is sent
-/// and the dialogue continues.
+/// Returns the request that a key causes. Returns "leave" if the key ends the dialogue, and "" if it causes
+/// no request.
 std::string asked(const KeyDialogue::Outcome& outcome) {
   if (outcome.leave) return "leave";
   return outcome.request ? outcome.request->dump() : "";

@@ -84,7 +84,7 @@ TEST_F(LastHealth, IsNothingWhereThereIsNoResult) {
   EXPECT_TRUE(health_lines(nullptr).empty());
 }
 
-/// If the reader waited for a writer of the pipe, this test would not end.
+/// If last_health() opened the pipe and waited for a writer, this test would not end.
 TEST_F(LastHealth, IsNothingWhereThePathIsAPipe) {
   std::filesystem::create_directories(recordings / "health");
   ASSERT_EQ(::mkfifo((recordings / "health/health.json").c_str(), 0600), 0);

@@ -27,7 +27,7 @@ std::string error_of(const std::string& line) {
   return parsed ? "accepted" : parsed.error();
 }
 
-/// Passes the line to every function of tools/client that reads a line of the daemon.
+/// Passes the event to every function of tools/client that reads an event of the daemon.
 void read_event(const Json& event) {
   LiveState state;
   static_cast<void>(line_of_event(event));
@@ -72,7 +72,7 @@ TEST(ReplyCheck, AcceptsWhatTheDaemonSends) {
     ASSERT_TRUE(parsed) << parsed.error() << "\n" << line;
     EXPECT_EQ(*parsed, line);
   }
-  // A newer daemon may send additional keys.
+  // Additional keys must be accepted, because a newer daemon may send them.
   EXPECT_TRUE(parse_reply(R"({"id": 1, "ok": true, "more": [], "result": {"more": {"state": 3}}})"));
 }
 
@@ -102,8 +102,8 @@ TEST(ReplyCheck, RefusesWhatNestsTooDeepBeforeItIsParsed) {
       << "brackets inside a string are text";
 }
 
-/// Replaces every value of every kind of line by every other kind of value. Either the check must refuse the
-/// changed line, or every reader must accept it.
+/// In a line of each kind, replaces each value by values of all other JSON types. Either the check must
+/// refuse the changed line, or every function that reads such a line must accept it.
 TEST(ReplyCheck, WhatPassesBreaksNoReader) {
   std::size_t refused = 0;
   std::size_t passed = 0;

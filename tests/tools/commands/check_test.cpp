@@ -1,5 +1,5 @@
-// `softgrip check` as a user runs it: every broken configuration is refused with exit code 3, and the output
-// contains every line of broken/NAME.expected.
+// Tests `softgrip check` as a user runs it. It must refuse every broken configuration with exit code 3, and
+// its output must contain every line of broken/NAME.expected.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -28,7 +28,7 @@ struct Outcome {
   std::string errors;
 };
 
-/// Folder of this process; removed when the process ends.
+/// Returns a folder for the files of this process, which is removed when the process ends.
 const std::filesystem::path& scratch() {
   struct Folder {
     std::filesystem::path path =
@@ -40,7 +40,7 @@ const std::filesystem::path& scratch() {
   return folder_of_process.path;
 }
 
-/// Runs `softgrip check ARGUMENTS` in tests/config.
+/// Runs `softgrip check ARGUMENTS` in the folder tests/config.
 Outcome check(const std::string& arguments) {
   const std::string out = (scratch() / "out").string();
   const std::string err = (scratch() / "err").string();
@@ -59,7 +59,8 @@ std::vector<std::string> names() {
   return result;
 }
 
-/// Returns the file and the files that are checked together with it, as command-line arguments.
+/// Returns the command-line arguments for checking a file: the file and all files that must be checked
+/// together with it.
 std::string arguments_of(const std::string& name) {
   std::string arguments = "broken/" + name + ".yaml";
   std::istringstream also(text_of(folder / "broken" / (name + ".also")));

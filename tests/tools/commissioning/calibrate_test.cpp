@@ -1,4 +1,4 @@
-// softgrip calibrate on simulated rigs whose true scalings are known.
+// Tests softgrip calibrate with simulated rigs, whose true scalings are known.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@
 namespace softgrip::tools::calibrate::calibrate_test {
 namespace {
 
-/// Returns four visits to two places on the line y = 3 - 2 x.
+/// Returns four visits to two positions, on the line y = 3 - 2 x.
 std::vector<Visit> visits() {
   std::vector<Visit> list;
   for (const double off : {0.001, -0.001}) {
@@ -109,7 +109,7 @@ TEST(FindDeadZone, DoesNotInventOne) {
   EXPECT_FALSE(find_dead_zone(command, nothing)) << "the response does not rise";
 }
 
-/// An operator who reads the gauge at the true position of the simulated finger.
+/// Simulates an operator who reads the gauge at the true position of the simulated finger.
 class KnowingOperator final : public Operator {
  public:
   explicit KnowingOperator(std::function<std::string()> reading) : reading_(std::move(reading)) {}
@@ -119,7 +119,8 @@ class KnowingOperator final : public Operator {
     waited_ = 0;
   }
   std::optional<std::string> answer() override {
-    // An operator needs time to answer. Meanwhile the session must continue to communicate with the board.
+    // The operator needs time to answer. During this time, the session must continue to communicate with the
+    // board.
     if (++waited_ < 300) return std::nullopt;
     return reading_();
   }
@@ -134,7 +135,7 @@ class KnowingOperator final : public Operator {
   int waited_ = 0;
 };
 
-/// Records the highest command.
+/// Forwards all exchanges and records the highest command.
 class WatchedBoard final : public testing::PassingBoard {
  public:
   using PassingBoard::PassingBoard;
@@ -148,7 +149,7 @@ class WatchedBoard final : public testing::PassingBoard {
   }
 
   double highest_kpa = 0;
-  bool monitored = true;  ///< the left pressure monitor gives readings
+  bool monitored = true;  ///< false: the left pressure monitor gives no readings
 };
 
 class CalibrateTest : public ::testing::Test {
@@ -235,7 +236,7 @@ TEST_F(CalibrateTest, RefusesASensorThatIsSaturatedOrOutOfRange) {
   EXPECT_NE(line.error().text.find("not valid (out_of_range)"), std::string::npos) << line.error().text;
 }
 
-/// No procedure moves a finger without the sensor that shows its motion.
+/// If the sensor that shows the motion of a finger gives no reading, no procedure may move the finger.
 TEST_F(CalibrateTest, NothingRisesWithoutASensorThatTheMotionNeeds) {
   using Procedure = std::function<std::optional<Refusal>(MotionSession&, Operator&)>;
   const auto refusal = [](const auto& result) {
@@ -255,7 +256,7 @@ TEST_F(CalibrateTest, NothingRisesWithoutASensorThatTheMotionNeeds) {
                                    }};
   KnowingOperator person([] { return "1"; });
   for (const bool monitor : {false, true}) {
-    // The last two procedures do not read the pressure monitor.
+    // The last two procedures do not need the pressure monitor, so omit them.
     for (std::size_t i = 0; i < (monitor ? 2 : all.size()); ++i) {
       SCOPED_TRACE(std::to_string(i) + (monitor ? " without the monitor" : " without the sensor"));
       simulation::SimulatedEvent blind;
@@ -327,8 +328,8 @@ TEST_F(CalibrateTest, ByHandNothingMoves) {
   make();
   double place = 2;
   KnowingOperator person([&] {
-    // The operator moves a target by hand: the simulated finger does not move, and the scaling represents the
-    // target.
+    // The operator moves the target of the sensor by hand and enters positions that differ by 10 mm. The
+    // reading is constant, because the simulated finger does not move.
     return std::to_string(place += 10);
   });
   const auto line = calibrate_sensor(rig_, *session_, person, settings_);
@@ -393,7 +394,7 @@ TEST_F(CalibrateTest, TheSnippetIsReadByTheRigFilesReader) {
   EXPECT_NE(text.find("the signal rises"), std::string::npos);
   EXPECT_NE(text.find("use 60 % of the valve's range\n"), std::string::npos) << text;
 
-  // Replaces the old lines of the rig file by the new ones.
+  // Replace the lines of the rig file that the calibration has changed.
   std::string file = daemon::testing::text_of(SOFTGRIP_SOURCE_DIR "/config/rig.yaml");
   for (const std::string key : {"sensor", "valve"}) {
     const auto line_at = [&](const std::string& in, std::size_t from) { return in.find(key + ": {", from); };

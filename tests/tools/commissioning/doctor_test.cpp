@@ -1,4 +1,4 @@
-// softgrip doctor on healthy and on faulty rigs, simulated in virtual time.
+// Tests softgrip doctor with healthy and with faulty rigs, simulated in virtual time.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ using simulation::LineFault;
 using simulation::SensorFault;
 using Event = simulation::SimulatedEvent;
 
-/// A board whose left pressure monitor gives no readings.
+/// Forwards all exchanges, but the left pressure monitor gives no readings.
 class BlindMonitor final : public tools::testing::PassingBoard {
  public:
   using PassingBoard::PassingBoard;
@@ -43,7 +43,7 @@ class BlindMonitor final : public tools::testing::PassingBoard {
   }
 };
 
-/// A board that records the highest command of each channel.
+/// Forwards all exchanges and records the highest command of each channel.
 class NotingBoard final : public tools::testing::PassingBoard {
  public:
   using PassingBoard::PassingBoard;
@@ -58,7 +58,7 @@ class NotingBoard final : public tools::testing::PassingBoard {
   std::array<double, 2> highest_kpa{};
 };
 
-/// A board with a watchdog. It reports the number of its Modbus clients.
+/// A board that has a watchdog and reports the number of its Modbus clients.
 class SharedBoard final : public tools::testing::PassingBoard {
  public:
   using PassingBoard::PassingBoard;
@@ -72,7 +72,7 @@ class SharedBoard final : public tools::testing::PassingBoard {
 class DoctorTest : public ::testing::Test {
  protected:
   DoctorTest() {
-    // Remove the stone: a finger that moves only a little moves without contact.
+    // Remove the stone, so that the small motion of a finger ends before any contact.
     for (simulation::SimulatedChannel& channel : simulated().channels) channel.plant.object.reset();
   }
   simulation::SimulatedBoardSettings& simulated() {
@@ -179,7 +179,8 @@ TEST_F(DoctorTest, AWatchdogThatIsMissing) {
   expect("watchdog", Verdict::warn, "the outputs keep their last pressure");
 }
 
-/// A request of any client resets the watchdog of this board. The board may count its clients.
+/// On this board, a request of any client resets the watchdog. Some boards of this kind report the number of
+/// their clients.
 TEST_F(DoctorTest, AWatchdogThatReadersFeedIsWarnedOfAndOtherClientsAreFound) {
   rig_.settings.safety.board_vents_when_silent = true;
   board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
@@ -216,7 +217,8 @@ TEST_F(DoctorTest, ASensorThatSeesNothing) {
   expect("sensor left", Verdict::fail, "out_of_range");
 }
 
-/// A finger without a valid reading could exceed its limits unnoticed, so only the other fingers move.
+/// A finger whose sensor gives no valid reading could exceed its limits unnoticed. Therefore only the other
+/// fingers may be moved.
 TEST_F(DoctorTest, ASensorThatSeesNothingIsOneFailureAndItsFingerIsNotMoved) {
   Event blind;
   blind.kind = Event::Kind::sensor_fault;
@@ -241,7 +243,7 @@ TEST_F(DoctorTest, ASensorThatIsLostOnTheWayEndsTheMotion) {
   blind.kind = Event::Kind::sensor_fault;
   blind.channel = 0;
   blind.sensor.kind = SensorFault::Kind::out_of_range;
-  blind.at_s = 1.5;  // the check at rest takes 1 s, the ramp up another 1 s
+  blind.at_s = 1.5;  // during the ramp up, which begins after the check at rest of 1 s and takes 1 s
   at_once(blind);
   board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
   NotingBoard board(*board_);
@@ -316,7 +318,8 @@ TEST_F(DoctorTest, AModelOfAnotherFinger) {
   rig_.settings.channels[0].health.model_error_mm = 0.05;
   rig_.settings.channels[0].health.noise_mm = 0.03;
   for (simulation::SimulatedChannel& channel : simulated().channels) {
-    channel.plant.object = simulation::PlantObject{1, 0.5};  // as for a finger of twice the stiffness
+    channel.plant.object = simulation::PlantObject{1, 0.5};  // the finger then moves half as far, as if it
+                                                             // were twice as stiff
   }
   examine(true);
   expect("model left", Verdict::fail, "unfit above 0.30");
@@ -375,7 +378,7 @@ TEST_F(DoctorTest, ARateBeyondTheBusBudget) {
 }
 
 TEST_F(DoctorTest, StoppedByTheUserTheOutputsAreSafe) {
-  time_.stop_at = 2'500'000'000;  // during the ramp up
+  time_.stop_at = 2'500'000'000;  // a time during the ramp up
   examine(true);
   expect("motion left", Verdict::fail, "stopped by the user");
   EXPECT_EQ(output_kpa(0), 0);
@@ -400,7 +403,7 @@ TEST_F(DoctorTest, AFolderThatCannotBeWrittenAndOneThatCan) {
   expect("disk", Verdict::fail, "no folder");
 }
 
-/// Returns the status of a healthy daemon.
+/// Returns the status that a daemon without problems reports.
 nlohmann::ordered_json healthy_status() {
   return nlohmann::ordered_json::parse(R"({"version": "1", "rig": "bench", "rate_hz": 200, "state": "idle",
     "fault": null, "sequence": null, "bus": {"board": "ADAM", "connected": true},

@@ -1,4 +1,5 @@
-// Manual motion against a board that vents by its own watchdog: pauses, lost requests, refusals.
+// Tests manual motion with a board whose watchdog vents: pauses of the process, lost requests and refused
+// writes.
 
 #include "tools/commissioning/motion_session.h"
 
@@ -27,11 +28,11 @@ constexpr Nanoseconds watchdog = 500 * ms;
 constexpr Nanoseconds deadline = 50 * ms;
 constexpr double pressure_kpa = 30;
 constexpr double speed_kpa_per_s = 12;
-/// Tolerance for the rounding of a float.
+/// Largest difference between two pressures that differ only by rounding [kPa].
 constexpr double equal_kpa = 1e-9;
 
-/// A clock that advances only in sleeps. One sleep, at `pause_at`, takes `pause` longer, as if the process
-/// were stopped.
+/// A clock that advances only during sleeps. The first sleep after `pause_at` takes `pause` longer, as if the
+/// process had been stopped.
 class StoppableClock final : public Clock {
  public:
   [[nodiscard]] Nanoseconds now() const noexcept override { return now_; }
@@ -50,7 +51,8 @@ class StoppableClock final : public Clock {
   mutable Nanoseconds now_ = ns_per_s;
 };
 
-/// A board that holds its outputs. Any request resets its watchdog timer; any write ends a trip.
+/// A board that holds its outputs. Any request restarts its watchdog time, and any write ends a watchdog
+/// trip.
 class VentingBoard final : public drivers::Board {
  public:
   explicit VentingBoard(const StoppableClock& clock) : clock_(clock) {}
@@ -94,15 +96,16 @@ class VentingBoard final : public drivers::Board {
   Nanoseconds watchdog_ns = watchdog;
   BusStatus next_connect = BusStatus::ok;
   std::function<void()> on_exchange;  ///< called before a request arrives at the board
-  Nanoseconds lost_from = never;      ///< exchanges fail from this time
-  Nanoseconds lost_until = never;     ///< exchanges succeed again from this time
+  Nanoseconds lost_from = never;      ///< time from which exchanges fail
+  Nanoseconds lost_until = never;     ///< time from which exchanges succeed again
   BusStatus how = BusStatus::timed_out;
-  bool request_arrives = false;  ///< true: failed exchanges lose only the response
+  bool request_arrives = false;  ///< true: if an exchange fails, the request has arrived and only the
+                                 ///< response is lost
   model::Validity validity = model::Validity::valid;
-  bool monitored = true;  ///< the pressure monitors give readings
+  bool monitored = true;  ///< false: the pressure monitors give no readings
 
   std::vector<double> outputs_kpa{0, 0};
-  double largest_rise_kpa = 0;  ///< largest increase of an output by one write
+  double largest_rise_kpa = 0;  ///< largest increase of an output by a single write
   double highest_after_vent_kpa = 0;
   bool vented = false;
   int sessions = 0;
@@ -126,20 +129,21 @@ class MotionSessionTest : public ::testing::Test {
  protected:
   MotionSessionTest() {
     rig_.loop.exchange_deadline_s = seconds(deadline);
-    // The bus fault comes later than the watchdog trip, so that only the duration of the gap decides.
+    // With 80 cycles, the bus fault comes after the watchdog trip, so that only the duration of a gap ends
+    // the session.
     rig_.settings.faults.bus_down_cycles = 80;
   }
   [[nodiscard]] StopRequest stop() {
     return [this] { return clock_.now() >= stop_at_; };
   }
-  /// Moves up, holds for 1 s and moves down again, like calibrate.
+  /// Raises the pressure, holds it for 1 s and lowers it again, as calibrate does.
   MotionSession::Expected<void> move(MotionSession& session) {
     if (auto connected = session.connect(); !connected) return connected;
     if (auto up = session.ramp(0, pressure_kpa, speed_kpa_per_s); !up) return up;
     if (auto there = session.sample(1); !there) return tl::unexpected(there.error());
     return session.ramp(0, 0, speed_kpa_per_s);
   }
-  /// Returns the largest step that the limits and the requested speed allow in one cycle.
+  /// Returns the largest change of a command in one cycle that the limits and the requested speed allow.
   [[nodiscard]] double step_kpa() const { return speed_kpa_per_s / rig_.settings.rate_hz + equal_kpa; }
 
   rig::RigFile rig_ = daemon::testing::example_rig("rig.yaml");
@@ -191,7 +195,7 @@ TEST_F(MotionSessionTest, APauseOverAVacuumEndsTheMotionAtRest) {
   EXPECT_EQ(board_.outputs_kpa[0], 0);
 }
 
-/// Tries pauses at many times of the motion. Each pause lasts at least as long as the watchdog time.
+/// Tests pauses at many times during the motion. Each pause is at least as long as the watchdog time.
 TEST_F(MotionSessionTest, APauseAsLongAsTheWatchdogEndsTheMotionAndNothingRisesBehindIt) {
   const Nanoseconds begin = clock_.now();
   for (const Nanoseconds pause : {500 * ms, 501 * ms, 800 * ms, 1200 * ms, 60'000 * ms}) {
@@ -234,7 +238,7 @@ TEST_F(MotionSessionTest, AShorterPauseIsRiddenThroughWithoutALargerStep) {
 }
 
 /// No program can detect a pause between its last reading of the clock and its write. The session must
-/// therefore undo this write at once.
+/// therefore return to the rest pressures immediately after this write.
 TEST_F(MotionSessionTest, APauseInTheMiddleOfAnExchangeIsFoundOutAfterItAndEndsTheMotion) {
   MotionSession session(rig_, board_, clock_, stop());
   ASSERT_TRUE(session.connect());
@@ -276,8 +280,8 @@ TEST_F(MotionSessionTest, RequestsThatAreLostForLongerThanTheWatchdogEndTheMotio
   }
 }
 
-/// The requests arrive, so the board holds its outputs. The session cannot know this, because the responses
-/// are lost.
+/// The requests arrive, so the board holds its outputs. Because the responses are lost, the session cannot
+/// know that the requests arrive, so the motion must end.
 TEST_F(MotionSessionTest, RepliesThatAreLostForLongerThanTheWatchdogEndTheMotion) {
   board_.lost_from = clock_.now() + 1500 * ms;
   board_.lost_until = board_.lost_from + 700 * ms;
@@ -369,7 +373,7 @@ TEST_F(MotionSessionTest, WhatIsRequiredAndLostOnTheWayEndsTheMotionWithinItsCyc
     StoppableClock clock;
     VentingBoard board(clock);
     const Nanoseconds lost_at = clock.now() + 1500 * ms;
-    double stood_kpa = 0;  // output after the last exchange with both sensors
+    double stood_kpa = 0;  // output after the last exchange in which both sensors gave readings
     bool first_status = true;
     board.on_exchange = [&] {
       if (clock.now() < lost_at) return;

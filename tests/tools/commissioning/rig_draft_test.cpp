@@ -1,4 +1,5 @@
-// The reader of rig files accepts every rig file that softgrip init writes, regardless of the answers.
+// Tests that the reader of rig files accepts every rig file that softgrip init writes, for any answers of the
+// user.
 
 #include "tools/commissioning/rig_draft.h"
 
@@ -26,7 +27,7 @@ std::string take(RigDraft& draft, const std::string& key, const std::string& wor
   return "there is no fact " + key;
 }
 
-/// Returns a draft with the given facts and with the default values of all other facts.
+/// Returns a draft with the given values. All other values have their defaults.
 RigDraft draft_of(const std::map<std::string, std::string>& given) {
   RigDraft draft;
   draft.sequences_path = config + "sequences";
@@ -115,7 +116,9 @@ TEST_F(RigDraftTest, EveryShippedBoardAndModel) {
   for (const auto& board : std::filesystem::directory_iterator(config + "boards")) {
     for (const auto& model : std::filesystem::directory_iterator(config + "models")) {
       RigDraft draft;
-      if (!take(draft, "board", board.path().string()).empty()) continue;  // no inputs, or no outputs
+      if (!take(draft, "board", board.path().string()).empty())
+        continue;  // skip a board without inputs or
+                   // without outputs
       const bool watched = has_watchdog(draft);
       std::map<std::string, std::string> given{{"board", board.path().string()},
                                                {"address", "127.0.0.1"},
@@ -152,7 +155,8 @@ TEST_F(RigDraftTest, AFallingSensorAndAnotherValve) {
 }
 
 TEST(DraftFacts, SayWhatIsWrongWithAnAnswer) {
-  std::filesystem::current_path(SOFTGRIP_SOURCE_DIR);  // names are searched in this folder
+  std::filesystem::current_path(SOFTGRIP_SOURCE_DIR);  // the test searches names of boards and models
+                                                       // relative to this folder
   RigDraft draft;
   EXPECT_NE(take(draft, "board", "adam-6042").find("did you mean adam-6024?"), std::string::npos)
       << take(draft, "board", "adam-6042");

@@ -1,4 +1,4 @@
-// A calibration writes its points into the rig file itself and changes nothing else there.
+// Tests that a calibration replaces its points in the rig file and leaves all other lines unchanged.
 
 #include "tools/commissioning/rig_update.h"
 

@@ -1,4 +1,4 @@
-// Tests the improvement of closed-loop control by the extended model.
+// Tests the benefit of the extended model in closed-loop control.
 
 #include "tools/investigation/closed_loop_gain.h"
 
@@ -21,11 +21,11 @@ model::Model loaded(const std::string& name) {
 
 TEST(ClosedLoopGain, TheTwinsExtensionBeatsTheModelThatHidesItsLatency) {
   ClosedLoopQuestion question;
-  question.recalibrated = loaded("zhang2025");  // has no inverse
+  question.recalibrated = loaded("zhang2025");  // this model has no inverse
   question.extended = loaded("bench_twin");
   question.span_mm = 27;
   const ClosedLoopGain gain = measure_closed_loop(question);
-#ifndef __SANITIZE_ADDRESS__  // the sanitizer takes ten times as long
+#ifndef __SANITIZE_ADDRESS__  // with this sanitizer, the test takes ten times as long
   EXPECT_LT(gain.wall_s, 5);
 #endif
   EXPECT_FALSE(gain.recalibrated.refused.empty());
@@ -57,8 +57,9 @@ TEST(ClosedLoopGain, AModelWithoutAnInverseIsPlannedForInstead) {
   EXPECT_NE(json["closed_loop"]["notes"].dump().find("is planned before the run"), std::string::npos);
 }
 
-/// Friction that relaxes within a few ticks has no inverse, and a planned feedforward is too coarse to
-/// compensate it. The remaining blocks of the model still predict most of the motion.
+/// Friction that relaxes within a few ticks has no inverse, and the steps of a planned feedforward are too
+/// long to compensate it. The other blocks of the model predict most of the motion, so they must be used as
+/// the feedforward.
 TEST(ClosedLoopGain, WhatOfAModelCanBeUndoneIsItsFeedforward) {
   model::Model finger = model::with_block({}, {model::block_type<model::PrandtlIshlinskii>(),
                                                {0, 0, 0, 0, 0, 0.06, 4, 0.084, 7.3, 0.105, 11.2, 0.108}});
@@ -98,7 +99,7 @@ TEST(ClosedLoopGain, AModelThatMovesNothingIsLeftToThePid) {
 TEST(ClosedLoopGain, TheSameQuestionGivesTheSameNumbersAndEqualModelsGainNothing) {
   ClosedLoopQuestion question;
   question.recalibrated = question.extended = loaded("bench_twin");
-  question.span_mm = 11;  // half of the span that 13 ± 7 mm needs
+  question.span_mm = 11;  // half of the span that the reference 13 ± 7 mm needs
   const ClosedLoopGain one = measure_closed_loop(question);
   const ClosedLoopGain two = measure_closed_loop(question);
   EXPECT_EQ(one.extended.rmse_mm, two.extended.rmse_mm);

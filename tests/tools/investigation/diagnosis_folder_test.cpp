@@ -15,7 +15,8 @@ model::Model loaded(const std::string& path) {
   return model::load_model(path, problems).value();
 }
 
-/// A stale file would be mistaken for a part of the current model.
+/// The file of an earlier diagnosis must be removed, because a user would take it for a part of the new
+/// model.
 TEST(DiagnosisFolder, HoldsTheModelOfTheFeedforwardWhereThatIsNotTheWholeOne) {
   const ScratchFolder scratch;
   const std::filesystem::path file = std::filesystem::path(scratch.path()) / "feedforward_model.yaml";

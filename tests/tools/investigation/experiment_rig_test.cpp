@@ -1,4 +1,4 @@
-// Tests how the daemon of an experiment ends, and the resulting exit code of the command.
+// Tests the exit code of a command for each way in which the daemon of its experiment can end.
 
 #include "tools/investigation/experiment_rig.h"
 
@@ -20,7 +20,7 @@ namespace {
 using control::SequenceEnd;
 using daemon::Ending;
 
-/// Returns a rig whose daemon reports a fault and ends with the given outcome.
+/// Returns a rig whose daemon reports a fault and then ends with this outcome.
 ExperimentRig rig_that_ends(const daemon::Outcome& outcome) {
   document::Problems problems;
   rig::RigFile file = rig::load_rig(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems).value();

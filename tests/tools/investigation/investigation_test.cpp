@@ -1,5 +1,5 @@
-// Tests the iterations of `softgrip investigate` on a finger with stress softening. Its first log does not
-// separate the possible causes.
+// Tests the steps of `softgrip investigate` for a finger with stress softening. The first log of the finger
+// does not separate the possible causes.
 
 #include "tools/investigation/investigation.h"
 
@@ -30,18 +30,18 @@ model::Model loaded(const std::string& name) {
   return model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/" + name + ".yaml", problems).value();
 }
 
-/// Returns the investigated finger, which becomes softer than the given model after its largest load.
+/// Returns the true finger. Unlike the given model, it becomes softer after its largest load.
 model::Model finger() {
   return model::with_block(loaded("bench_twin"),
                            {sysid::find_cause("stress_softening")->forms.front().type, {0.006, 0}});
 }
 
-/// A command with two loads without a repetition. The second load is larger.
+/// A command with two loads, of which the second is larger. No load is repeated.
 const sysid::Waveform first_load{
     "first", "", {{0, 0}, {1, 0}, {4, 30}, {7, 0}, {9, 0}, {13, 55}, {17, 0}, {20, 0}}};
 
-/// Returns the response of the finger to the waveform, optionally after the first load and a long rest,
-/// because the finger retains the softening by that load.
+/// Returns the response of the finger to the waveform. With `after_first`, the first load and a long rest
+/// precede it, because the finger retains the softening.
 sysid::Log played(const sysid::Waveform& waveform, bool after_first, std::uint64_t seed) {
   sysid::Log log;
   log.name = log.path = waveform.name;
@@ -195,7 +195,7 @@ TEST(CommandPlayer, CallsTheCommandWithACommandFileAndReadsItsLog) {
   fs::remove_all(folder);
 }
 
-/// A finger that stiffens. No command can distinguish it from a nonlinear sensor scale.
+/// Tests a finger whose stiffness rises. No command can distinguish it from a finger with a nonlinear sensor.
 class GaugeStepTest : public InvestigationTest {
  protected:
   void SetUp() override {

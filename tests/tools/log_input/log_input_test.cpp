@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::size_t samples = 400;
 
-/// Writes a log that starts at a step of the command from 5 to 60 kPa, and returns its path. The pressure
-/// follows the command with a lag of 0.3 s.
+/// Writes a log and returns its path. The log begins with a step of the command from 5 to 60 kPa, which the
+/// pressure follows with a lag of 0.3 s.
 std::string begun_at_a_step(const daemon::testing::TemporaryFolder& folder, bool measured = true) {
   const std::string path = folder.path() + "/step.csv";
   std::ofstream out(path);

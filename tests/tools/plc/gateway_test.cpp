@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A gateway with its masters and a daemon whose answers the test chooses.
+/// Tests a gateway with masters. The test chooses the responses of the daemon.
 class GatewayTest : public ::testing::Test {
  protected:
   static Settings shipped() {
@@ -42,7 +42,7 @@ class GatewayTest : public ::testing::Test {
     static_cast<void>(gateway_.serve(id, request, now_));
   }
   void write(Name name, std::uint16_t value) { write(plc_, name, {value}); }
-  /// Writes counter and command in one block.
+  /// Writes a command and its counter in one block of registers.
   void put(Masters::Id id, std::uint16_t counter, CommandCode command) {
     write(id, Name::command_counter, {counter, static_cast<std::uint16_t>(command), 1});
   }
@@ -55,7 +55,7 @@ class GatewayTest : public ::testing::Test {
     return modbus::word_at(frame, frame.size() - 2);
   }
   std::uint16_t read(Name name) { return read(plc_, name); }
-  /// Returns (outcome, reason) as this connection reads them.
+  /// Returns the outcome and the reason that this connection reads.
   std::pair<Outcome, Reason> end_of(Masters::Id id) {
     return {static_cast<Outcome>(read(id, Name::outcome)), static_cast<Reason>(read(id, Name::reason))};
   }
@@ -82,8 +82,8 @@ class GatewayTest : public ::testing::Test {
       "sequence": null, "channels": []}})"),
                          now_);
   }
-  /// Advances the time in the steps of the server's loop. If `daemon_speaks`, the daemon sends its state in
-  /// each step.
+  /// Advances the time in steps, as the loop of the server does. If `daemon_speaks` is true, the daemon sends
+  /// its state in each step.
   void pass(double duration_s, bool daemon_speaks = true) {
     for (const Nanoseconds end = now_ + nanoseconds(duration_s); now_ < end;) {
       now_ += Gateway::longest_pause;
@@ -113,7 +113,7 @@ TEST_F(GatewayTest, RefusesEachCommandOnceWithoutADaemon) {
   EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::no_such_command));
 }
 
-/// The fuzz target aborts if a checked property does not hold.
+/// The test passes unless the fuzz target aborts, which it does if a checked property does not hold.
 TEST(PlcRequests, TheSeedsOfTheFuzzTargetAreAnsweredWholeAndCutOff) {
   std::size_t seeds = 0;
   for (const auto& entry :
@@ -144,7 +144,7 @@ TEST_F(GatewayTest, AnOldBlockFromASecondConnectionStartsNothing) {
   accept();
   put(second, 1, CommandCode::start);
   EXPECT_TRUE(sent().empty());
-  // The connection that wrote the command reads the reason. The other connection reads the end of its own
+  // The connection whose command was refused reads the reason. The other connection reads the end of its own
   // command.
   EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
   EXPECT_EQ(end_of(plc_), std::pair(Outcome::accepted, Reason::none));
@@ -159,7 +159,7 @@ TEST_F(GatewayTest, ACommandThatWasRefusedOnOneConnectionIsNotExecutedOnAnother)
   daemon_comes();
   const Masters::Id second = come();
   put(plc_, 0, CommandCode::none);
-  put(second, 1, CommandCode::start);  // this connection has not written the newest counter
+  put(second, 1, CommandCode::start);  // refused, because this connection has not written the newest counter
   EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
   put(plc_, 1, CommandCode::start);
   EXPECT_TRUE(sent().empty());
@@ -174,7 +174,7 @@ TEST_F(GatewayTest, AStartThatIsOlderThanARefusedVentIsNotExecuted) {
   const Masters::Id second = come();
   put(plc_, 0, CommandCode::none);
   put(second, 0, CommandCode::none);
-  put(second, 2, CommandCode::vent);  // the start with counter 1 has not arrived yet
+  put(second, 2, CommandCode::vent);  // refused, because the start with counter 1 has not arrived
   EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
   put(plc_, 1, CommandCode::start);
   EXPECT_TRUE(sent().empty());
@@ -216,7 +216,7 @@ TEST_F(GatewayTest, TellsAMasterThatBeatsFromOneThatFellSilent) {
   put(plc_, 1, CommandCode::start);
   EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::master_silent));
   write(Name::master_heartbeat, 6);
-  EXPECT_EQ(read(Name::master), 2);  // silent until the daemon has confirmed the stop
+  EXPECT_EQ(read(Name::master), 2);  // the master counts as silent until the daemon has confirmed the stop
   accept();
   EXPECT_EQ(read(Name::master), 1);
   put(plc_, 2, CommandCode::start);
@@ -240,13 +240,13 @@ TEST_F(GatewayTest, LastValuesOfTwoStoppedMastersAreNoHeartbeat) {
 TEST_F(GatewayTest, KeepsTheReactionUntilADaemonHasConfirmedIt) {
   daemon_comes();
   write(Name::master_heartbeat, 5);
-  gateway_.daemon_went();  // the daemon and the master disappear together
+  gateway_.daemon_went();  // the daemon and the master become silent at the same time
   pass(settings_.silence_s + 0.1);
   EXPECT_TRUE(sent().empty());
   daemon_comes();
   pass(0.1);
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
-  gateway_.daemon_went();  // before the daemon has answered
+  gateway_.daemon_went();  // the connection ends before the daemon has responded to the stop
   pass(1);
   daemon_comes();
   pass(0.1);
@@ -267,7 +267,7 @@ TEST_F(GatewayTest, TheAnswerToAnEarlierReactionDoesNotConfirmALaterOne) {
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
   write(Name::master_heartbeat, 6);
   pass(settings_.silence_s + 0.1);
-  EXPECT_TRUE(sent().empty());  // an earlier stop has no answer yet
+  EXPECT_TRUE(sent().empty());  // no second stop while the first has no response
   accept();
   EXPECT_TRUE(gateway_.watch().owes());
   pass(0.1);
@@ -345,7 +345,8 @@ TEST_F(GatewayTest, WhatWaitedForTheCommandBeforeItIsSentAfterIt) {
   EXPECT_EQ(sent(), std::vector<std::string>{"start"});
 }
 
-/// The control loop may still execute the command, so the gateway must not report the command as refused.
+/// The control loop may still execute the command, so the gateway must report its outcome as unknown, not as
+/// refused.
 TEST_F(GatewayTest, ACommandThatTheLoopDidNotAnswerHasAnUnknownEnd) {
   daemon_comes();
   put(plc_, 0, CommandCode::none);

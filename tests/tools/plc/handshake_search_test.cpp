@@ -1,7 +1,7 @@
 // Searches breadth first through every order of the actions of two masters, the gateway and the daemon, until
 // no new state appears. Each participant can repeat or delay an action, send half a request, or die. The
-// gateway is the real one, from the bytes of a request to the line for the daemon. Masters and daemon are the
-// smallest programs that follow their protocols.
+// gateway is the real one, from the bytes of a request to the lines for the daemon. Masters and daemon are
+// minimal programs that follow their protocols.
 
 #include <gtest/gtest.h>
 
@@ -25,15 +25,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Time passes in steps of this duration. A master counts as silent after two steps. A connection counts as
-/// idle, and the daemon as silent, after one step.
+/// Duration by which each step of the simulated time advances. A master counts as silent after two steps. A
+/// connection counts as idle, and the daemon as silent, after one step.
 constexpr Nanoseconds step = ns_per_s * 3 / 2;
 constexpr int silent_steps = 2;
 constexpr std::size_t plcs = 2;
 constexpr std::uint16_t start = 1;
 constexpr std::uint16_t vent = 3;
 
-/// Limits of the number of actions, so that the search ends.
+/// Number of actions of each kind that may occur, so that the search ends.
 struct Budget {
   std::array<int, plcs> commands{};
   std::array<int, plcs> connections{};
@@ -42,24 +42,24 @@ struct Budget {
   int daemon_deaths = 0;
   int pauses = 0;
   int busy = 0;
-  bool impatient = false;  // masters request a start although another command is executing
-  bool time = false;       // time passes, and the first master's heartbeat changes
+  bool impatient = false;  // masters may request a start while another command is executing
+  bool time = false;       // the time may advance, and the heartbeat of the first master may change
 };
 
 Settings settings_of_the_search() {
   document::Problems problems;
   Settings settings = *load_settings(SOFTGRIP_SOURCE_DIR "/config/plc.yaml", problems);
   settings.max_masters = plcs;
-  settings.idle_s = 1e6;  // no connection is closed because it is idle
+  settings.idle_s = 1e6;  // so long that no connection is closed because it is idle
   settings.registers.most_fingers = 1;
   return settings;
 }
 
-/// A block that a master has written and that has not arrived yet.
+/// A block of registers that a master has written and that the gateway has not received.
 struct Frame {
   std::array<std::uint16_t, 7> words{};
-  int command = -1;  // index in World::commands; -1: no command
-  int halts = 0;     // stops and vents that had been executed when the block was written
+  int command = -1;  // index of the command in World::commands; -1: no command
+  int halts = 0;     // number of stops and vents that had been executed when the block was written
 
   [[nodiscard]] modbus::Bytes bytes() const {
     modbus::Bytes pdu{16, 0, 0, 0, 7, 14};
@@ -68,14 +68,14 @@ struct Frame {
   }
 };
 
-/// A connection. A master sends its next request after the response to the last one.
+/// A connection of a master. The master sends a request after the response to its previous request.
 struct Wire {
   std::size_t plc = 0;
   Masters::Id id = 0;
   modbus::RequestStream stream;
   std::optional<Frame> flying;
-  bool half = false;                       // the first half of the block has arrived
-  std::optional<std::uint16_t> heartbeat;  // the heartbeat that arrived last
+  bool half = false;                       // the gateway has received the first half of the block
+  std::optional<std::uint16_t> heartbeat;  // the last heartbeat that the gateway received on this connection
 };
 
 enum class Progress { begins, synchronises, ready, waits };
@@ -87,19 +87,19 @@ struct Plc {
   std::uint16_t code = 0;
   int command = -1;
   std::uint16_t heartbeat = 0;
-  std::uint16_t heard = 0;  // the heartbeat of this master that arrived last
-  // The connection on which the present block has been answered. The master reads the end of its command
-  // there.
+  std::uint16_t heard = 0;  // the last heartbeat of this master that the gateway received
+  // The connection on which the gateway has responded to the present block. On this connection, the master
+  // reads the end of its command.
   Masters::Id answered_on = 0;
 };
 
-/// A command that a master requested, and its present state.
+/// A command that a master has requested, and its progress.
 struct Command {
   std::uint16_t code = 0;
   std::uint16_t counter = 0;
   bool executed = false;
-  // True after a busy daemon declined the command, after another command, or after the gateway that executed
-  // it died.
+  // True if a busy daemon has refused the command, if another command has come after it, or if the gateway
+  // that executed it has died.
   bool over = false;
   bool reported_refused = false;
 };
@@ -107,7 +107,7 @@ struct Command {
 struct Line {
   std::uint64_t id = 0;
   std::string command;
-  int asked = -1;  // index in World::commands
+  int asked = -1;  // index of the command in World::commands; -1: none
 };
 
 struct World {
@@ -120,16 +120,16 @@ struct World {
   std::array<Plc, plcs> masters;
   std::vector<Wire> wires;
   std::vector<Command> commands;
-  // State of the daemon.
+  // The state of the daemon.
   bool runs = false;
   bool paused = false;
   std::deque<Line> lines;
   std::deque<Json> answers;
-  // Records for the checks.
-  int halts = 0;  // number of executed halts: vents of masters and reactions to a silent master
+  // Data that are recorded for the checks.
+  int halts = 0;  // number of vents of masters and of stops because of a silent master that were executed
   std::optional<Frame> waiting;
   bool watched = false;
-  bool owed = false;  // a master has fallen silent, and no daemon has stopped since
+  bool owed = false;  // a master has become silent, and no daemon has executed a stop since
   bool stopped_since_beat = false;
   int beat_steps = 0;
   Nanoseconds reacted_at = 0;
@@ -146,8 +146,8 @@ struct World {
     if (!holds && broken.empty()) broken = otherwise;
   }
 
-  /// Moves the lines of the gateway to the daemon at once. `cause`: the block that made the gateway send
-  /// them.
+  /// Transfers the lines of the gateway to the daemon at once. `cause` is the block because of which the
+  /// gateway sends them.
   void carry(const std::optional<Frame>& cause) {
     for (const Json& line : gateway->lines_to_daemon()) {
       const std::string command = line["command"];
@@ -184,18 +184,19 @@ struct World {
     std::erase_if(wires, [&](const Wire& wire) { return !gateway->masters().has(wire.id); });
   }
 
-  // Actions of a master. Its earlier connections remain open: they may be dead, or only slow.
+  // Actions of a master. Its earlier connections remain open, because the gateway cannot distinguish a dead
+  // from a slow connection.
   bool connect(std::size_t plc) {
     const auto id = gateway->masters().admit(address_of(plc), now);
     drop_closed();
     if (id) wires.push_back({plc, *id, {}, {}, false, {}});
     return id.has_value();
   }
-  /// Sends the present block. A master writes it in every cycle, even if its program has stopped.
+  /// Sends the present block of a master. A master sends it in every cycle, even if its program has stopped.
   void write(std::size_t plc) { write_on(*wire_of(plc)); }
   void write_on(Wire& wire) {
     Plc& master = masters[wire.plc];
-    // The second master writes a heartbeat that never changes.
+    // Only the heartbeat of the first master changes. The heartbeat of the second is constant.
     if (left.time && wire.plc == 0 && master.alive) master.heartbeat = master.heartbeat == 1 ? 2 : 1;
     if (left.time && wire.plc == 1) master.heartbeat = 9;
     Frame frame;
@@ -245,7 +246,7 @@ struct World {
     const modbus::Bytes& frame = reply.pieces.at(0).bytes;
     return {modbus::word_at(frame, 9), modbus::word_at(frame, 11), modbus::word_at(frame, 13)};
   }
-  /// Reads the end of the master's command and continues as docs/reference/plc-map.md specifies.
+  /// Reads the end of the master's command and continues with the next step of docs/reference/plc-map.md.
   void look(std::size_t plc) {
     Plc& master = masters[plc];
     const auto [done, outcome_word, reason_word] = read(wire_of(plc)->id);
@@ -270,8 +271,8 @@ struct World {
     check(!asked.executed || asked.over, "a command is reported as refused that was executed");
     asked.reported_refused = true;
   }
-  /// Checks that an accepted command has been executed. If two masters request the same command with the same
-  /// counter, both receive the same outcome.
+  /// Checks that a command that is reported as accepted has been executed. If two masters request the same
+  /// command with the same counter, both read the same outcome.
   void judge_accepted(const Plc& master) {
     const bool executed = std::any_of(commands.begin(), commands.end(), [&](const Command& asked) {
       return asked.executed && asked.counter == master.counter && asked.code == master.code;
@@ -288,7 +289,7 @@ struct World {
     commands.push_back({code, master.counter, false, false, false});
   }
 
-  // Actions of the daemon.
+  // Actions of the simulated daemon.
   void daemon_starts() {
     runs = true;
     gateway->daemon_came(now);
@@ -330,8 +331,8 @@ struct World {
     for (Command& command : commands) command.over = command.over || command.executed;
     wires.clear();
     waiting.reset();
-    // The lines of the dead gateway reach the daemon before those of the new gateway. The answers to the dead
-    // gateway are lost.
+    // The lines of the dead gateway reach the daemon before the lines of the new gateway. The daemon's
+    // responses to the dead gateway are lost.
     answers.clear();
     for (Plc& master : masters) master.heard = 0;
     watched = owed = stopped_since_beat = false;
@@ -350,8 +351,8 @@ struct World {
   }
 
   [[nodiscard]] std::string key() const;
-  /// Returns the defect that remains even if no further failure occurs: the reaction to a silence is lost, or
-  /// the first master is locked out. Returns "" if there is no such defect.
+  /// Returns a defect that remains even if no further failure occurs, or "" if there is none. Possible
+  /// defects: the stop for a silent master is lost, or the first master can never execute a command again.
   [[nodiscard]] std::string lost_for_good() const;
 };
 
@@ -373,8 +374,8 @@ class Key {
   std::string text_;
 };
 
-/// Returns the part of the state that determines the further actions as text. Times are given in steps before
-/// now, and ids are replaced by their rank.
+/// Returns as text the part of the state that determines the further actions. Times are given in steps before
+/// the present time. Ids are replaced by their rank.
 std::string World::key() const {
   Key key;
   const Handshake& handshake = gateway->handshake();
@@ -442,7 +443,7 @@ std::string World::lost_for_good() const {
   world.paused = false;
   settle();
   if (world.owed || world.gateway->watch().owes()) return "the reaction to a silence is lost";
-  // The programs of all masters stop, and their connections repeat the last blocks.
+  // The programs of all masters stop, but their connections repeat the last blocks.
   for (Plc& master : world.masters) master.alive = false;
   for (int i = 0; i < 2 * silent_steps; ++i) {
     for (std::size_t wire = 0; wire < world.wires.size(); ++wire) {

@@ -58,11 +58,11 @@ TEST(Handshake, OnlyTheNextCounterIsExecuted) {
   for (const int wrong : {0, 1, 4, 5, 40000, 65535}) {
     EXPECT_FALSE(handshake.write(plc, {static_cast<std::uint16_t>(wrong), start})) << wrong;
     EXPECT_TRUE(plc.refused) << wrong;
-    // A wrong counter is no valid first counter, either.
+    // A wrong counter must be refused without a command as well.
     EXPECT_FALSE(handshake.write(plc, {static_cast<std::uint16_t>(wrong), none})) << wrong;
     EXPECT_TRUE(plc.refused) << wrong;
   }
-  // A refusal does not change the outcome of the last command, and the next counter is executed.
+  // The refusals must not change the outcome of the last command. The next counter must execute its command.
   EXPECT_EQ(handshake.done_counter(), 2);
   EXPECT_EQ(handshake.outcome(), Outcome::accepted);
   EXPECT_TRUE(handshake.write(plc, {3, start}));
@@ -79,7 +79,7 @@ TEST(Handshake, ABlockThatArrivesLateOnAnotherConnectionIsRefused) {
   handshake.finish(1, Outcome::accepted);
   EXPECT_TRUE(handshake.write(second, {2, vent}));
   handshake.finish(2, Outcome::accepted);
-  // The earlier blocks of the first connection arrive late, in their order.
+  // The blocks of the first connection arrive late, in the order in which they were sent.
   EXPECT_FALSE(handshake.write(first, {1, start}));
   EXPECT_TRUE(first.refused);
   EXPECT_FALSE(handshake.write(first, {2, start}));
@@ -88,7 +88,7 @@ TEST(Handshake, ABlockThatArrivesLateOnAnotherConnectionIsRefused) {
   EXPECT_TRUE(first.refused);
   EXPECT_FALSE(second.refused);
   EXPECT_EQ(handshake.done_counter(), 2);
-  // After the connection has written the newest counter, it may send commands again.
+  // When the connection has written the newest counter, it may send commands.
   EXPECT_FALSE(handshake.write(first, {2, none}));
   EXPECT_FALSE(first.refused);
   EXPECT_TRUE(handshake.write(first, {3, start}));
@@ -101,13 +101,13 @@ TEST(Handshake, OfTwoMastersThatCountToTheSameNumberTheSecondIsRefused) {
   EXPECT_FALSE(handshake.write(first, {0, none}));
   EXPECT_FALSE(handshake.write(second, {0, none}));
   EXPECT_TRUE(handshake.write(first, {1, start}));
-  EXPECT_FALSE(
-      handshake.write(second, {1, vent}));  // this connection must not read that its vent was accepted
+  EXPECT_FALSE(handshake.write(second, {1, vent}));  // refused, so that this connection cannot read that its
+                                                     // vent was accepted
   EXPECT_TRUE(second.refused);
   handshake.finish(1, Outcome::accepted);
   EXPECT_FALSE(handshake.write(second, {1, vent}));
   EXPECT_TRUE(second.refused);
-  // A master that connects again repeats its last block.
+  // A master that connects again sends its last block again.
   Cursor again;
   EXPECT_FALSE(handshake.write(again, {1, start}));
   EXPECT_FALSE(again.refused);
@@ -119,7 +119,8 @@ TEST(Handshake, ANextCommandMayBePreparedBehindTheLastCounter) {
   EXPECT_FALSE(handshake.write(plc, {0, none}));
   EXPECT_TRUE(handshake.write(plc, {1, start}));
   handshake.finish(1, Outcome::accepted);
-  EXPECT_FALSE(handshake.write(plc, {1, vent}));  // the master increments the counter in the next cycle
+  EXPECT_FALSE(handshake.write(plc, {1, vent}));  // no refusal, because the master increments the counter in
+                                                  // its next cycle
   EXPECT_FALSE(plc.refused);
   EXPECT_EQ(handshake.outcome(), Outcome::accepted);
   EXPECT_TRUE(handshake.write(plc, {2, vent}));
@@ -133,11 +134,12 @@ TEST(Handshake, OnlyStopAndVentOvertake) {
   EXPECT_FALSE(handshake.write(plc, {2, release}));
   EXPECT_TRUE(handshake.waits());
   EXPECT_FALSE(handshake.take_waiting());
-  EXPECT_FALSE(handshake.write(plc, {3, release}));  // one command may wait
+  EXPECT_FALSE(handshake.write(plc, {3, release}));  // refused, because another command already waits
   EXPECT_TRUE(plc.refused);
   EXPECT_TRUE(handshake.write(plc, {3, vent}));
   EXPECT_FALSE(handshake.waits());
-  handshake.finish(1, Outcome::accepted);  // superseded by a later command: not reported
+  handshake.finish(1, Outcome::accepted);  // not reported, because a later command has superseded this
+                                           // command
   EXPECT_EQ(handshake.outcome(), Outcome::executing);
   handshake.finish(3, Outcome::accepted);
   EXPECT_EQ(handshake.done_counter(), 3);

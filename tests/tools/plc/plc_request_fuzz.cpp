@@ -28,7 +28,7 @@ plc::Settings shipped() {
   return *settings;
 }
 
-/// Checks that the reply is one complete frame that matches the request.
+/// Checks that the reply is one complete frame, and that it matches the request.
 void check(const modbus::Request& request, const modbus::Reply& reply) {
   require(reply.pieces.size() == 1 && !reply.disconnect);
   const std::span<const std::uint8_t> frame = reply.pieces.front().bytes;
@@ -39,7 +39,7 @@ void check(const modbus::Request& request, const modbus::Reply& reply) {
   require((frame[header] & 0x7fU) == (request.pdu[0] & 0x7fU));
 }
 
-/// Reads a register that only the gateway may write, with a separate request.
+/// Returns the value of a register that the gateway writes, read with a separate request.
 std::uint16_t read(plc::Gateway& gateway, plc::Masters::Id id, std::uint16_t address, Nanoseconds now) {
   modbus::Request request{0, 1, {3}};
   modbus::append_word(request.pdu, address);
@@ -69,7 +69,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       now += 10'000'000;
       check(*request, gateway.serve(*master, *request, now));
       require(read(gateway, *other, settings.registers.at(Name::map_version), now) == plc::version_of_map);
-      // Without a daemon no command is ever executing or accepted.
+      // Without a daemon, no command can be executing or accepted.
       for (const auto reader : {*master, *other}) {
         const auto outcome =
             static_cast<plc::Outcome>(read(gateway, reader, settings.registers.at(Name::outcome), now));

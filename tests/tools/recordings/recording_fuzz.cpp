@@ -21,7 +21,7 @@ namespace {
 
 using namespace softgrip;
 
-/// Folder of a recording in memory; the fuzzer provides its run.json.
+/// Folder of a recording in memory, whose run.json contains the bytes of the fuzzer.
 class Folder {
  public:
   Folder() : path_("/dev/shm/softgrip_recording_fuzz_" + std::to_string(getpid())) {
@@ -45,7 +45,7 @@ class Folder {
 
 void show(const nlohmann::ordered_json& json) {
   if (!json.is_object()) return;
-  // Invalid lines of a daemon may end the program with an error message, but must have no other effect.
+  // Invalid lines of a daemon may cause an error message. They must have no other effect.
   try {
     for (const std::string& line : tools::view_of(json, {80, true, true})) {
       if (line.find('\n') != std::string::npos) std::abort();
@@ -68,7 +68,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::ofstream(folder.path() + "/run.json", std::ios::binary) << text;
   document::Problems problems;
   const auto recording = sysid::read_recording(folder.path(), problems);
-  // The rows are complete, so the recording opens with any run.json.
+  // The rows are complete, so the recording must open for any run.json.
   if (!recording || recording->channels.size() != 1 || recording->channels.front().size() != 3) std::abort();
   show(nlohmann::ordered_json::parse(text, nullptr, false));
   return 0;

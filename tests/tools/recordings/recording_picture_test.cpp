@@ -70,7 +70,8 @@ TEST_F(RecordingPicture, SplitsChannelsAndKeepsWhatHappened) {
   EXPECT_EQ(picture.find("<b>"), std::string::npos) << "texts are escaped";
 }
 
-// The reference of a grip is beyond the object. A shortfall of 4 mm at a stone is not a tracking error.
+// During a grip, the reference is beyond the surface of the object. A displacement that is 4 mm short of the
+// reference is therefore not a tracking error.
 TEST_F(RecordingPicture, WhatTheObjectTakesIsNoTrackingError) {
   write("run.csv",
         "time_s,pressure_command_kpa,displacement_mm,reference_mm,state,step,result\n"
@@ -98,7 +99,7 @@ TEST_F(RecordingPicture, WhatTheObjectTakesIsNoTrackingError) {
   EXPECT_NE(picture.find(">gripping<"), std::string::npos);
 }
 
-// A grip without an object is free motion until its end.
+// A grip that finds no object is free motion until its end.
 TEST_F(RecordingPicture, AGripThatFoundNothingIsFreeMotion) {
   write("run.csv",
         "time_s,pressure_command_kpa,displacement_mm,reference_mm,state,step,result\n"

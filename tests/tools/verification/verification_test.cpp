@@ -1,4 +1,4 @@
-// softgrip report --verify on the files that identify wrote.
+// Tests softgrip report --verify with the files that softgrip identify has written.
 
 #include "tools/verification/verification.h"
 
@@ -89,8 +89,8 @@ TEST_F(Verification, ACallThatWouldWriteElsewhereIsNotMade) {
   EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("key `call`"), std::string::npos);
 }
 
-/// A report may come from another program or from an attacker. Every malformed report must give an error
-/// message and exit code 3.
+/// A report may come from another program or from an attacker. For every malformed report, the command must
+/// print an error message and return exit code 3.
 TEST_F(Verification, AMalformedReportIsRefusedWithASentence) {
   const std::string good = read("report/identify.json");
   const auto spoilt = [&](const char* pointer, const nlohmann::ordered_json& value) {
@@ -132,7 +132,7 @@ TEST_F(Verification, AMalformedReportIsRefusedWithASentence) {
     run("report --verify report --json");
     EXPECT_TRUE(nlohmann::json::accept(read("out.txt"))) << read("out.txt").substr(0, 200);
   }
-  // The value has a wrong type, but the verification does not need this key.
+  // The value of "software" has a wrong type, but the verification does not need this value.
   write("report/identify.json", spoilt("/software", {1}));
   EXPECT_EQ(verified(0)["reported_by"], "");
 }

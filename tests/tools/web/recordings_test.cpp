@@ -31,7 +31,8 @@ class RecordingsTest : public ::testing::Test {
     fs::create_directories(folder_ / recording);
     std::ofstream(folder_ / recording / file) << file;
   }
-  /// Lists the recordings one minute later, when every time stamp is old enough to be trusted.
+  /// Returns the list of recordings as of one minute later. At that time, every time stamp is so old that
+  /// later changes would be visible.
   std::string list() { return recordings_.list(wall_time_now() + 60 * ns_per_s).dump(); }
 
   fs::path folder_ = fs::temp_directory_path() / ("recordings_" + std::to_string(::getpid()));

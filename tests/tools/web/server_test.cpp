@@ -1,4 +1,4 @@
-// Tests the server on a real socket, without a daemon.
+// Tests the server with clients on real sockets, without a daemon.
 
 #include "tools/web/server.h"
 
@@ -59,7 +59,7 @@ class ServerTest : public ::testing::Test {
 
   Descriptor connect() const {
     Descriptor socket{::socket(AF_INET, SOCK_STREAM, 0)};
-    // A client with a small receive buffer leaves most of the response in the server.
+    // A small receive buffer of the client keeps most of the response in the server.
     const int small = 4096;
     ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &small, sizeof small);
     sockaddr_in address{};
@@ -86,7 +86,7 @@ class ServerTest : public ::testing::Test {
     say(socket, request);
     return all_from(socket);
   }
-  /// Repeats the request while the server has no free place.
+  /// Repeats the request until the server has a connection for it, at most 100 times. Returns the response.
   std::string ask_patiently(const std::string& request) const {
     std::string answer;
     for (int attempt = 0; attempt < 100 && (answer.empty() || answer.starts_with(turned_away)); ++attempt) {
@@ -174,11 +174,11 @@ TEST_F(ServerTest, AFileThatBecomesShorterEndsItsAnswer) {
   EXPECT_TRUE(ask(get_page).starts_with("HTTP/1.1 200"));
 }
 
-/// A daemon that answers when the test requests it.
+/// A daemon that responds to a command when the test calls a function.
 class ScriptedDaemon {
  public:
   explicit ScriptedDaemon(const std::string& path) : listener_(std::move(*modbus::listen_unix(path))) {}
-  /// Returns the next command, or null if no command arrives.
+  /// Returns the next command of the server, or null if none arrives in time.
   nlohmann::json next_command() {
     for (;;) {
       const std::size_t end = text_.find('\n');

@@ -1,4 +1,4 @@
-// Tests the site as a function that maps a request to a response.
+// Tests the class Site as a function from a request to a response.
 
 #include "tools/web/site.h"
 

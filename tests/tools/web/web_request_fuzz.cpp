@@ -25,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   const Frame frame = frame_of(bytes);
   if (frame.state == Frame::State::incomplete) {
-    // No client can make the server store more than this.
+    // The server must not store more bytes than this for an incomplete request.
     if (size >= longest_head + longest_body) std::abort();
     return 0;
   }
@@ -35,7 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   if (frame.size > size) std::abort();
   const Outcome outcome = site.serve(bytes.substr(0, frame.size), 0);
-  // A command waits for the daemon; every other request is answered.
+  // Every request must be answered at once, except a command, which waits for the daemon.
   if (!outcome.command && !outcome.bytes.starts_with("HTTP/1.1 ")) std::abort();
   if (outcome.command && !(*outcome.command)["command"].is_string()) std::abort();
   return 0;
