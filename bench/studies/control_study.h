@@ -34,8 +34,8 @@ struct ControlStudyOptions {
 /// A median over the simulated fingers, with the range that contains 90 % of them.
 struct Spread {
   double median = 0;
-  double low = 0;   ///< 5 % quantile
-  double high = 0;  ///< 95 % quantile
+  double low = 0;   ///< 5 % quantile over the simulated fingers
+  double high = 0;  ///< 95 % quantile over the simulated fingers
 };
 
 /// The result of one scheme at one frequency and one model mismatch.
@@ -57,7 +57,7 @@ struct ControlFigure {
   std::vector<double> draws_mm;  ///< RMSE of each simulated finger [mm]
 };
 
-/// One control scheme.
+/// A control scheme that the study compares with the others.
 struct ControlScheme {
   std::string id;
   std::string about;
@@ -84,11 +84,11 @@ struct ControlStudy {
 
 [[nodiscard]] ControlStudy study_control(const ControlStudyOptions& options);
 
-/// Returns the text of control.json.
+/// Returns the results of the study as the text of control.json.
 [[nodiscard]] std::string control_json(const ControlStudy& study);
-/// Returns the content of report.html.
+/// Returns the results of the study as the page report.html.
 [[nodiscard]] sysid::Page control_page(const ControlStudy& study);
-/// Returns the tables as text for a terminal.
+/// Returns the tables of the study as text for a terminal.
 [[nodiscard]] std::string control_text(const ControlStudy& study);
 
 }  // namespace softgrip::studies

@@ -21,7 +21,7 @@ struct PaperFigure {
 /// finger, the published structure was identified on tp1 alone.
 struct PaperRow {
   model::SignalName signal = model::SignalName::tp1;
-  double paper_mm = 0;    ///< RMSE that the paper states
+  double paper_mm = 0;    ///< RMSE that the paper states for this signal [mm]
   PaperFigure published;  ///< error for a finger that follows the published model, so that the noise is the
                           ///< only source of error
   PaperFigure twin;       ///< error for bench_twin, which has a lag and a delay that the published structure

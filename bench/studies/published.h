@@ -36,7 +36,7 @@ struct HiddenLatency {
   double lag_s = 0;
   double delay_s = 0;
   double planned_ratio = 0;  ///< value of `ratio` that was expected when the study was planned
-  double ratio = 0;          ///< fitted beta/(alpha + 1/k0)
+  double ratio = 0;          ///< ratio beta/(alpha + 1/k0) of the fitted model
   double true_ratio = 0;
   double other_ratio = 0;  ///< `ratio` for the kind of triangles to which the model was not fitted
   double rmse_mm = 0;
@@ -56,13 +56,13 @@ struct PublishedMatch {
   double span_mm = 0;
   double lag_s = 0;
   double delay_s = 0;
-  double ratio = 0;  ///< beta/(alpha + 1/k0) of the fitted model
+  double ratio = 0;  ///< ratio beta/(alpha + 1/k0) of the fitted model
   model::Model model;
 };
 
 /// Row of the third table: an inverse of one Bouc-Wen element, applied to the element's own response.
 struct InverseTrial {
-  double ratio = 0;               ///< beta/alpha
+  double ratio = 0;               ///< ratio beta/alpha of the element
   double growth = 0;              ///< factor by which a small error of the explicit inverse grows per sample
   double explicit_error_kpa = 0;  ///< largest error of the explicit inverse, without pressure limits
   double implicit_error_kpa = 0;  ///< largest error of the implicit inverse within 0 to 60 kPa
@@ -84,7 +84,7 @@ struct PublishedStudy {
   std::vector<double> inverse_true_kpa;
   double twin_rmse_mm = 0;     ///< RMS difference between bench_twin and the published response for eta = 2
                                ///< /bar
-  double published_ratio = 0;  ///< beta/(alpha + 1/k0) of the published model
+  double published_ratio = 0;  ///< ratio beta/(alpha + 1/k0) of the published model
   double falls_until_kpa =
       0;  ///< on first loading, the response of the published element falls until this pressure is reached
   double falls_by_mm = 0;          ///< depth to which the response falls below 0
@@ -92,9 +92,9 @@ struct PublishedStudy {
   std::string bouc_wen_refusal;    ///< reason why the controller refuses the published element
   std::string full_model_refusal;  ///< reason why the controller refuses the whole published model
   sysid::Log match_log;            ///< published response to which the first row of matches was fitted
-  std::vector<double> match_mm;    ///< response of the model that was fitted to it
+  std::vector<double> match_mm;    ///< response of the model that was fitted to match_log [mm]
   sysid::Log latency_log;          ///< log of the row with the longest latency, to which the model was fitted
-  std::vector<double> latency_mm;  ///< response of the fitted model
+  std::vector<double> latency_mm;  ///< response of the model that was fitted to latency_log [mm]
   double wall_s = 0;
 };
 
@@ -110,11 +110,11 @@ enum class Triangles {
 
 /// Formats a ratio as text: "> 100" if alpha + 1/k0 is almost zero.
 [[nodiscard]] std::string ratio_text(double ratio);
-/// Returns the text of published.json.
+/// Returns the results of the study as the text of published.json.
 [[nodiscard]] std::string published_json(const PublishedStudy& study);
-/// Returns the content of report.html.
+/// Returns the results of the study as the page report.html.
 [[nodiscard]] sysid::Page published_page(const PublishedStudy& study);
-/// Returns the tables as text for a terminal.
+/// Returns the tables of the study as text for a terminal.
 [[nodiscard]] std::string published_text(const PublishedStudy& study);
 
 }  // namespace softgrip::studies

@@ -16,7 +16,7 @@ namespace softgrip::sysid {
 struct SimulationSettings {
   /// Standard deviation of white noise [mm]. It is added to the noise of the model's own sensor blocks.
   double noise_mm = 0;
-  std::uint64_t seed = 1;  ///< seed of all noise, added or of the model
+  std::uint64_t seed = 1;  ///< seed of the added noise and of the noise of the model
   /// True: the command of a sample is held until the next sample, as a board holds its output. A reading then
   /// does not depend on the command of the same sample.
   bool held = false;

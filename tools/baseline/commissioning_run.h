@@ -31,14 +31,15 @@ struct CommissioningOptions {
 struct CommissioningRuns {
   std::vector<sysid::Log> first;   ///< logs of the first run of the selected channel, one per experiment
   std::vector<sysid::Log> second;  ///< logs of the second run, one per experiment
-  sysid::RigLimits limits;         ///< limits of pressure and rate for the experiments
+  sysid::RigLimits limits;         ///< limits of pressure and pressure rate with which the experiments were
+                                   ///< played
   double minutes = 0;              ///< time on the rig: planned durations of the motions and rests [min]
 };
 
 /// The reason why the experiment was not completed. The rig is vented, and no files remain.
 struct NotCommissioned {
   ExitCode code = ExitCode::failed;
-  std::string why;  ///< the reason as a sentence
+  std::string why;  ///< the reason why the experiments were not completed, as a sentence
 };
 
 /// Plays the commissioning experiments twice. First, a gentle motion checks that the finger moves, and its

@@ -25,7 +25,7 @@ namespace softgrip::tools {
 struct ClientFailure {
   ExitCode code = ExitCode::io;
   std::string message;
-  bool nobody_listens = false;  ///< no daemon listens on this socket
+  bool nobody_listens = false;  ///< true: no daemon listens on this socket
 };
 
 class DaemonClient {
@@ -72,7 +72,7 @@ class DaemonClient {
   Descriptor socket_;
   std::string path_;
   std::string pending_;
-  bool deaf_ = false;  // the daemon did not accept a request
+  bool deaf_ = false;  // true: the daemon did not accept a request in time
 };
 
 /// Returns true if a daemon listens on this socket. The daemon then controls the board, even if it does not

@@ -15,7 +15,7 @@ namespace softgrip::tools {
 
 /// The first event of a selection: the event after an id, or the first event from a time on.
 struct Since {
-  std::uint64_t id = 0;  ///< only events with a larger id
+  std::uint64_t id = 0;  ///< only events with a larger id than this are selected
   std::string at;  ///< only events at or after this UTC time, in the format of the socket API; empty: any
                    ///< time
 };
@@ -27,7 +27,8 @@ struct Since {
 
 struct EventQuery {
   Since since;
-  std::string severity = "information";  ///< lowest severity: information, warning, error
+  std::string severity = "information";  ///< lowest severity of a selected event: information, warning or
+                                         ///< error
   std::size_t lines = 100;               ///< largest number of events; the newest are selected
 };
 

@@ -23,7 +23,7 @@ inline constexpr double health_old_s = 3 * 86400.0;
 struct HealthLine {
   std::string text;
   bool good = true;
-  std::string advice;  ///< remedy; empty if none is needed
+  std::string advice;  ///< remedy for the alarm; empty if none is needed
 };
 [[nodiscard]] std::vector<HealthLine> health_lines(const nlohmann::ordered_json& health);
 

@@ -56,13 +56,13 @@ Lines lines_of_events(const LiveState& state, const ViewStyle& style, std::size_
   return lines;
 }
 
-/// The parts that a screen with few rows omits.
+/// The parts of the screen that are omitted if it has few rows.
 struct Arrangement {
-  bool blanks = true;     ///< lines between the parts
-  bool machinery = true;  ///< loop and recording
+  bool blanks = true;     ///< true: blank lines separate the parts
+  bool machinery = true;  ///< true: the state of the control loop and of the recording is shown
 };
 
-/// Returns all lines except events and footer.
+/// Returns all lines of the screen except the events and the key help.
 Lines body_of(const StatusParts& parts, const ViewStyle& style, const Arrangement& arrangement) {
   Lines lines = parts.head;
   const auto add = [&](const Lines& more) {
@@ -126,7 +126,7 @@ Lines screen_of(const LiveState& state, const ViewStyle& style, std::size_t rows
     lines.emplace_back();
     append(lines, events);
   }
-  lines.resize(room);  // the keys stay at the bottom
+  lines.resize(room);  // adds blank lines, so that the key help is always the bottom line
   append(lines, footer);
   return lines;
 }

@@ -13,11 +13,12 @@
 
 namespace softgrip::tools {
 
-/// The data for drawing the screen.
+/// The data from which the screen is drawn.
 struct LiveState {
   nlohmann::ordered_json status;
-  std::vector<ChannelTrends> trends;          ///< one per channel
-  std::deque<nlohmann::ordered_json> events;  ///< newest event last
+  std::vector<ChannelTrends> trends;          ///< recent values of pressure and displacement, one element per
+                                              ///< channel
+  std::deque<nlohmann::ordered_json> events;  ///< the latest events of the daemon, newest last
   std::string question;                       ///< the question that waits for a key; empty: none
   Span said;                                  ///< message about the last key; empty: no key yet
 };

@@ -13,10 +13,10 @@ namespace softgrip::tools {
 
 /// The parts of a status as lines, so that a screen can arrange them. A missing value is shown as "-".
 struct StatusParts {
-  std::vector<std::string> head;  ///< state and sequence, pressurised fingers, the fault
+  std::vector<std::string> head;  ///< lines with state, sequence, pressurised fingers and fault
   std::vector<std::vector<std::string>> channels;
   std::vector<std::string> board;      ///< connection to the board, and attempts to restore the connection
-  std::vector<std::string> machinery;  ///< state of the control loop and of the recording
+  std::vector<std::string> machinery;  ///< lines with the state of the control loop and of the recording
 };
 /// Formats the parts of a status. If `trends` contains one element per channel, trends replace the bars.
 [[nodiscard]] StatusParts parts_of(const nlohmann::ordered_json& status, const ViewStyle& style,

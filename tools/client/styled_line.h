@@ -10,9 +10,9 @@
 namespace softgrip::tools {
 
 struct ViewStyle {
-  std::size_t columns = 80;  ///< largest length of a line
-  bool colour = false;       ///< ANSI colours
-  bool unicode = false;      ///< block characters in bars and trends
+  std::size_t columns = 80;  ///< largest length of a line in columns
+  bool colour = false;       ///< true: texts may have ANSI colours
+  bool unicode = false;      ///< true: bars and trends may use block characters
 };
 
 enum class Tone : unsigned char { plain, strong, good, doubtful, bad, faint };
@@ -28,16 +28,16 @@ class Line {
  public:
   explicit Line(const ViewStyle& style) : style_(style) {}
 
-  /// Adds ASCII text.
+  /// Adds ASCII text at the end of the line.
   Line& add(std::string_view text, Tone tone = Tone::plain);
-  /// Adds one character that is one column wide.
+  /// Adds one character at the end of the line. It may be multi-byte, but must be one column wide.
   Line& add_glyph(std::string_view glyph, Tone tone = Tone::plain);
   /// Adds blanks up to the given column, counted from 0.
   Line& to_column(std::size_t column);
 
   [[nodiscard]] std::size_t columns() const noexcept { return columns_; }
   [[nodiscard]] const ViewStyle& style() const noexcept { return style_; }
-  /// Returns the line with escapes, cut to the columns of the style.
+  /// Returns the line with its escape sequences, cut to the largest length.
   [[nodiscard]] std::string text() const;
 
  private:

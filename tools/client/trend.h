@@ -24,7 +24,7 @@ class Trend {
 
  private:
   std::deque<std::optional<double>> values_;
-  long second_ = 0;  ///< second to which the newest value belongs
+  long second_ = 0;  ///< second of the time axis to which the newest value belongs
 };
 
 /// The trends of the quantities of one channel.

@@ -14,7 +14,7 @@ struct Choice {
   std::string about;
   bool takes_value = false;
   bool repeats = false;
-  std::vector<std::string> words;  ///< allowed values; empty: any file name
+  std::vector<std::string> words;  ///< allowed values of the option; empty: any file name
 };
 
 struct Command {
@@ -180,7 +180,7 @@ std::string bash_script(const std::string& program, const Command& top,
   return out;
 }
 
-// The zsh script.
+// The completion script for zsh.
 
 std::string zsh_value(const Choice& choice) {
   return choice.words.empty() ? ":file:_files" : ":word:(" + joined(choice.words, " ") + ")";
@@ -233,7 +233,7 @@ std::string zsh_script(const std::string& program, const Command& top, const std
          " \"$@\"\nelse\n  compdef _" + program + " " + program + "\nfi\n";
 }
 
-// The fish script.
+// The completion script for fish.
 
 void fish_options(std::string& out, const std::string& begin, const Command& command) {
   for (const Choice& option : command.options) {

@@ -1,5 +1,5 @@
 #pragma once
-// Writes the output of commands.
+// Writes the output files of commands and prepares their folders.
 
 #include <cstdio>
 #include <optional>

@@ -15,7 +15,7 @@ namespace softgrip::tools {
 
 /// A file for the baseline folder, with its origin.
 struct BaselineFile {
-  std::string source;  ///< origin of the file, as text
+  std::string source;  ///< origin of the file, for example its path, as text
   std::string bytes;
 };
 

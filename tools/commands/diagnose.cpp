@@ -48,13 +48,14 @@ struct DiagnoseOptions {
   LogInput logs;
   sysid::DiagnosisOptions diagnosis;
   ConsequenceOptions consequences;
-  double pressure_max_kpa = 0;  ///< 0: the largest pressure in the logs
+  double pressure_max_kpa = 0;  ///< largest pressure of the next experiment [kPa]; 0: the largest pressure in
+                                ///< the logs
   double slew_kpa_per_s = 300;
   bool no_closed_loop = false;
   bool json = false;
 };
 
-/// Diagnoses the logs and shows the progress.
+/// Runs the diagnosis of the logs and shows its progress.
 tl::expected<sysid::Diagnosis, std::string> diagnosed(const std::vector<sysid::Log>& logs,
                                                       const model::Model& model,
                                                       sysid::DiagnosisOptions options) {

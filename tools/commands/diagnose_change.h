@@ -15,10 +15,10 @@ struct ChangeQuestion {
   model::Model given;
   sysid::ChangeOptions options;
   std::string out;
-  std::string figures;  ///< folder for the figures as files; "": no figures
+  std::string figures;  ///< folder into which the figures are written as files; "": none are written
   std::vector<std::string> call;
   bool json = false;
-  bool explain = false;  ///< also prints the comparison that led to each reported cause
+  bool explain = false;  ///< true: the comparison that led to each reported cause is also printed
 };
 
 /// Diagnoses the change of the finger, writes diagnosis.json and report.html, and prints the result.

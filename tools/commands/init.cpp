@@ -27,7 +27,8 @@ struct InitOptions {
   std::string name;
   double rate_hz = 0;
   bool service = false;
-  std::map<std::string, std::vector<std::string>> facts;  ///< values that the options give, by key
+  std::map<std::string, std::vector<std::string>> facts;  ///< values from the command-line options, by name
+                                                          ///< of the option
 };
 
 std::string joined(const std::vector<std::string>& words) {

@@ -45,7 +45,8 @@ struct InvestigateOptions {
   std::string rig_channel;  ///< channel of the rig; "": the channel of the logs
   sysid::DiagnosisOptions diagnosis;
   double budget_minutes = 30;
-  double pressure_max_kpa = 0;  ///< with --rig-command; 0: the largest pressure in the logs
+  double pressure_max_kpa = 0;  ///< with --rig-command, the largest pressure of experiments [kPa]; 0: the
+                                ///< largest pressure in the logs
   double slew_kpa_per_s = 300;
   bool yes = false;
   bool no_closed_loop = false;

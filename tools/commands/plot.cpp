@@ -1,4 +1,4 @@
-// softgrip plot: draws a recording.
+// softgrip plot: draws a recording or compares two recordings.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -35,7 +35,7 @@ constexpr std::chrono::milliseconds whole_line{1000};
 struct WatchOptions {
   DaemonOptions daemon;
   double rate_hz = 10;
-  std::uint64_t count = 0;  ///< number of updates; 0: until a signal ends the program
+  std::uint64_t count = 0;  ///< number of updates until the program ends; 0: until a signal ends it
 };
 
 void print(const Json& status, bool json) {
@@ -111,7 +111,7 @@ class LiveWatch {
   ExitCode run(std::uint64_t count);
 
  private:
-  /// Returns false if the program must end.
+  /// Processes the signals that have arrived. Returns false if the program must end.
   bool hear_signals(std::uint64_t count);
   bool hear_keys();
   [[nodiscard]] std::optional<ClientFailure> hear_daemon();
@@ -130,7 +130,7 @@ class LiveWatch {
   bool keyboard_;
   LiveState state_;
   KeyDialogue dialogue_;
-  std::map<std::uint64_t, Json> asked_;  ///< sent requests without a response so far, by id
+  std::map<std::uint64_t, Json> asked_;  ///< requests to which the daemon has not responded, by id
   std::uint64_t last_id_ = 0;
   std::uint64_t newest_event_ = 0;
   bool events_known_ = false;  ///< true if newest_event_ is valid

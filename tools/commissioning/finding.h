@@ -18,8 +18,8 @@ enum class Verdict { ok, not_judged, warn, fail };
 struct Finding {
   std::string name;  ///< name of the check, for example "board" or "sensor left"; part of the public format
   Verdict verdict = Verdict::ok;
-  std::string text;    ///< the observation
-  std::string advice;  ///< the next step; empty if none is needed
+  std::string text;    ///< text of the observation
+  std::string advice;  ///< next step that the user should take; empty if none is needed
 };
 
 class Findings {
@@ -47,8 +47,8 @@ class Findings {
 
 /// The data for the title line above the findings and for the overall verdict below them.
 struct Examination {
-  std::string rig;       ///< name of the rig
-  std::string rig_file;  ///< path of the rig file
+  std::string rig;       ///< name of the examined rig
+  std::string rig_file;  ///< path of the file of the examined rig
   bool daemon_runs = false;
   bool moved = false;      ///< true: the fingers were moved during the examination
   bool simulated = false;  ///< true: the board is simulated, so no hardware was examined

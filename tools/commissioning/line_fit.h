@@ -12,16 +12,16 @@
 
 namespace softgrip::tools::calibrate {
 
-/// One visit to one of the two positions.
+/// The measurements of one visit to one of the two calibration positions.
 struct Visit {
   bool upper = false;     ///< true: at the position with the larger command, or at the second position if a
                           ///< person moves the target
-  double electrical = 0;  ///< mean [V or mA]
+  double electrical = 0;  ///< mean electrical value during the visit [V or mA]
   double noise = 0;       ///< standard deviation of one electrical reading
   double drift = 0;  ///< absolute difference between the mean of the first half of the visit and the mean of
                      ///< the second half
-  std::size_t count = 0;  ///< number of readings in the mean
-  double reference = 0;   ///< reading of the gauge or manometer [mm or kPa]
+  std::size_t count = 0;  ///< number of readings during the visit
+  double reference = 0;   ///< value that the gauge or manometer shows [mm or kPa]
 };
 
 /// Requirements on the measurements of a calibration. The calibration is refused if they are not met.
@@ -55,7 +55,7 @@ struct Line {
 
 /// The dead zone of a valve: a range of commands in which the response stays constant before it rises.
 struct DeadZone {
-  double end = 0;            ///< the largest command without a response
+  double end = 0;            ///< the largest command at which the response is constant
   double gain = 0;           ///< slope of the response beyond the dead zone
   double scatter = 0;        ///< standard deviation of the response about the fit
   bool significant = false;  ///< the fit with a bend is significantly better than a straight line

@@ -50,7 +50,7 @@ class Beside {
     }
     held_kpa_ = command_kpa;
   }
-  /// Starts the average that mean_mm() returns.
+  /// Starts a new average of the model's displacement, which mean_mm() returns.
   void begin_mean() {
     sum_mm_ = 0;
     taken_ = 0;

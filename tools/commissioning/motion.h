@@ -10,7 +10,7 @@ struct Motion {
   double command_kpa = 0;         ///< command at the end of the ramp away from rest [kPa]
   std::vector<ChannelSample> up;  ///< readings of all channels at this command; empty: the channel was not
                                   ///< moved
-  double model_mm = 0;            ///< displacement of the model at this command [mm]
+  double model_mm = 0;            ///< displacement that the model predicts at this command [mm]
   double residual_rms_mm = 0;     ///< RMS difference between reading and model over the whole motion, both
                                   ///< relative to rest
 };

@@ -28,9 +28,9 @@ using StopRequest = std::function<bool()>;
 
 /// Mean and standard deviation of the readings during an interval.
 struct Sample {
-  std::size_t count = 0;                         ///< number of valid readings
-  std::size_t invalid = 0;                       ///< number of invalid readings
-  model::Validity why = model::Validity::valid;  ///< validity of the last invalid reading
+  std::size_t count = 0;                         ///< number of valid readings during the interval
+  std::size_t invalid = 0;                       ///< number of invalid readings during the interval
+  model::Validity why = model::Validity::valid;  ///< validity (reason) of the last invalid reading
   double mean = 0;
   double deviation = 0;  ///< standard deviation of one reading
   double lowest = 0;
@@ -44,12 +44,12 @@ struct ChannelSample {
   Sample readback_kpa;  ///< count is 0 if the board cannot read its outputs back
 };
 
-/// The reason why a motion has ended.
+/// The reason why a motion of a session has ended.
 struct MotionFailure {
   enum class Kind : std::uint8_t {
-    stopped,  ///< stopped by the user
+    stopped,  ///< the user stopped the motion
     bus,      ///< the board did not respond, or its outputs differ from the values that the session wrote
-    beyond,   ///< the finger left its displacement limits
+    beyond,   ///< the finger left the displacement limits of its channel
     blind,    ///< a sensor that the motion requires gives no valid readings
   };
   Kind kind = Kind::bus;
@@ -61,7 +61,7 @@ struct MotionFailure {
 struct Sight {
   std::size_t channel = 0;
   bool displacement = false;
-  bool pressure = false;  ///< the pressure monitor must give valid readings
+  bool pressure = false;  ///< true: the pressure monitor must give valid readings
 };
 
 /// Drives a board with the daemon's own bus (daemon/loop/bus.h) instead of the control loop. As in the

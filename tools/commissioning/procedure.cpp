@@ -184,7 +184,7 @@ Demands demands_of(const rig::RigFile& rig, std::size_t channel, const drivers::
   return {least_share_of_span * span, least_share_of_signal * (wiring.valid_max - wiring.valid_min)};
 }
 
-/// The measurements of the valve at one command.
+/// The measurements of a valve at one commanded pressure.
 struct ValveVisit {
   Visit valve;
   std::optional<Visit> monitor;
@@ -337,7 +337,8 @@ Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, MotionSession
   const control::ChannelSettings& channel = rig.settings.channels[settings.channel];
   const double rest_kpa = control::resting_kpa(channel.limits);
   const double span_kpa = control::far_end_kpa(channel.limits) - rest_kpa;
-  const double side = std::copysign(1.0, span_kpa);  // -1: the ramp lowers the pressure below rest
+  const double side = std::copysign(1.0, span_kpa);  // 1: the ramp raises the pressure above rest; -1: the
+                                                     // ramp lowers it below rest
   session.require({settings.channel, channel.displacement_used, channel.pressure_measured});
   if (const auto moved = move_to(rig, session, person, settings, rest_kpa); !moved)
     return tl::unexpected(moved.error());

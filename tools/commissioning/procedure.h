@@ -77,7 +77,7 @@ using Expected = tl::expected<T, Refusal>;
 struct GaugeVisit {
   double position_mm = 0;  ///< position that the gauge shows
   double reading_mm = 0;   ///< mean reading of the sensor
-  std::size_t count = 0;   ///< number of readings in the mean
+  std::size_t count = 0;   ///< number of readings in this mean
 };
 /// Reads the sensor while a person holds its target at each of the positions in turn. The person may enter
 /// another position or skip a position. The rig moves nothing. The result does not contain positions at which
@@ -98,10 +98,11 @@ struct ValveResult {
                                                     bool by_monitor);
 
 struct DeadZoneResult {
-  std::optional<DeadZone> zone;  ///< nullopt: the response did not rise during the ramp
+  std::optional<DeadZone> zone;  ///< dead zone of the valve; nullopt: the response did not rise during the
+                                 ///< ramp
   bool by_pressure = false;      ///< true: the pressure monitor showed the response; false: the displacement
                                  ///< sensor showed it, which is less reliable
-  double highest_kpa = 0;        ///< end of the ramp [kPa]
+  double highest_kpa = 0;        ///< pressure at the end of the ramp [kPa]
 };
 /// Searches for the dead zone of the valve. A slow ramp begins at the rest pressure and rises or falls
 /// towards the pressure limit that is further from it.

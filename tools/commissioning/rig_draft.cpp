@@ -24,7 +24,8 @@ using calibrate::suffix_of;
 using drivers::ElectricalUnit;
 
 constexpr std::array<double, 8> usual_rates_hz{200, 100, 50, 40, 20, 10, 5, 2};
-constexpr double bus_lag = 0.25;  // same value as LoopSettings::bus_offset_fraction
+constexpr double bus_lag = 0.25;  // delay of the bus schedule after the loop schedule, as a share of the
+                                  // period; equals LoopSettings::bus_offset_fraction
 constexpr double simulated_watchdog_s = 0.5;
 /// Range of valid signals beyond each of the two end points, as a share of the distance between the end
 /// points.

@@ -26,18 +26,20 @@ struct DraftModule {
 struct RigDraft {
   std::string name = "my_rig";
   std::optional<double> rate_hz;     ///< nullopt: the highest of the usual rates that is valid for the rig
-  std::vector<DraftModule> modules;  ///< empty: a board simulated in the process
+  std::vector<DraftModule> modules;  ///< modules of the board; empty: the board is simulated in the process
   std::string host;                  ///< numeric address of a network board; empty: the board is on a serial
                                      ///< line
   int port = 502;
-  std::string device;  ///< path of the serial device
+  std::string device;  ///< path of the serial device of the board
   int baud = 9600;
   int unit = 1;  ///< unit id of the first module; each further module has the next id
   std::vector<std::string> fingers{"left", "right"};
   std::string model_path;
   model::Model model;
-  drivers::TwoPoints valve{0, 0, 10, 100};   ///< x: electrical value at the terminal, y: kPa
-  drivers::TwoPoints sensor{0, -5, 10, 45};  ///< x: electrical value at the terminal, y: mm
+  drivers::TwoPoints valve{0, 0, 10, 100};   ///< two points of the valve: electrical value at the terminal
+                                             ///< (x) and pressure in kPa (y)
+  drivers::TwoPoints sensor{0, -5, 10, 45};  ///< two points of the sensor: electrical value at the terminal
+                                             ///< (x) and displacement in mm (y)
   double pressure_max_kpa = 60;
   bool monitor = true;  ///< true: each finger has a pressure monitor with the scaling of its valve
   bool accepts_no_watchdog = false;

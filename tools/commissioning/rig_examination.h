@@ -10,7 +10,7 @@ struct RigFile;
 
 namespace softgrip::tools::doctor {
 
-/// Sizes and durations of the motions.
+/// Sizes and durations of the motions of an examination.
 struct MoveSettings {
   double share = 0.25;    ///< commanded step, as a share of the pressure range on that side of the rest
                           ///< pressure where the range is larger

@@ -20,7 +20,7 @@ using document::Node;
 constexpr std::size_t most_bytes = 256 * 1024;
 constexpr std::string_view mark = "# softgrip calibrate";
 
-/// One map of the channel that gets new points.
+/// A map of the channel (for example `sensor`) that gets new points.
 struct Target {
   std::string map;  ///< key of the map, for example "sensor"
   std::string is;   ///< key of the values in the map, for example "is_mm"

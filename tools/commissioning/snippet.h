@@ -36,7 +36,7 @@ struct Results {
 /// Returns the end of a key that contains electrical values: "v", "ma" or "kpa".
 [[nodiscard]] std::string suffix_of(drivers::ElectricalUnit unit);
 
-/// Two points as texts for a rig file.
+/// The x and y values of two points as texts for a rig file.
 struct PairText {
   std::string first;
   std::string second;

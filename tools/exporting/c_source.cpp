@@ -70,7 +70,7 @@ static double phi_one(double w) {
 struct CBlock {
   std::string_view text;
   std::string_view state;  ///< C declaration of the block's state
-  std::string_view reset;  ///< C expression for the output at rest
+  std::string_view reset;  ///< C expression for the output of the block at rest
   std::string_view step;   ///< for a valve block, a C statement that calls the next block; otherwise a C
                            ///< expression for the output segment
   std::string_view lead;   ///< for a valve block, the name of the time constant that the inverse compensates;

@@ -212,8 +212,8 @@ class Writer {
     put(content, messages);
     put(content, static_cast<std::uint16_t>(groups_.size()));
     put(content, static_cast<std::uint32_t>(groups_.size()));
-    put(content, std::uint32_t{0});  // number of attachments
-    put(content, std::uint32_t{0});  // number of metadata records
+    put(content, std::uint32_t{0});  // number of attachments in the file
+    put(content, std::uint32_t{0});  // number of metadata records in the file
     put(content, chunks_);
     put(content, first_ns_);
     put(content, end_ns_);

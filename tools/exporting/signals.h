@@ -13,14 +13,15 @@ namespace softgrip::tools {
 /// A signal with one number or one text per sample.
 struct Signal {
   std::string name;                ///< name of the column, for example "displacement_mm" or "state"
-  std::vector<double> values;      ///< NaN: no value; empty if the signal consists of texts
-  std::vector<std::string> texts;  ///< empty if the signal consists of numbers
+  std::vector<double> values;      ///< one number per sample, NaN if it is missing; empty if the signal
+                                   ///< consists of texts
+  std::vector<std::string> texts;  ///< one text per sample; empty if the signal consists of numbers
 };
 
 /// The signals of one finger, or all signals of a file without channels.
 struct SignalGroup {
   std::string name;            ///< name of the channel; empty: the file has no channels
-  std::vector<double> time_s;  ///< strictly rising
+  std::vector<double> time_s;  ///< times of the samples [s], strictly rising
   std::vector<Signal> signals;
 };
 

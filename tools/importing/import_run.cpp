@@ -33,7 +33,7 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t longest_log = std::size_t{512} << 20U;
 
-/// The import of one file.
+/// One file that is imported, with its mapping and its output path.
 struct Job {
   std::string file;
   std::string out;

@@ -18,9 +18,9 @@ struct ImportOptions {
   std::vector<std::string> files;
   std::string out;
   std::array<std::vector<std::string>, sysid::role_count> columns;
-  std::vector<std::string> units;   ///< units by role, for example "pressure=psi"
-  std::vector<std::string> scales;  ///< factors by role, for example "displacement=-2.5"
-  std::vector<std::string> zeros;   ///< zeros by role, for example "displacement=first"
+  std::vector<std::string> units;   ///< units of columns by role, for example "pressure=psi"
+  std::vector<std::string> scales;  ///< factors of columns by role, for example "displacement=-2.5"
+  std::vector<std::string> zeros;   ///< zeros of columns by role, for example "displacement=first"
   std::optional<double> rate_hz;
   std::vector<std::string> missing;
   std::string separator;

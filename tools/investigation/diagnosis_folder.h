@@ -16,7 +16,8 @@ namespace softgrip::tools {
 /// The next experiment and the closed-loop comparison that follow from a diagnosis.
 struct Consequences {
   sysid::NextExperiment experiment;
-  std::optional<ClosedLoopGain> closed_loop;  ///< nullopt: not requested, or the diagnosis found no extension
+  std::optional<ClosedLoopGain> closed_loop;  ///< benefit of the extension in closed loop; nullopt: not
+                                              ///< requested, or the diagnosis found no extension
 };
 
 struct ConsequenceOptions {

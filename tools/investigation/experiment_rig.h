@@ -16,7 +16,7 @@
 
 namespace softgrip::tools {
 
-/// One channel of the rig of a rig file.
+/// A rig from a rig file, with the channel on which experiments are played.
 struct ExperimentRig {
   rig::RigFile rig;
   std::size_t channel = 0;

@@ -22,7 +22,7 @@ namespace softgrip::tools {
 /// The reason why an experiment produced no log.
 struct NotPlayed {
   bool stopped = false;  ///< true: the user refused consent or pressed Ctrl-C
-  std::string why;       ///< the reason as a sentence
+  std::string why;       ///< the reason why the experiment produced no log, as a sentence
   /// not_acceptable: the rig had a fault during the experiment, and its outputs are safe. io: the board
   /// cannot be reached, or another program uses it.
   ExitCode code = ExitCode::failed;
@@ -50,7 +50,7 @@ struct InvestigationOptions {
   Player play;
   GaugeTaker take_gauge;                         ///< checks the sensor; empty: neither a person nor a program
                                                  ///< can move its target
-  std::function<void(const std::string&)> tell;  ///< prints one line of progress
+  std::function<void(const std::string&)> tell;  ///< function that prints one line of progress
 };
 
 enum class InvestigationEnd {
@@ -71,11 +71,11 @@ inline constexpr const char* gauge_check_name = "gauge_check";
 
 /// One diagnosis and the experiment or gauge check after it.
 struct InvestigationStep {
-  std::string folder;  ///< folder of the step inside `out`
+  std::string folder;  ///< name of the folder of this step, inside the output folder
   sysid::Verdict verdict = sysid::Verdict::unexplained;
   std::string sentence;             ///< verdict of the diagnosis as text
-  double recalibrated_rmse_mm = 0;  ///< held-out RMSE of the refitted model
-  double extended_rmse_mm = 0;      ///< held-out RMSE of the extended model
+  double recalibrated_rmse_mm = 0;  ///< held-out RMSE of the refitted model [mm]
+  double extended_rmse_mm = 0;      ///< held-out RMSE of the extended model [mm]
   std::vector<std::string> causes;
   std::vector<std::vector<std::string>> alternatives;
   std::string experiment;  ///< name of the waveform that was played, or gauge_check; empty: neither
@@ -104,7 +104,7 @@ struct Investigation {
 /// cannot be written.
 struct NotInvestigated {
   ExitCode code = ExitCode::failed;
-  std::string why;  ///< the reason as a sentence
+  std::string why;  ///< the reason why there is no result, as a sentence
 };
 
 [[nodiscard]] tl::expected<Investigation, NotInvestigated> investigate(const InvestigationOptions& options);

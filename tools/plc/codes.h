@@ -15,7 +15,7 @@ enum class Outcome : std::uint16_t {
   none,
   executing,
   accepted,
-  refused,  ///< not executed; the register `reason` contains the cause
+  refused,  ///< the command was not executed; the register `reason` contains the cause
   unknown,  ///< the daemon stopped or did not respond before the outcome was known; the command is not sent
             ///< again
 };

@@ -37,7 +37,7 @@ class Gateway {
 
   /// Call this function when the connection to the daemon has been opened.
   void daemon_came(Nanoseconds now);
-  /// Processes a line of the daemon.
+  /// Processes one line that the daemon has sent.
   void daemon_said(const nlohmann::ordered_json& line, Nanoseconds now);
   /// Call this function when the connection to the daemon has ended.
   void daemon_went() noexcept;

@@ -23,7 +23,7 @@ using Written = std::array<std::uint16_t, static_cast<std::size_t>(Name::master_
 [[nodiscard]] Command command_in(const Written& written) noexcept;
 
 struct Master {
-  std::string address;       ///< numeric IP address
+  std::string address;       ///< numeric IP address of the client
   Nanoseconds asked_at = 0;  ///< time of the last request, or of the connection if there was no request
   bool asked = false;        ///< true: the client has sent a complete request
   bool half = false;         ///< true: the client has sent a part of a request

@@ -1,4 +1,4 @@
-// softgrip: the command line.
+// softgrip: the program with all subcommands of the command line.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

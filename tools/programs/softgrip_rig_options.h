@@ -25,7 +25,7 @@ struct Options {
   bool allow_network = false;
   std::optional<std::uint16_t> port;  ///< default: the port of the rig file; without a rig file, 1502
   std::string rtu;                    ///< serial device that is used instead of the network
-  bool rtu_over_tcp = false;          ///< sends RTU frames over TCP
+  bool rtu_over_tcp = false;          ///< true: the emulator sends RTU frames over TCP
   std::optional<std::uint32_t> baud;  ///< default: the value of the rig file; without a rig file, 9600 8N1
   std::optional<std::string> format;
   std::optional<double> turnaround_s;
@@ -44,7 +44,7 @@ struct Options {
 /// The settings of the emulator, and the addresses or the serial line on which the emulator responds.
 struct Setup {
   simulation::EmulatorSettings emulator;
-  std::vector<drivers::TcpAddress> addresses;  ///< one listening address per link
+  std::vector<drivers::TcpAddress> addresses;  ///< listening addresses of the emulator, one per link
   std::optional<drivers::SerialLine> line;     ///< if set, the serial line that is used instead of the
                                                ///< network
 };

@@ -21,7 +21,7 @@ struct Tracking {
   double free_rmse_mm = 0;
   double free_largest_mm = 0;
   std::size_t gripping_samples = 0;
-  double gripping_largest_mm = 0;  ///< largest difference reference minus displacement during grips
+  double gripping_largest_mm = 0;  ///< largest value of reference minus displacement during grips [mm]
 };
 [[nodiscard]] Tracking tracking_of(const sysid::Log& log);
 

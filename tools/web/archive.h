@@ -16,13 +16,13 @@
 
 namespace softgrip::web {
 
-/// A request to the disk.
+/// A request to the disk thread.
 struct DiskRequest {
   enum class Kind : unsigned char {
-    health,   ///< the last result of `softgrip health`
-    listing,  ///< the list of recordings
+    health,   ///< reads the last result of `softgrip health`
+    listing,  ///< reads the list of recordings
     file,     ///< opens one file of a recording
-    piece     ///< the next bytes of an open file, at most `Archive::piece` bytes
+    piece     ///< reads the next bytes of an open file, at most `Archive::piece` bytes
   };
   Kind kind = Kind::listing;
   std::string recording = {};

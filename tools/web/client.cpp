@@ -27,7 +27,7 @@ bool Client::receive() {
       said_all_ = true;
       return !known && phase_ != Phase::following;
     }
-    // Discard the bytes that follow the request.
+    // Store bytes while the request is incomplete, and discard all later bytes.
     if (phase_ == Phase::asking && in_.size() < longest_head + longest_body)
       in_.append(bytes.data(), static_cast<std::size_t>(count));
     if (static_cast<std::size_t>(count) < bytes.size()) return true;

@@ -17,7 +17,7 @@ namespace softgrip::web {
 class Client {
  public:
   enum class Phase : unsigned char {
-    asking,     ///< the request is not yet complete
+    asking,     ///< the request of the client is not yet complete
     waiting,    ///< the response waits for the daemon or the disk
     answering,  ///< the response is complete; the connection ends when all bytes are sent
     loading,    ///< a file is sent; pieces are added until finish()
@@ -29,7 +29,8 @@ class Client {
   static constexpr Nanoseconds longest_pause = 10 * ns_per_s;
   /// Longest time from the request to the end of the response.
   static constexpr Nanoseconds longest_answer = 60 * ns_per_s;
-  static constexpr std::size_t most_kept = std::size_t{1} << 20U;  ///< largest number of unsent bytes
+  static constexpr std::size_t most_kept = std::size_t{1} << 20U;  ///< largest number of bytes that wait to
+                                                                   ///< be sent
   /// Largest number of bytes that one call sends, so that a fast reader does not delay the other clients.
   static constexpr std::size_t most_at_once = std::size_t{256} << 10U;
 
@@ -50,7 +51,7 @@ class Client {
   /// Adds messages to a stream or a piece to a file. Returns false if the unsent bytes would exceed
   /// `most_kept`.
   [[nodiscard]] bool add(std::string_view bytes);
-  /// Ends the stream or the file. The bytes that are not sent yet are still sent.
+  /// Ends the stream or the file. Bytes that wait in the buffer are sent before the connection ends.
   void finish() noexcept { phase_ = Phase::answering; }
 
   /// Discards the unsent bytes and frees their memory.

@@ -18,7 +18,7 @@ constexpr Nanoseconds longest_silence = 3 * ns_per_s / 2;
 constexpr Nanoseconds statistics_period = 2 * ns_per_s;
 constexpr Nanoseconds sequences_period = 10 * ns_per_s;
 
-/// Ids of the requests, one per kind of request.
+/// Ids of the requests to the daemon, one per kind of request.
 enum Asked : std::uint64_t { hello = 1, watch, subscribe, statistics, sequences };
 
 }  // namespace

@@ -125,7 +125,7 @@ bool Recordings::read_names(Descriptor folder, const Choice& choice, std::vector
   ++folders_read_;
   const std::unique_ptr<DIR, int (*)(DIR*)> entries(::fdopendir(folder.get()), &::closedir);
   if (!entries) return false;
-  static_cast<void>(folder.release());  // closedir() closes the descriptor
+  static_cast<void>(folder.release());  // closedir() closes the descriptor, so release it here
   std::size_t count = 0;
   errno = 0;
   while (const dirent* const entry = ::readdir(entries.get())) {

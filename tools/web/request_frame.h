@@ -15,7 +15,7 @@ struct Frame {
   enum class State : unsigned char { incomplete, complete, refused };
   State state = State::incomplete;
   std::size_t size = 0;  ///< size of the complete request with its body [bytes]
-  int status = 0;        ///< HTTP status of the refusal; 0: the request is not refused
+  int status = 0;        ///< HTTP status with which the request is refused; 0: it is not refused
 };
 
 /// Checks the bytes that a client has sent so far. The check is stricter than that of cpp-httplib, which

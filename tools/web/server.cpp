@@ -30,7 +30,8 @@ constexpr Nanoseconds patience_for_disk = 8 * ns_per_s;
 /// client that does not read. The system doubles this number. The memory limit of the systemd unit includes
 /// these buffers.
 constexpr int kept_by_system = 65536;
-constexpr std::size_t most_connections = 512;  // largest value that the configuration file may set
+constexpr std::size_t most_connections = 512;  // largest number of connections that the configuration file
+                                               // may set
 constexpr std::size_t own_memory = std::size_t{20} << 20U;
 constexpr std::size_t memory_of_unit = std::size_t{128} << 20U;  // memory limit in
                                                                  // systemd/softgrip-web.service.in

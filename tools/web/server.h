@@ -31,14 +31,14 @@ class Server {
   /// A file that is being sent to a client.
   struct Download {
     std::shared_ptr<const RegularFile> file;
-    std::size_t read = 0;                   // number of bytes read so far
+    std::size_t read = 0;                   // number of bytes of the file that have been read so far
     std::shared_ptr<const DiskTask> piece;  // the next piece, which is being read from the disk; null: none
   };
   struct Visitor {
     Client client;
-    Role role = Role::none;                // role of the sender of its request
-    Follower follower;                     // used in the phase following
-    Download download;                     // used in the phase loading
+    Role role = Role::none;                // role of the sender of the visitor's request
+    Follower follower;                     // reader of the stream, in the phase following
+    Download download;                     // file that is sent, in the phase loading
     std::uint64_t command = 0;             // number of the command that was sent to the daemon; 0: none
     std::shared_ptr<const DiskTask> task;  // pending request to the disk
     Nanoseconds gives_up_at = 0;           // time at which the wait for the disk ends without a result

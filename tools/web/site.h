@@ -19,7 +19,7 @@
 
 namespace softgrip::web {
 
-/// Counters of the program softgrip-web.
+/// Counters of the program softgrip-web, which its metrics report.
 struct OwnCounts {
   std::size_t connections = 0;
   std::size_t followers = 0;             ///< number of the open connections that are open pages
@@ -29,17 +29,17 @@ struct OwnCounts {
   std::map<int, std::uint64_t> answers;  ///< number of responses, by HTTP status
 };
 
-/// The reader of a stream of messages.
+/// A client that reads a stream of messages.
 struct Follower {
   Credentials credentials;
   Role role = Role::none;
 };
 
-/// The result of processing a request.
+/// The result of processing an HTTP request.
 struct Outcome {
   std::string bytes;  ///< bytes to send to the client
   int status = 0;
-  Role role = Role::none;  ///< role of the sender
+  Role role = Role::none;  ///< role of the sender of the request
   /// Set if the bytes begin a stream of messages. The stream continues while its reader keeps the role that
   /// it had at the beginning.
   std::optional<Follower> follower;
@@ -101,7 +101,7 @@ class Site {
   Outcome outcome_;
 };
 
-/// Returns "none", "look" or "operate".
+/// Returns the name of the role: "none", "look" or "operate".
 [[nodiscard]] std::string_view name_of(Role role) noexcept;
 
 }  // namespace softgrip::web

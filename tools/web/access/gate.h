@@ -19,8 +19,8 @@ inline constexpr std::string_view session_cookie = "softgrip";
 struct Credentials {
   std::string host;
   std::string origin;      ///< the Origin header; empty if the client sent none
-  std::string fetch_site;  ///< the Sec-Fetch-Site header; may be empty
-  std::string cookie;      ///< the Cookie header
+  std::string fetch_site;  ///< the Sec-Fetch-Site header of the request; may be empty
+  std::string cookie;      ///< the Cookie header of the request
   std::string authorization;
 };
 

@@ -18,7 +18,7 @@ namespace softgrip::web {
 
 /// The role of a token, and its position in the file.
 struct Grant {
-  Role role = Role::none;  ///< none: the token is not in the file
+  Role role = Role::none;  ///< role that the token gives; none: the token is not in the file
   std::size_t token = 0;   ///< index of the token in the file, from 0
 };
 
