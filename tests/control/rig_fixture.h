@@ -45,8 +45,9 @@ class SimulatedRig {
   struct OfChannel {
     std::optional<model::Validity> validity;  ///< validity that the driver reports; nullopt: that of the
                                               ///< simulated sensor
-    double offset_mm = 0;                     ///< value that is added to the reading
-    std::optional<double> frozen_mm;          ///< constant value of the reading; nullopt: the sensor measures
+    double offset_mm = 0;                     ///< value that is added to the reading of the sensor [mm]
+    std::optional<double> frozen_mm;          ///< constant value of a frozen reading [mm]; nullopt: the
+                                              ///< sensor measures
     double readback_offset_kpa = 0;
     double pressure_offset_kpa = 0;
     bool no_pressure = false;  ///< true: the pressure reading is missing (NaN)

@@ -1,5 +1,5 @@
 #pragma once
-// Settings and sequences for tests.
+// Settings of simulated rigs and prepared sequences for the tests of the controller.
 
 #include <string>
 

@@ -220,7 +220,7 @@ TEST(FullModelFeedforward, OutOfReachSaysSoAndResumesWithoutWindUp) {
   reference.start(0, 0);
   (void)reference.ramp_for(18, 2);
   (void)reference.hold_for(10);
-  (void)reference.ramp_for(0, 0.6);  // faster than the creep decays at 0 kPa
+  (void)reference.ramp_for(0, 0.6);  // the reference falls to 0 mm faster than the creep decays at 0 kPa
   (void)reference.hold_for(5);
   (void)reference.ramp_for(10, 2);
   (void)reference.hold_for(2);
@@ -312,7 +312,7 @@ struct Follower {
   [[nodiscard]] FeedforwardQuery query() const { return {&reference, time_s(), offset_mm}; }
   [[nodiscard]] double time_s() const { return ticks * tick_s; }
 
-  /// Runs one tick and returns its command.
+  /// Runs one tick and returns the pressure command of this tick.
   double tick() {
     const double command = feedforward.step(query()).pressure_kpa;
     finger.step(0, command);

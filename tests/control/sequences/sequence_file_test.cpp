@@ -138,8 +138,8 @@ std::string with_verify(const std::string& verify) {
 struct Broken {
   const char* what;
   std::string text;
-  int line;             ///< line in which the first problem must be
-  std::string message;  ///< text that one of the problems must contain
+  int line;             ///< line of the file in which the first problem must be reported
+  std::string message;  ///< text that the message of one problem must contain
 };
 
 class BrokenSequence : public testing::TestWithParam<Broken> {};

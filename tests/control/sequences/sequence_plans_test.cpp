@@ -275,7 +275,7 @@ TEST(SequencePlans, EveryGripHasItsAnswer) {
 /// error at its end.
 struct Motion {
   double jump_kpa = 0;
-  double worst_mm = 0;  ///< largest absolute difference between reference and finger
+  double worst_mm = 0;  ///< largest absolute difference between reference and displacement of the finger [mm]
 };
 Motion watch(SimulatedRig& rig, double seconds) {
   Motion motion;

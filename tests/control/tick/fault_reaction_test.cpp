@@ -82,7 +82,7 @@ std::vector<FaultCase> fault_cases() {
 struct PhaseCase {
   const char* name;
   Phase phase;
-  int step;  ///< index of the step in pick_stone; -1: idle
+  int step;  ///< index of the step of the sequence pick_stone; -1: the rig is idle
   double into_s;
 };
 const std::vector<PhaseCase> phase_cases{{"idle", Phase::idle, -1, 0.5},

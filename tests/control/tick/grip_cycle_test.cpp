@@ -84,7 +84,7 @@ TEST_F(GripCycle, AStonePulledOutDuringHoldIsPartLostWithinTwoReverifications) {
   rig.run(1.13);
   ASSERT_EQ(rig.result(0), GripResult::holding);
   rig.stone(std::nullopt);
-  rig.run(0.05);  // time in which the stone is pulled out
+  rig.run(0.05);  // wait until the stone has been pulled out
   rig.run(2 * pick.steps[2].step.reverify_every_s);
   EXPECT_EQ(rig.result(0), GripResult::part_lost);
   ASSERT_TRUE(rig.run_until(State::idle, 20));
@@ -303,7 +303,7 @@ steps:
   SimulatedRig rig(settings);
   rig.stone(6);
   ASSERT_TRUE(rig.start_until_step(grip, 1));
-  rig.fault[0].offset_mm = -3;  // causes a displacement shortfall of 3 mm
+  rig.fault[0].offset_mm = -3;  // the sensor offset of -3 mm causes a displacement shortfall of 3 mm
   rig.run(0.1);
   ASSERT_TRUE(rig.run_until(State::idle, 10));
   EXPECT_EQ(rig.result(0), GripResult::error);

@@ -129,7 +129,7 @@ TEST_F(Outputs, AFaultThatIsBackAfterItWasAcknowledgedIsToldAgain) {
     rig.emergency_stop = true;
     rig.tick();
     rig.emergency_stop = false;
-    rig.bus_fault = FaultCode::bus_down;  // a second fault, while the first is latched
+    rig.bus_fault = FaultCode::bus_down;  // inject a second fault while the first fault is latched
     rig.run(0.5);
     EXPECT_EQ(rig.count(Event::Kind::fault_latched), 2U) << "round " << round;
     rig.bus_fault = FaultCode::none;

@@ -50,7 +50,7 @@ TEST_F(SequencePlayback, EveryFailureActionDoesWhatItSays) {
   struct Case {
     const char* on_fail;
     SafeAction closing;  ///< safe action that the rig file states for the phase closing
-    double left_kpa;     ///< pressure of the left finger at the end
+    double left_kpa;     ///< pressure of the left finger at the end of the sequence [kPa]
     bool goes_on;        ///< true: after the grip, the sequence continues with the move
     bool lets_go;        ///< true: the release step vents the finger
   };
@@ -63,7 +63,7 @@ TEST_F(SequencePlayback, EveryFailureActionDoesWhatItSays) {
     settings.safety.safe_action.fill(test.closing == SafeAction::vent ? SafeAction::hold : SafeAction::vent);
     settings.safety.safe_action[static_cast<std::size_t>(Phase::closing)] = test.closing;
     const PreparedSequence sequence = steps(grip_left + test.on_fail + "}\n" + move_on + let_go);
-    SimulatedRig rig(settings);  // no part between the fingers
+    SimulatedRig rig(settings);  // this rig has no part between the fingers, so the grip fails
     play(rig, sequence);
     EXPECT_EQ(rig.result(0), GripResult::no_part);
     EXPECT_NEAR(rig.board_kpa(0), test.left_kpa, 1e-9);

@@ -18,7 +18,7 @@ namespace {
 
 using Kind = Request::Kind;
 
-/// The inputs of one tick.
+/// The inputs of the supervisor for one tick.
 struct Tick {
   Kind request = Kind::none;
   FaultCode fault = FaultCode::none;

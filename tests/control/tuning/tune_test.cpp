@@ -38,7 +38,7 @@ TEST(Tune, KeepsTheMarginAndBeatsCautiousGains) {
 TEST(Tune, TellsTheMarginsOfTheWorstFinger) {
   TuneTask task = quick_task(FeedforwardKind::none);
   task.iterations = 4;
-  task.mismatch = 0;  // every simulated finger equals the model
+  task.mismatch = 0;  // no mismatch: every simulated finger equals the model
   task.draws = 1;
   const Tuned tuned = tune(task);
   const double tick_s = 1 / task.rate_hz;
