@@ -24,9 +24,10 @@ class ScriptedBoard final : public drivers::Board {
   unsigned counted_clients = 0;
   const char* said = "scripted";
   double found = std::numeric_limits<double>::quiet_NaN();  ///< outputs that the board has after a refused
-                                                            ///< write
-  std::function<void()> on_connect;                         ///< called during each connect()
-  std::function<void()> on_exchange;  ///< called before the request of an exchange arrives at the board
+                                                            ///< write [kPa]
+  std::function<void()> on_connect;                         ///< function that is called during each connect()
+  std::function<void()> on_exchange;  ///< function that is called before the request of an exchange reaches
+                                      ///< the board
   std::vector<Nanoseconds> connect_attempts;  ///< times at which connect() was called
 
   [[nodiscard]] std::size_t channels() const noexcept override { return channels_; }

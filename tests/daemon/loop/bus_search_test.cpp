@@ -27,7 +27,7 @@ class OneOutput final : public drivers::Board {
   explicit OneOutput(const VirtualClock& clock) : clock_(clock) {}
   double output_kpa = 0;
   BusStatus next = BusStatus::ok;
-  std::function<void()> on_exchange;  ///< called once, during the next exchange
+  std::function<void()> on_exchange;  ///< function that is called once, during the next exchange
 
   void look() {
     if (fed_at_ < 0 || clock_.now() - fed_at_ < watchdog || output_kpa <= 0) return;

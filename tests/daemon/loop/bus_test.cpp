@@ -120,7 +120,8 @@ TEST_F(BusTest, ALoopThatComesBackWithTheNextFallOfItsMotionIsFollowedDown) {
 class WatchedBusTest : public BusTest {
  protected:
   static constexpr Nanoseconds watchdog = 500'000'000;
-  static constexpr Nanoseconds margin = 50'000'000;  // time limit of an exchange
+  static constexpr Nanoseconds margin = 50'000'000;  // time limit (deadline) of an exchange with the board
+                                                     // [ns]
   WatchedBusTest() {
     board_.watchdog = std::chrono::nanoseconds(watchdog);
     rig_.channels.resize(2);

@@ -67,7 +67,7 @@ Seen race(Cell& cell, std::uint64_t count) {
   }
   writer.join();
   seen.last_written = written;
-  if (cell.fetch()) seen.last = cell.value().number();  // the reader must receive the newest value
+  if (cell.fetch()) seen.last = cell.value().number();  // check that the reader receives the newest value
   return seen;
 }
 

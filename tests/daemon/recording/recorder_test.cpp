@@ -200,7 +200,7 @@ TEST_F(RecorderTest, DroppedRowsAreCounted) {
 }
 
 TEST_F(RecorderTest, ADiskThatFillsUpEndsTheRecordingAndIsTold) {
-  provenance_.virtual_time = false;  // real time, so that every drain() writes to the file
+  provenance_.virtual_time = false;  // use real time, so that every drain() writes to the file
   void (*handler)(int) = std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);

@@ -39,9 +39,10 @@ class SoftgripdProcess {
  public:
   struct Start {
     std::vector<std::string> arguments;
-    std::vector<std::string> environment{};  ///< variables NAME=value that are added to the test's
-                                             ///< environment
-    std::function<void()> in_child{};        ///< called in the child process after fork and before exec
+    std::vector<std::string> environment{};  ///< variables NAME=value that are added to the environment of
+                                             ///< the test for the daemon
+    std::function<void()> in_child{};        ///< function that is called in the child process after fork and
+                                             ///< before exec
   };
 
   /// Starts softgripd. `folder` is the folder for its output.
@@ -50,7 +51,7 @@ class SoftgripdProcess {
   SoftgripdProcess& operator=(const SoftgripdProcess&) = delete;
   SoftgripdProcess(SoftgripdProcess&&) = delete;
   SoftgripdProcess& operator=(SoftgripdProcess&&) = delete;
-  /// Kills the process if it is still running.
+  /// Kills softgripd if it is still running.
   ~SoftgripdProcess();
 
   [[nodiscard]] pid_t pid() const noexcept { return pid_; }

@@ -37,9 +37,9 @@ using testing::text_of;
 const std::string sequences = SOFTGRIP_SOURCE_DIR "/config/sequences/";
 constexpr double rate_hz = 200;
 
-/// The header and the cells of a run.csv.
+/// The header and the cells of a run.csv file.
 struct Csv {
-  std::vector<std::vector<std::string>> rows;  ///< all rows except the header
+  std::vector<std::vector<std::string>> rows;  ///< all rows of the file except the header
   std::vector<std::string> header;
 
   explicit Csv(const std::string& text) {
