@@ -144,7 +144,7 @@ TEST(Scaling, QuantisedRawHasTheConvertersSteps) {
   block.scaling = {0, 0, 10, 10};
   block.raw_min = 0;
   block.raw_max = 10;
-  block.bits = 2;  // 4 levels: 0, 3.33, 6.67 and 10
+  block.bits = 2;  // a converter with 2 bits has 4 levels: 0, 3.33, 6.67 and 10
   EXPECT_DOUBLE_EQ(quantised_raw(block, 4), 10.0 / 3);
   EXPECT_DOUBLE_EQ(quantised_raw(block, 11), 10);
   EXPECT_DOUBLE_EQ(quantised_raw(block, -1), 0);

@@ -23,7 +23,7 @@ struct FakeLine {
   bool used = false;  ///< the line is in use, by the driver or by another program
   std::string consumer;
   bool output = false;
-  bool high = false;        ///< the physical level
+  bool high = false;        ///< physical level of the line; true: high
   bool edges_seen = false;  ///< true: the line was requested with edge detection
   bool active_low = false;
   FakeBias bias = FakeBias::as_is;
@@ -38,15 +38,16 @@ struct FakeLine {
   /// Requests the line for a program. Returns 0 or an errno.
   int request(const std::string& by, bool as_output, bool with_edges, bool inverted, FakeBias resistor);
   void release();
-  /// Returns the next waiting edge and removes it.
+  /// Returns the edge of the line that has waited longest, and removes it.
   FakeEdge take_edge();
 };
 
 struct FakeChip {
   std::string name;  ///< name of the chip, for example "gpiochip0"
   std::string label;
-  int open_error = 0;      ///< errno with which opening the chip fails; 0: it succeeds
-  bool interrupts = true;  ///< false: a request with edge detection fails with ENXIO
+  int open_error = 0;      ///< errno with which opening the chip fails; 0: opening succeeds
+  bool interrupts = true;  ///< true: the chip supports interrupts; false: a request with edge detection fails
+                           ///< with ENXIO
   std::vector<FakeLine> lines;
 };
 

@@ -206,8 +206,8 @@ TEST_F(IioBoardTest, APowerdownThatCannotBeReadOrWrittenIsRefusedBeforeAnythingI
   EXPECT_NE(refusal().find("out_voltage1_powerdown: no number"), std::string::npos) << refusal();
   const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
   fs::remove(powerdown);
-  fs::create_symlink("/proc/sys/kernel/ngroups_max", powerdown);  // a file that contains a value above 0 and
-                                                                  // cannot be written
+  fs::create_symlink("/proc/sys/kernel/ngroups_max", powerdown);  // link to a file that contains a value
+                                                                  // above 0 and cannot be written
   EXPECT_NE(refusal().find("out_voltage1_powerdown is 1 and cannot be cleared: Permission denied"),
             std::string::npos)
       << refusal();

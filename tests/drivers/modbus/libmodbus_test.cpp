@@ -78,7 +78,9 @@ BoardMap shipped(const std::string& name) {
 
 TEST(Libmodbus, AdamWithFunctions16And4) {
   LibmodbusServer server;
-  for (int i = 0; i < 6; ++i) server.mapping().tab_input_registers[i] = 49151;  // 5 V
+  for (int i = 0; i < 6; ++i)
+    server.mapping().tab_input_registers[i] = 49151;  // 5 V, as a raw value of 16
+                                                      // bits
   ModbusSettings settings = test::on_tcp(server.port(), shipped("adam-6024.yaml"), test::two_fingers());
   BoardMap& map = settings.modules[0].map;
   map.read_back.reset();
@@ -90,8 +92,8 @@ TEST(Libmodbus, AdamWithFunctions16And4) {
       ASSERT_EQ(board.exchange(std::array{0.5 * i, 100 - 0.5 * i}, readings, 5s), BusStatus::ok)
           << board.detail();
     }
-    EXPECT_EQ(server.mapping().tab_registers[10], 4075);  // 99.5 kPa
-    EXPECT_EQ(server.mapping().tab_registers[11], 20);    // 0.5 kPa
+    EXPECT_EQ(server.mapping().tab_registers[10], 4075);  // 99.5 kPa, as a raw value of 12 bits
+    EXPECT_EQ(server.mapping().tab_registers[11], 20);    // 0.5 kPa, as a raw value of 12 bits
     EXPECT_NEAR(readings[0].displacement_mm, 20, 0.001);
     EXPECT_NEAR(readings[1].pressure_kpa, 50, 0.002);
   }
@@ -103,8 +105,8 @@ TEST(Libmodbus, Function23AndExceptions) {
       test::on_tcp(server.port(), shipped("softgrip-sim.yaml"), test::two_fingers(false));
   BoardMap& map = settings.modules[0].map;
   map.read_back.reset();
-  server.mapping().tab_registers[0] = 0x40a0;  // 5 V
-  server.mapping().tab_registers[2] = 0x4000;  // 2 V
+  server.mapping().tab_registers[0] = 0x40a0;  // 5 V, as the upper half of a float
+  server.mapping().tab_registers[2] = 0x4000;  // 2 V, as the upper half of a float
   {
     ModbusBoard board(settings);
     ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();

@@ -111,7 +111,7 @@ TEST_F(ModbusBoardTest, LowWordFirst) {
   map.read_back.reset();
   connect(map);
   server_.set_holding(0, 0x0000);
-  server_.set_holding(1, 0x4060);  // 3.5 V
+  server_.set_holding(1, 0x4060);  // 3.5 V, as the upper half of a float
   server_.set_holding(3, 0x4060);
   ASSERT_EQ(exchange(12.5, 0), BusStatus::ok) << board_->detail();
   EXPECT_DOUBLE_EQ(readings_[0].displacement_mm, 12.5);
@@ -156,16 +156,16 @@ TEST_F(ModbusBoardTest, ChannelsMayBeWiredInAnyOrder) {
 
 TEST_F(ModbusBoardTest, ValidityOfReadings) {
   connect(shipped("adam-6024.yaml"));
-  server_.set_input(0, adam_raw(0.05));  // below the valid electrical range of the sensor
-  server_.set_input(1, adam_raw(9.95));  // the error code of the sensor
+  server_.set_input(0, adam_raw(0.05));  // 0.05 V is below the valid electrical range of the sensor
+  server_.set_input(1, adam_raw(9.95));  // 9.95 V is the error code of the sensor
   ASSERT_EQ(exchange(0, 0), BusStatus::ok);
   EXPECT_EQ(readings_[0].validity, Validity::out_of_range);
   EXPECT_EQ(readings_[1].validity, Validity::sensor_error);
   server_.set_input(0, adam_raw(5));
   server_.set_input(1, adam_raw(5));
-  server_.set_input(20, 1);  // status: above the range
-  server_.set_input(21, 7);  // a status value that the manual does not list
-  server_.set_input(24, 2);  // status: the left pressure input is below its range
+  server_.set_input(20, 1);  // status of the sensor input: above its range
+  server_.set_input(21, 7);  // status of the sensor input: a value that the manual does not list
+  server_.set_input(24, 2);  // status of the left pressure input: below its range
   ASSERT_EQ(exchange(0, 0), BusStatus::ok);
   EXPECT_EQ(readings_[0].validity, Validity::out_of_range);
   EXPECT_EQ(readings_[1].validity, Validity::sensor_error);
