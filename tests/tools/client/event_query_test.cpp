@@ -20,7 +20,8 @@ class EventQueryTest : public ::testing::Test {
     ::tzset();
   }
   static std::string since(const std::string& text) {
-    constexpr Nanoseconds now = 1'763'610'372 * ns_per_s;  // 2025-11-20 03:46:12 UTC, 04:46 local
+    constexpr Nanoseconds now = 1'763'610'372 * ns_per_s;  // 2025-11-20 03:46:12 UTC, which is 04:46:12 local
+                                                           // time
     const auto parsed = parse_since(text, now);
     return !parsed ? "refused" : parsed->at.empty() ? std::to_string(parsed->id) : parsed->at;
   }

@@ -378,7 +378,7 @@ TEST_F(DoctorTest, ARateBeyondTheBusBudget) {
 }
 
 TEST_F(DoctorTest, StoppedByTheUserTheOutputsAreSafe) {
-  time_.stop_at = 2'500'000'000;  // a time during the ramp up
+  time_.stop_at = 2'500'000'000;  // stop at a time during the ramp up
   examine(true);
   expect("motion left", Verdict::fail, "stopped by the user");
   EXPECT_EQ(output_kpa(0), 0);

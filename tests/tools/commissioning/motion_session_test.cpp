@@ -95,9 +95,9 @@ class VentingBoard final : public drivers::Board {
 
   Nanoseconds watchdog_ns = watchdog;
   BusStatus next_connect = BusStatus::ok;
-  std::function<void()> on_exchange;  ///< called before a request arrives at the board
-  Nanoseconds lost_from = never;      ///< time from which exchanges fail
-  Nanoseconds lost_until = never;     ///< time from which exchanges succeed again
+  std::function<void()> on_exchange;  ///< function that is called before a request reaches the board
+  Nanoseconds lost_from = never;      ///< time from which exchanges fail [ns]
+  Nanoseconds lost_until = never;     ///< time from which exchanges succeed again [ns]
   BusStatus how = BusStatus::timed_out;
   bool request_arrives = false;  ///< true: if an exchange fails, the request has arrived and only the
                                  ///< response is lost
@@ -105,7 +105,7 @@ class VentingBoard final : public drivers::Board {
   bool monitored = true;  ///< false: the pressure monitors give no readings
 
   std::vector<double> outputs_kpa{0, 0};
-  double largest_rise_kpa = 0;  ///< largest increase of an output by a single write
+  double largest_rise_kpa = 0;  ///< largest increase of an output by a single write [kPa]
   double highest_after_vent_kpa = 0;
   bool vented = false;
   int sessions = 0;

@@ -174,7 +174,7 @@ TEST_F(GatewayTest, AStartThatIsOlderThanARefusedVentIsNotExecuted) {
   const Masters::Id second = come();
   put(plc_, 0, CommandCode::none);
   put(second, 0, CommandCode::none);
-  put(second, 2, CommandCode::vent);  // refused, because the start with counter 1 has not arrived
+  put(second, 2, CommandCode::vent);  // the vent is refused, because the start with counter 1 has not arrived
   EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
   put(plc_, 1, CommandCode::start);
   EXPECT_TRUE(sent().empty());
@@ -267,7 +267,7 @@ TEST_F(GatewayTest, TheAnswerToAnEarlierReactionDoesNotConfirmALaterOne) {
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
   write(Name::master_heartbeat, 6);
   pass(settings_.silence_s + 0.1);
-  EXPECT_TRUE(sent().empty());  // no second stop while the first has no response
+  EXPECT_TRUE(sent().empty());  // the gateway sends no second stop while the first has no response
   accept();
   EXPECT_TRUE(gateway_.watch().owes());
   pass(0.1);

@@ -50,7 +50,7 @@ Settings settings_of_the_search() {
   document::Problems problems;
   Settings settings = *load_settings(SOFTGRIP_SOURCE_DIR "/config/plc.yaml", problems);
   settings.max_masters = plcs;
-  settings.idle_s = 1e6;  // so long that no connection is closed because it is idle
+  settings.idle_s = 1e6;  // so long that the gateway closes no connection because it is idle
   settings.registers.most_fingers = 1;
   return settings;
 }
@@ -74,7 +74,7 @@ struct Wire {
   Masters::Id id = 0;
   modbus::RequestStream stream;
   std::optional<Frame> flying;
-  bool half = false;                       // the gateway has received the first half of the block
+  bool half = false;                       // the gateway has received the first half of the pending block
   std::optional<std::uint16_t> heartbeat;  // the last heartbeat that the gateway received on this connection
 };
 
@@ -107,7 +107,7 @@ struct Command {
 struct Line {
   std::uint64_t id = 0;
   std::string command;
-  int asked = -1;  // index of the command in World::commands; -1: none
+  int asked = -1;  // index of the command in World::commands; -1: the line belongs to no command
 };
 
 struct World {
@@ -120,12 +120,12 @@ struct World {
   std::array<Plc, plcs> masters;
   std::vector<Wire> wires;
   std::vector<Command> commands;
-  // The state of the daemon.
+  // State of the simulated daemon.
   bool runs = false;
   bool paused = false;
   std::deque<Line> lines;
   std::deque<Json> answers;
-  // Data that are recorded for the checks.
+  // Data that the world records for its checks.
   int halts = 0;  // number of vents of masters and of stops because of a silent master that were executed
   std::optional<Frame> waiting;
   bool watched = false;
@@ -289,7 +289,7 @@ struct World {
     commands.push_back({code, master.counter, false, false, false});
   }
 
-  // Actions of the simulated daemon.
+  // The following functions are actions of the simulated daemon.
   void daemon_starts() {
     runs = true;
     gateway->daemon_came(now);

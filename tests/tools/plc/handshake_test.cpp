@@ -134,7 +134,8 @@ TEST(Handshake, OnlyStopAndVentOvertake) {
   EXPECT_FALSE(handshake.write(plc, {2, release}));
   EXPECT_TRUE(handshake.waits());
   EXPECT_FALSE(handshake.take_waiting());
-  EXPECT_FALSE(handshake.write(plc, {3, release}));  // refused, because another command already waits
+  EXPECT_FALSE(handshake.write(plc, {3, release}));  // the release is refused, because another command
+                                                     // already waits
   EXPECT_TRUE(plc.refused);
   EXPECT_TRUE(handshake.write(plc, {3, vent}));
   EXPECT_FALSE(handshake.waits());

@@ -38,10 +38,11 @@ TEST(Places, ANewcomerGetsThatOfTheSlowestQuestion) {
 }
 
 TEST(Places, AViewerMakesNoOneLeaveWhoTakesWhatHeIsSent) {
-  const std::vector<Guest> guests{{Stay::lingering, Role::look, long_ago, 0},  // a page that is open and
-                                                                               // receives nothing
-                                  {Stay::lingering, Role::look, just, 100},    // a download that makes
-                                                                               // progress
+  const std::vector<Guest> guests{{Stay::lingering, Role::look, long_ago, 0},  // the connection of an open
+                                                                               // page that has made no
+                                                                               // progress for a long time
+                                  {Stay::lingering, Role::look, just, 100},    // the connection of a download
+                                                                               // that makes progress
                                   {Stay::lingering, Role::operate, long_ago, 100},
                                   {Stay::brief, Role::look, long_ago, 0},
                                   {Stay::asking, Role::none, long_ago, 0}};
