@@ -42,7 +42,7 @@ struct Started {
   std::optional<std::uint32_t> request;  ///< id that the daemon has given to the request; nullopt: not yet
                                          ///< accepted
   bool left = false;                     ///< the client has sent a request that stops this start
-  bool confirmed = false;                ///< the daemon has responded to this stop request
+  bool confirmed = false;                ///< the daemon has responded to the request that stops this start
   bool halted = false;     ///< another client has sent a stop, a vent or a release after this start
   Nanoseconds waited = 0;  ///< time since the stop request was sent, except during incidents
 };

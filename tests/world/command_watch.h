@@ -67,7 +67,7 @@ class CommandWatch {
   struct Sent {
     int command = -1;           ///< index of the command; -1: a stop that the gateway sent because a master
                                 ///< is silent
-    std::uint64_t silence = 0;  ///< number of the newest silence when the message was sent
+    std::uint64_t silence = 0;  ///< number of the latest silence of a master when the message was sent
   };
   void execute(const std::string& name, const std::optional<Block>& cause, std::uint64_t id);
   void check(bool holds, const char* invariant, const char* otherwise) {
@@ -76,7 +76,7 @@ class CommandWatch {
 
   Nanoseconds silence_;
   std::vector<Command> commands_;
-  std::map<std::uint64_t, Sent> sent_;  // key: id of the message
+  std::map<std::uint64_t, Sent> sent_;  // messages without a response, by id of the message
   std::uint64_t halts_ = 0;
   std::uint64_t executed_ = 0;
   std::uint64_t silences_ = 0;
@@ -85,7 +85,7 @@ class CommandWatch {
   std::uint64_t silence_number_ = 0;
   bool owed_ = false;  // no daemon has responded to the stop that the newest silence requires
   Nanoseconds seen_ = 0;
-  Nanoseconds waited_ = 0;  // time since that stop became necessary, except during incidents
+  Nanoseconds waited_ = 0;  // time since the newest silence required a stop, except during incidents
 };
 
 }  // namespace softgrip::world

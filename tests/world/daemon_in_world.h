@@ -50,7 +50,8 @@ class LoopClock final : public WorldClock {
 /// The settings in which two runs of the daemon can differ.
 struct Life {
   std::string folder;         ///< folder for the recordings of this run
-  std::string record_folder;  ///< folder of all recordings; empty: not set
+  std::string record_folder;  ///< folder of all recordings, in place of the folder of the rig file; empty:
+                              ///< not set
   std::shared_ptr<const daemon::LoadedSequence>
       sequence;  ///< the only sequence of a run that ends with it, as in `softgrip run`; null: a service
   std::shared_ptr<const daemon::SequenceLoader> loader;  ///< loads the sequences of clients; if it is set,

@@ -76,7 +76,7 @@ class Guest {
 
 /// Returns the guest for a tool, or null for Tool::none, because the daemon then runs alone.
 [[nodiscard]] std::unique_ptr<Guest> make_guest(Tool tool, Host& host);
-/// Returns the rig on which a tool is simulated.
+/// Returns the rig on which a tool is simulated, with a board that depends on the seed.
 [[nodiscard]] RigShape shape_for(Tool tool, const rig::RigFile& example, std::uint64_t seed,
                                  bool always_habits);
 

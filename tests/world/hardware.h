@@ -15,12 +15,12 @@ namespace softgrip::world {
 
 struct HardwareSettings {
   std::vector<simulation::PlantSettings> plants;
-  std::vector<double> safe_kpa;   ///< output of each plant at power-up and after a watchdog trip
+  std::vector<double> safe_kpa;   ///< output of each channel at power-up and after a watchdog trip [kPa]
   Nanoseconds watchdog = 0;       ///< time without a request after which the outputs go to safe_kpa; 0: no
                                   ///< watchdog
   bool trip_latches = true;       ///< after a trip, the board refuses writes until a client connects
-  Nanoseconds plant_step = 0;     ///< interval at which written outputs take effect
-  std::function<void()> on_trip;  ///< called after the watchdog has vented
+  Nanoseconds plant_step = 0;     ///< interval at which written outputs take effect [ns]
+  std::function<void()> on_trip;  ///< function that is called after the watchdog has vented
 };
 
 class Hardware {
@@ -93,7 +93,7 @@ class WorldBoard final : public drivers::Board {
 
   struct Callbacks {
     OnWrite on_write;
-    std::function<void()> on_exchange;  ///< called when an exchange begins
+    std::function<void()> on_exchange;  ///< function that is called when an exchange begins
     std::function<void()> on_hindered;  ///< called when a peculiarity of the board has made an exchange fail
     /// Called when the daemon has read the outputs. `foreign_writes` is the number of writes that another
     /// client has made before.
@@ -124,7 +124,7 @@ class WorldBoard final : public drivers::Board {
     Nanoseconds arrives = 0;
     std::vector<double> sent;
     std::size_t first = 0, count = 0;  ///< first channel that the request writes, and number of channels
-    bool again = false;                ///< the request has been sent before
+    bool again = false;                ///< true: the request has been sent before and is repeated
     bool there = false;
     bool ignored = false;
     bool taken = false;

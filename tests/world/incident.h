@@ -19,15 +19,15 @@ struct Incident {
     release,
     acknowledge,
     flood,          ///< a client sends `target` requests to acknowledge faults at once
-    terminate,      ///< SIGTERM; the daemon is started again one second later
-    kill,           ///< SIGKILL
+    terminate,      ///< the daemon receives SIGTERM and is started again one second later
+    kill,           ///< the daemon receives SIGKILL
     pause,          ///< pauses one thread (`target`: Part) for `duration`
     pause_late,     ///< pauses the thread immediately after its next reading of the clock
     pause_all,      ///< pauses the whole daemon process for `duration`, like SIGSTOP
     clock_stalls,   ///< the daemon's clock stands still for `duration` and then shows the true time
     line,           ///< for `duration`, every exchange ends with the status `target` (BusStatus)
     replies_lost,   ///< for `duration`, requests arrive at the board, but its responses are lost
-    slow_line,      ///< every exchange takes `value` s for `duration`
+    slow_line,      ///< for `duration`, every exchange takes `value` seconds
     write_refused,  ///< for `duration`, the outputs of the board do not follow writes
     foreign,        ///< another client writes `value` kPa to all channels every 7 ms for `duration`
     sensor_stuck,   ///< the reading of channel `target` does not change for `duration`
@@ -41,7 +41,8 @@ struct Incident {
     plc_silent,   ///< the program of the master stops for `duration`, but its last block is sent repeatedly
     plc_cut,      ///< the master opens a new connection; its last block arrives on the old connection after
                   ///< `duration`
-    plc_half,     ///< like plc_cut, but the first half of the block has arrived before
+    plc_half,     ///< the second half of a block arrives on the old connection after `duration`, while the
+                  ///< master has opened a new connection
     gateway_paused,  ///< the gateway is paused for `duration`
     gateway_dies,    ///< the gateway process ends and is started again one second later
     daemon_and_plc,  ///< the daemon is killed, and the master is silent for `duration`

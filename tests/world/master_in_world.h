@@ -39,7 +39,7 @@ struct Wire {
   std::optional<Block> flying;
   Nanoseconds arrives = 0;
   std::size_t arrived_bytes = 0;  ///< number of bytes of the pending block that the gateway has received
-  bool left = false;              ///< the master has opened a newer connection
+  bool left = false;              ///< true: the master has opened a newer connection
   std::optional<End> reply;
   std::optional<std::uint16_t> heartbeat;  ///< the last heartbeat that the gateway received on this
                                            ///< connection
@@ -65,7 +65,7 @@ class MasterInWorld {
 
   bool alive = true;        ///< false: the program of the master has stopped, but its last block is sent
                             ///< repeatedly
-  bool beats = true;        ///< true: the heartbeat of the master changes
+  bool beats = true;        ///< true: the master changes its heartbeat
   std::uint16_t heard = 0;  ///< the last heartbeat of this master that the gateway received
   [[nodiscard]] std::uint16_t counter() const noexcept { return counter_; }
   [[nodiscard]] std::uint16_t code() const noexcept { return code_; }

@@ -24,7 +24,7 @@ struct Violation {
 /// Disturbances of the daemon and its surroundings at this moment. Time limits do not count the time during a
 /// disturbance.
 struct Excuse {
-  bool paused = false;   ///< a thread or the whole process is paused
+  bool paused = false;   ///< true: a thread or the whole daemon process is paused
   bool no_line = false;  ///< the line or the board prevents exchanges, or has done so and no exchange has
                          ///< succeeded since
   bool line_but_for_foreign = false;  ///< like no_line, but without the disturbances by writes of another
@@ -114,16 +114,17 @@ class Monitor {
   std::vector<bool> foreign_left_;  // per channel: the output still has the value that another client wrote
   Nanoseconds last_began_ = 0;      // start time of the last exchange that wrote
   double elapsed_s_ = 0;            // time between the last two exchanges that wrote
-  Nanoseconds exchange_ = 0;        // start time of the newest exchange, even if it did not write
-  Nanoseconds before_ = 0;          // start time of the exchange before exchange_
+  Nanoseconds exchange_ = 0;        // start time of the newest exchange, even if it did not write [ns]
+  Nanoseconds before_ = 0;          // start time of the exchange before the newest exchange [ns]
   Nanoseconds woke_ = 0;
-  Nanoseconds last_woke_ = 0;  // value of woke_ for the exchange that began at last_began_
+  Nanoseconds last_woke_ = 0;  // last reading of the clock (woke_) before the exchange that began at
+                               // last_began_
   Nanoseconds seen_ = 0;
   std::uint32_t halted_by_ = 0;  // id of the newest stop or vent request of a client
   control::State state_ = control::State::starting;
   std::vector<double> safe_kpa_;
   std::vector<double> safe_at_entry_;
-  std::vector<double> last_kpa_;  // the commands that were written last
+  std::vector<double> last_kpa_;  // the commands of the last write, one per channel [kPa]
   struct Seen {                   // a reading, stored until the next tick
     Nanoseconds at = 0;
     Nanoseconds sampled = 0;

@@ -287,12 +287,12 @@ class MotionWorld {
   Surroundings around_;
   WorldClock clock_;
   ActorId actor_ = 0;
-  bool alive_ = false;             // the command is running
-  bool interrupted_ = false;       // Ctrl-C was pressed
+  bool alive_ = false;             // true: the command is running
+  bool interrupted_ = false;       // true: the operator has pressed Ctrl-C
   bool up_ = false;                // the last write of the command contained a pressure that is not the rest
                                    // pressure
-  bool vented_ = false;            // the board has vented while the command had applied pressure
-  bool good_ = false;              // no incident has hindered the present exchange so far
+  bool vented_ = false;            // true: the board has vented while the command had applied pressure
+  bool good_ = false;              // true: no incident has hindered the present exchange so far
   bool spoke_ = false;             // the command has had a successful exchange, so that it can notice a gap
   bool spoke_since_trip_ = false;  // an exchange has begun since the watchdog trip, so that the command can
                                    // notice the trip

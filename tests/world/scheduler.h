@@ -101,7 +101,7 @@ class WorldClock : public Clock {
     scheduler_.sleep_until_shown(due);
     slept_ = true;
   }
-  /// Returns the first time that the thread read after its last sleep.
+  /// Returns the time that the thread read from the clock first after its last sleep.
   [[nodiscard]] Nanoseconds woke() const noexcept { return woke_; }
 
  private:

@@ -68,7 +68,7 @@ class Surroundings {
   Hardware hardware;
   WorldBoard board;
   Monitor monitor;
-  std::uint64_t fingerprint = 0;  ///< hash of all writes and of their times
+  std::uint64_t fingerprint = 0;  ///< hash of all writes to the board and of their times
   std::uint64_t writes = 0;
   std::uint64_t trips = 0;
 
@@ -78,7 +78,7 @@ class Surroundings {
   void to_fingers(const Incident& incident, bool begins);
   void write_as_another(const Incident& incident);
 
-  int hindered_ = 0;  // number of incidents that hinder the line at this moment
+  int hindered_ = 0;  // number of incidents that hinder the Modbus line at this moment
   bool good_since_ = false;
   const Incident* foreign_ = nullptr;
 };

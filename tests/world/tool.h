@@ -8,12 +8,12 @@
 namespace softgrip::world {
 
 enum class Tool : std::uint8_t {
-  none,        ///< no additional program: the daemon and its clients
+  none,        ///< no additional program: the daemon and its clients run alone
   calibrate,   ///< `softgrip calibrate` with all of its procedures, called again and again
-  doctor,      ///< `softgrip doctor --move`
+  doctor,      ///< `softgrip doctor --move`, called again and again
   run,         ///< `softgrip run`: the command runs the daemon in its process until the sequence ends
-  baseline,    ///< `softgrip baseline` with one experiment
-  experiment,  ///< one experiment, played as in `softgrip investigate`
+  baseline,    ///< `softgrip baseline` with one experiment, called again and again
+  experiment,  ///< experiments, played one after the other as in `softgrip investigate`
   plc,         ///< the daemon, softgrip-plc and two masters
   blocks,      ///< clients that start sequences and stop them, like the Python client
 };

@@ -110,7 +110,7 @@ class World final : public Host {
     return std::move(result_);
   }
 
-  // Functions of the interface Host.
+  // The following functions implement the interface Host for guests.
   [[nodiscard]] const Library& library() const override { return library_; }
   [[nodiscard]] Surroundings& around() override { return around_; }
   [[nodiscard]] DaemonInWorld* daemon() override { return daemon_.get(); }

@@ -46,7 +46,7 @@ struct WorldResult {
   std::vector<Incident> incidents;
   std::string shape;  ///< description of the rig in one line
   std::vector<std::string> trace;
-  std::uint64_t fingerprint = 0;  ///< hash of all writes and of their times
+  std::uint64_t fingerprint = 0;  ///< hash of all writes to the board and of their times
   std::uint64_t ticks = 0, writes = 0, sequences = 0, holdings = 0, faults = 0, trips = 0, rows = 0;
   std::uint64_t growth_bytes = 0;  ///< largest growth of the heap of a daemon after it had settled [bytes]
   std::uint64_t descriptors = 0;   ///< largest number of open descriptors of a daemon
@@ -55,7 +55,8 @@ struct WorldResult {
 
 [[nodiscard]] WorldResult run_world(const Library& library, std::uint64_t seed, const WorldOptions& options);
 
-/// Returns a shorter list of incidents that causes the same violation.
+/// Removes incidents as long as the violation remains. Returns a list that causes the same violation and is
+/// usually much shorter.
 [[nodiscard]] std::vector<Incident> shrink(const Library& library, std::uint64_t seed,
                                            const WorldResult& failed, const WorldOptions& options);
 
