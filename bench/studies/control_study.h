@@ -1,6 +1,6 @@
 #pragma once
 // Compares the tracking errors of several control schemes on the simulated finger bench_twin, as in the
-// paper. In addition to the paper, it includes model errors, noise and stability margins.
+// paper. The study also covers model errors, noise and stability margins, which the paper does not.
 
 #include <cstdint>
 #include <functional>
@@ -16,8 +16,9 @@ namespace softgrip::studies {
 
 struct ControlStudyOptions {
   std::uint64_t seed = 1;
-  int draws = 100;       ///< simulated fingers with random parameters per scheme, frequency and mismatch
-  int search_draws = 3;  ///< further simulated fingers with which the gains are searched
+  int draws = 100;       ///< number of simulated fingers with random parameters per scheme, frequency and
+                         ///< mismatch
+  int search_draws = 3;  ///< number of further simulated fingers with which the gains are searched
   std::vector<double> frequencies_hz{0.05, 0.1, 0.2, 0.5};
   std::vector<double> mismatches{0.05, 0.10};
   double most_sensitivity = 2;

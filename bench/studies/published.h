@@ -38,7 +38,7 @@ struct HiddenLatency {
   double planned_ratio = 0;  ///< value of `ratio` that was expected when the study was planned
   double ratio = 0;          ///< ratio beta/(alpha + 1/k0) of the fitted model
   double true_ratio = 0;
-  double other_ratio = 0;  ///< `ratio` for the kind of triangles to which the model was not fitted
+  double other_ratio = 0;  ///< value of `ratio` for the kind of triangles to which the model was not fitted
   double rmse_mm = 0;
   double span_mm = 0;
   double tau2_s = 0;  ///< time constant of the faster of the two fitted branches
@@ -88,10 +88,12 @@ struct PublishedStudy {
   double falls_until_kpa =
       0;  ///< on first loading, the response of the published element falls until this pressure is reached
   double falls_by_mm = 0;          ///< depth to which the response falls below 0
-  double back_at_kpa = 0;          ///< pressure at which the response returns to 0; NaN: not below 60 kPa
+  double back_at_kpa = 0;          ///< pressure at which the response returns to 0; NaN: the response does
+                                   ///< not return below 60 kPa
   std::string bouc_wen_refusal;    ///< reason why the controller refuses the published element
   std::string full_model_refusal;  ///< reason why the controller refuses the whole published model
-  sysid::Log match_log;            ///< published response to which the first row of matches was fitted
+  sysid::Log match_log;            ///< published response to which the model of the first row of matches was
+                                   ///< fitted
   std::vector<double> match_mm;    ///< response of the model that was fitted to match_log [mm]
   sysid::Log latency_log;          ///< log of the row with the longest latency, to which the model was fitted
   std::vector<double> latency_mm;  ///< response of the model that was fitted to latency_log [mm]

@@ -22,7 +22,7 @@ using Failure = tl::unexpected<NotCommissioned>;
 
 /// Highest pressure of the first, gentle motion, as a share of the channel's largest pressure.
 constexpr double gentle_share = 0.3;
-/// If the finger moves less than this share of the motion that the model predicts, it does not move.
+/// Smallest displacement that counts as a motion, as a share of the displacement that the model predicts.
 constexpr double least_motion = 0.1;
 /// Largest allowed displacement, as a share of the distance from rest to displacement_max_mm.
 constexpr double range_share = 0.9;
@@ -49,7 +49,7 @@ sysid::Waveform gentle(const sysid::RigLimits& limits) {
 }
 
 /// Returns the motion that precedes the first run. The first motion to a displacement, or the first after a
-/// long pause, differs from later motions. After it, the rest position has changed.
+/// long pause, differs from later motions. It also changes the rest position.
 sysid::Waveform first_load(const sysid::RigLimits& limits) {
   return slow("first_load", "so that both runs begin after the same loads", 1, 2, limits);
 }
@@ -92,10 +92,10 @@ double expected_mm(const ExperimentRig& rig, const sysid::Waveform& waveform) {
   return reach_of(log).motion_mm;
 }
 
-/// Returns the limits of the rig, with a largest pressure at which no experiment exceeds `range_share` of the
-/// displacement range.
-/// @param ratio    measured displacement divided by the displacement of the model.
-/// @param rest_mm  reading at rest.
+/// Returns limits of the rig for the experiments. At the largest pressure of these limits, no experiment
+/// exceeds `range_share` of the displacement range.
+/// @param ratio    measured displacement divided by the displacement that the model predicts.
+/// @param rest_mm  reading of the sensor at rest.
 sysid::RigLimits limits_for(const ExperimentRig& rig, const std::vector<std::string>& experiments,
                             double ratio, double rest_mm) {
   sysid::RigLimits limits = rig.limits(0, 0);
@@ -155,7 +155,8 @@ class Commissioning {
            " mm; check the air supply and that the sensor measures this finger (softgrip doctor --move)";
   }
 
-  /// Plays the gentle motion and derives the limits of the experiments from it.
+  /// Plays the gentle motion. Computes the limits of the experiments from the displacement during this
+  /// motion.
   tl::expected<void, NotCommissioned> begin(const std::string& folder) {
     const sysid::Waveform waveform = gentle(runs_.limits);
     const auto log = play(waveform, folder);

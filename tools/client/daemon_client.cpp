@@ -104,7 +104,7 @@ tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::strin
   std::memcpy(address.sun_path, path.data(), path.size());
   Descriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | flags, 0)};
   const timeval limit{send_limit.count() / 1000, send_limit.count() % 1000 * 1000};
-  // SO_SNDTIMEO also limits the duration of connect().
+  // SO_SNDTIMEO limits the duration of connect() as well as that of send().
   if (!socket || ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit) != 0 ||
       ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     return tl::unexpected{cannot_connect(path, errno)};
@@ -164,7 +164,7 @@ tl::expected<std::optional<Json>, ClientFailure> DaemonClient::next_line(std::ch
   return std::optional<Json>{std::move(*line)};
 }
 
-/// Ends the connection, because the bytes after a malformed line cannot be trusted either.
+/// Ends the connection, because the lines after a malformed line may be malformed as well.
 ClientFailure DaemonClient::malformed(const std::string& why) {
   ::shutdown(socket_.get(), SHUT_RDWR);
   pending_.clear();

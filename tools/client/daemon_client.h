@@ -40,9 +40,9 @@ class DaemonClient {
   [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect_at_once(const std::string& path);
   static constexpr std::chrono::milliseconds longest_send{50};
 
-  /// Sends a request without waiting for the response. If sending fails, next_line() returns the failure
-  /// after all lines that the daemon sent before it closed the connection. The last of these lines may state
-  /// the reason. If the daemon does not accept the request in time, the connection ends.
+  /// Sends a request without waiting for the response. If the daemon does not accept the request in time, the
+  /// connection ends. After a failure, next_line() first returns all lines that the daemon sent before it
+  /// closed the connection, and then the failure. The last of these lines may state the reason.
   void send(const nlohmann::ordered_json& request);
   /// Returns the `result` of a response that next_line() returned, or a failure if the daemon refused the
   /// request.

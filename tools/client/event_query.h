@@ -13,7 +13,7 @@
 
 namespace softgrip::tools {
 
-/// The first event of a selection: the event after an id, or the first event from a time on.
+/// The start of a selection of events: after an event with a given id, or from a given time on.
 struct Since {
   std::uint64_t id = 0;  ///< only events with a larger id than this are selected
   std::string at;  ///< only events at or after this UTC time, in the format of the socket API; empty: any

@@ -17,7 +17,7 @@ using Lines = std::vector<std::string>;
 
 constexpr std::string_view trend_legend = "  trends: 1 column 1 s";
 constexpr std::size_t event_indent = 12;
-/// Other parts of the screen are omitted before fewer rows of events are shown.
+/// Smallest number of rows for events. If fewer rows are left, other parts of the screen are omitted first.
 constexpr std::size_t fewest_event_rows = 3;
 
 void append(Lines& lines, const Lines& more) {
@@ -88,7 +88,7 @@ void take_status(LiveState& state, Json status) {
   state.trends.resize(channels.size());
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const Json& channel = channels[i];
-    // A value that was read before the sensor was disconnected is not a present reading.
+    // If the reading is not valid, the trend gets a gap, because the last value is out of date.
     const bool valid = channel.is_object() && channel.value("validity", "") == "valid";
     const auto pressure = channel.is_object() ? number_at(channel, "pressure_kpa") : std::nullopt;
     const auto command = channel.is_object() ? number_at(channel, "command_kpa") : std::nullopt;

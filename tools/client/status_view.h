@@ -15,7 +15,8 @@ namespace softgrip::tools {
 struct StatusParts {
   std::vector<std::string> head;  ///< lines with state, sequence, pressurised fingers and fault
   std::vector<std::vector<std::string>> channels;
-  std::vector<std::string> board;      ///< connection to the board, and attempts to restore the connection
+  std::vector<std::string> board;      ///< lines with the connection to the board and the attempts to restore
+                                       ///< it
   std::vector<std::string> machinery;  ///< lines with the state of the control loop and of the recording
 };
 /// Formats the parts of a status. If `trends` contains one element per channel, trends replace the bars.

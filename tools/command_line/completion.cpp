@@ -22,7 +22,7 @@ struct Command {
   std::string about;
   std::vector<Choice> options;
   std::vector<Choice> places;
-  bool asks_for_sequences = false;  ///< the allowed values are the names of the daemon's sequences
+  bool asks_for_sequences = false;  ///< true: the allowed values are the names of the daemon's sequences
 };
 
 constexpr const char* ask_for_sequences = "sequences --names 2>/dev/null";

@@ -16,7 +16,7 @@ namespace softgrip::tools {
 [[nodiscard]] bool wants_colour();
 /// Returns true if the character encoding of the locale is UTF-8.
 [[nodiscard]] bool has_unicode();
-/// Replaces characters by their usual ASCII form if the locale is not UTF-8: ± becomes +-.
+/// Replaces characters by similar ASCII characters if the locale is not UTF-8. For example, ± becomes +-.
 [[nodiscard]] std::string on_screen(std::string text);
 /// Returns the number of columns or rows of the terminal at the standard output. Without a terminal, returns
 /// 80 columns and 24 rows.

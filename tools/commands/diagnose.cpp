@@ -33,7 +33,8 @@
 namespace softgrip::tools {
 namespace {
 
-/// Number of parameters of a cause above which the parameters that the logs do not determine are not printed.
+/// Largest number of parameters of a cause for which all parameters are printed. With more parameters, those
+/// that the logs do not determine are omitted.
 constexpr std::size_t most_undetermined = 5;
 
 struct DiagnoseOptions {
@@ -148,7 +149,7 @@ ConsequenceOptions consequence_options(const DiagnoseOptions& options, const std
   return wanted;
 }
 
-/// Returns the next experiment in the form that the report shows, or nullopt if there is none.
+/// Returns the next experiment for the report, or nullopt if the diagnosis proposes none.
 std::optional<sysid::ProposedExperiment> proposed_experiment(const Consequences& consequences) {
   const sysid::NextExperiment& next = consequences.experiment;
   if (!next.best) return std::nullopt;

@@ -74,7 +74,8 @@ class FollowedStart {
   DaemonClient& client_;
   std::string id_;
   Descriptor signals_;
-  bool pipe_ends_ = true;  ///< a closed pipe ends the program; false if the calling program ignores SIGPIPE
+  bool pipe_ends_ = true;  ///< true: a closed pipe ends the program; false: the calling program ignores
+                           ///< SIGPIPE
 };
 
 /// Waits until the descriptor is readable or a signal arrives. Returns the signal, or 0 if there was none.

@@ -54,9 +54,9 @@ Shown who_showed(std::span<const Motion> motions, const Followed& followed) {
   return shown;
 }
 
-/// Follows a sequence of channels that begins at `first`: the next channel is always the one that responded
-/// to the motion of the last. Returns the sequence if it returns to `first` through other channels, else an
-/// empty vector.
+/// Follows the channels from `first` on: each next channel is the one that responded when the previous
+/// channel was moved. Returns these channels if they return to `first` through other channels, else an empty
+/// vector.
 std::vector<std::size_t> circle_from(const Shown& shown, std::size_t first) {
   std::vector<std::size_t> circle{first};
   for (auto next = shown[first]; next && *next != first; next = shown[*next]) {
@@ -71,8 +71,8 @@ std::vector<std::vector<std::size_t>> circles_of(const Shown& shown) {
   std::vector<std::vector<std::size_t>> circles;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const std::vector<std::size_t> circle = circle_from(shown, i);
-    // Report each cycle once: the search finds it from each of its channels, but reports it only from the
-    // lowest.
+    // Report each cycle once. The search finds a cycle from each of its channels, so report it only from its
+    // lowest channel.
     if (!circle.empty() && *std::min_element(circle.begin(), circle.end()) == i) circles.push_back(circle);
   }
   return circles;

@@ -88,7 +88,7 @@ std::optional<std::pair<double, double>> two_numbers(const std::string& text) {
   return std::pair{*first, *second};
 }
 
-// --- Questions about the values, and checks of the answers
+// --- Questions about the values of a draft, and checks of the answers
 
 std::optional<Question> ask_board(const RigDraft&) {
   return Question{"board map, one or several, each as a file or a name" + in_brackets(names_in("boards")) +

@@ -8,9 +8,9 @@
 namespace softgrip::tools::calibrate {
 namespace {
 
-/// Smallest ratio of two sums of squared residuals at which a bend is significant: that of a straight line
-/// divided by that of a line with a bend. For hundreds of readings, noise does not cause a ratio of 1.5 (F
-/// test with two extra parameters).
+/// Smallest ratio of two sums of squared residuals at which a bend is significant: the sum for a straight
+/// line divided by the sum for a line with a bend. For hundreds of readings, noise alone does not cause a
+/// ratio of 1.5 (F test with two extra parameters).
 constexpr double improvement = 1.5;
 /// Number of positions along the ramp at which the fit tries a bend.
 constexpr int bends = 200;

@@ -18,11 +18,11 @@ struct Motion {
 [[nodiscard]] MotionSession::Expected<Motion> move_and_watch(const rig::RigFile& rig, MotionSession& session,
                                                              std::size_t channel, const ChannelSample& rest,
                                                              const MoveSettings& settings);
-/// Returns true if the sensor moved from its rest value by more than two thresholds: a multiple of its noise,
+/// Returns true if the displacement of the sensor from rest exceeds two thresholds: a multiple of its noise,
 /// and a share of `model_mm`, the displacement that the model predicts.
 [[nodiscard]] bool has_moved(const Sample& rest, const Sample& seen, double model_mm);
 
-/// Reasons why the motion of a channel cannot be checked. An empty text means that it can.
+/// Reasons why the motion of a channel cannot be checked. An empty text means that the check is possible.
 struct NotJudged {
   std::string valve;   ///< reason why the pressure monitor cannot check the valve
   std::string finger;  ///< reason why the finger and its model cannot be checked

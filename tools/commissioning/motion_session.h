@@ -146,8 +146,7 @@ class MotionSession {
   std::uint64_t silent_cycles_ = 0;  // cycles since the last successful exchange
   std::optional<Sight> required_;
   std::uint32_t blind_cycles_ = 0;  // cycles since all required sensors last had valid readings
-  bool may_rise_ = true;            // false: since require(), not all required sensors have had valid
-                                    // readings
+  bool may_rise_ = true;            // true: all required sensors have had valid readings since require()
 };
 
 }  // namespace softgrip::tools

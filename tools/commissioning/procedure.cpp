@@ -361,7 +361,8 @@ Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, MotionSession
     return tl::unexpected(refusal_of(up.error()));
   }
   result.zone = find_dead_zone(command, response);
-  // The signal of a sensor with a negative slope falls when the displacement rises.
+  // If a sensor has a negative slope, its signal falls when the displacement rises. Repeat the search with
+  // the inverted signal.
   if (!result.zone && !result.by_pressure) {
     for (double& value : response) value = -value;
     result.zone = find_dead_zone(command, response);

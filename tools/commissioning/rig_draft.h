@@ -25,7 +25,8 @@ struct DraftModule {
 /// i, and the pressure monitors to the last inputs.
 struct RigDraft {
   std::string name = "my_rig";
-  std::optional<double> rate_hz;     ///< nullopt: the highest of the usual rates that is valid for the rig
+  std::optional<double> rate_hz;     ///< control rate [Hz]; nullopt: the highest of the usual rates that is
+                                     ///< valid for the rig
   std::vector<DraftModule> modules;  ///< modules of the board; empty: the board is simulated in the process
   std::string host;                  ///< numeric address of a network board; empty: the board is on a serial
                                      ///< line
@@ -68,8 +69,8 @@ struct ElectricalRange {
 /// board.
 [[nodiscard]] bool has_watchdog(const RigDraft& draft) noexcept;
 
-/// Returns the text of a commented rig file for `path`. The text passes the rig-file reader; otherwise the
-/// problems that the reader reports are returned. Paths below the file's folder are relative to it.
+/// Returns the text of a commented rig file for `path`. The rig-file reader checks the text; if it finds
+/// problems, they are returned instead. Paths below the file's folder are relative to this folder.
 [[nodiscard]] tl::expected<std::string, document::Problems> draft_text(const RigDraft& draft,
                                                                        const std::string& path);
 

@@ -27,7 +27,7 @@ std::string advice_for_silence(const rig::RigFile& rig, drivers::BusStatus statu
   return std::string(bus_advice(drivers::name_of(status)));
 }
 
-/// Returns true if a finger could drop a part during the examination. An examination writes the rest
+/// Returns true if a finger may hold a part. The part could drop, because an examination writes the rest
 /// pressures even if it moves no finger.
 bool may_hold_a_part(const rig::RigFile& rig) {
   const auto& safety = rig.settings.safety;

@@ -12,8 +12,8 @@ namespace softgrip::tools::doctor {
 
 /// Sizes and durations of the motions of an examination.
 struct MoveSettings {
-  double share = 0.25;    ///< commanded step, as a share of the pressure range on that side of the rest
-                          ///< pressure where the range is larger
+  double share = 0.25;    ///< commanded step, as a share of the distance from the rest pressure to the
+                          ///< pressure limit that is further from it
   double duration_s = 1;  ///< duration of the ramp up and of the ramp down [s]; longer if the slew limits
                           ///< require it
   double settle_s = 1;    ///< wait after the ramp up and after the ramp down [s]

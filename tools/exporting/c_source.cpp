@@ -29,7 +29,8 @@
 namespace softgrip::tools {
 namespace {
 
-/// C functions with which fragments divide segments, in the order of the C file.
+/// C functions with which the other fragments divide segments, in the order in which they appear in the C
+/// file.
 constexpr std::string_view cutting = R"(
 static double at_share(segment s, double share) {
   return s.begin + (s.end - s.begin) * share + bend_of(s) * (share * (1.0 - share));

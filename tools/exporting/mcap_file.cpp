@@ -250,7 +250,7 @@ class Writer {
     put(footer, offsets_start);
     put(footer, std::uint32_t{0});
     footer = record(Opcode::footer, footer);
-    // The checksum covers the footer up to, but without, the checksum.
+    // The checksum covers all bytes of the footer before the checksum.
     footer.resize(footer.size() - sizeof(std::uint32_t));
     bytes_ += footer;
     put(bytes_, checksum(std::string_view(bytes_).substr(start)));

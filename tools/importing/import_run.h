@@ -39,8 +39,8 @@ struct ImportOptions {
 /// confirm this mapping on a terminal. If there is no terminal, the exit code is 2.
 ExitCode run_import(const ImportOptions& options);
 
-/// Returns the output paths of the logs. For one file, the path is `out`, if `out` is not a folder. Otherwise
-/// the folder `out` gets one path per log. The error is a sentence.
+/// Returns the output paths of the logs. If there is one file and `out` is not a folder, the path is `out`.
+/// Otherwise each log gets a path in the folder `out`. The error is a sentence.
 [[nodiscard]] tl::expected<std::vector<std::string>, std::string> import_targets(
     const std::vector<std::string>& files, const std::string& out);
 

@@ -35,8 +35,8 @@ constexpr std::uint64_t judged_rigs = 5;
 constexpr double largest_sensitivity = 2;
 constexpr double mean_mm = 13;
 constexpr double amplitude_mm = 7;
-/// Span of the finger below which the reference is scaled down [mm]. The published reference reaches 20 mm. A
-/// finger with a span of 22 mm reaches 20 mm with a reserve for creep.
+/// Smallest span of a finger for which the reference is not scaled down [mm]. The published reference reaches
+/// 20 mm. A finger with a span of 22 mm reaches 20 mm with a reserve for creep.
 constexpr double span_needed_mm = 22;
 constexpr control::GainSearch gain_search{.iterations = 25, .coarseness = 2};
 

@@ -146,7 +146,8 @@ tl::expected<std::string, NotPlayed> run_on(const ExperimentRig& rig, const std:
   };
   const auto outcome = rig.run(rig.rig, options);
   if (!outcome) return failed(outcome.error());
-  // A signal at the very end of an experiment does not end the experiment, but must prevent the next one.
+  // A signal at the very end of an experiment does not stop this experiment, but it must prevent the next
+  // one.
   if (outcome->signal != 0) return stopped("stopped by the user; the rig is vented");
   if (outcome->ending != daemon::Ending::sequence_ended || !outcome->sequence_end ||
       *outcome->sequence_end != control::SequenceEnd::done) {

@@ -35,8 +35,8 @@ enum class Reason : std::uint16_t {
   no_answer,
   /// The counter is not the newest counter plus 1, or this connection has not written the newest counter.
   not_next,
-  refusal = 100,  ///< base of the daemon's refusals: 100 plus the number of the refusal, for example 102 for
-                  ///< R02
+  refusal = 100,  ///< first code of the daemon's refusals, whose codes are 100 plus the number of the
+                  ///< refusal: 102 for R02
 };
 
 /// The state of the daemon in the registers. The value 0 means that no daemon is connected.

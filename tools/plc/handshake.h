@@ -24,8 +24,8 @@ struct Command {
 
 /// The latest counter that one connection has written.
 struct Cursor {
-  /// The latest counter that this connection wrote and that was the newest at that time. Nullopt: the
-  /// connection has not written such a counter.
+  /// The latest counter that was the newest counter of all connections when this connection wrote it.
+  /// Nullopt: none.
   std::optional<std::uint16_t> at;
   /// True if the last counter that this connection wrote was refused.
   bool refused = false;

@@ -1,6 +1,6 @@
 #pragma once
-// Detects that the client (Modbus master) is silent. Stores that stop or vent is required until the daemon
-// has confirmed it.
+// Detects that the client (Modbus master) is silent. A stop or vent is then required until the daemon has
+// confirmed it.
 
 #include <optional>
 

@@ -37,7 +37,8 @@ void show_no_daemon(const RegisterMap& map, modbus::Registers& registers);
 /// Returns the reason code for the `error` of a daemon's response.
 [[nodiscard]] Reason reason_of(const nlohmann::ordered_json& error);
 
-/// Returns true if a request writes this register. The request must have been answered without an exception.
+/// Returns true if a request writes this register. The request must have been executed without a Modbus
+/// exception.
 [[nodiscard]] bool writes(std::span<const std::uint8_t> pdu, std::uint16_t address) noexcept;
 
 }  // namespace softgrip::plc

@@ -23,10 +23,12 @@ struct Options {
                                                  ///< next id
   std::string bind = "127.0.0.1";
   bool allow_network = false;
-  std::optional<std::uint16_t> port;  ///< default: the port of the rig file; without a rig file, 1502
+  std::optional<std::uint16_t> port;  ///< TCP port; default: the port of the rig file; without a rig file,
+                                      ///< 1502
   std::string rtu;                    ///< serial device that is used instead of the network
   bool rtu_over_tcp = false;          ///< true: the emulator sends RTU frames over TCP
-  std::optional<std::uint32_t> baud;  ///< default: the value of the rig file; without a rig file, 9600 8N1
+  std::optional<std::uint32_t> baud;  ///< baud rate; default: the value of the rig file; without a rig file,
+                                      ///< 9600 8N1
   std::optional<std::string> format;
   std::optional<double> turnaround_s;
   std::string object;
@@ -34,7 +36,8 @@ struct Options {
   std::string faults;
   std::string truth;
   double truth_rate_hz = 1000;
-  std::optional<double> watchdog_s;  ///< replaces the watchdog time of the board file [s]; 0: no watchdog
+  std::optional<double> watchdog_s;  ///< watchdog time that replaces the time in the board file [s]; 0: no
+                                     ///< watchdog
   double noise_mm = 0.03;
   double pressure_noise_kpa = 0.1;
   std::uint64_t seed = 1;

@@ -57,7 +57,8 @@ int called(const std::string& program, std::vector<std::string> words) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// Returns the member of an object, or an empty array if it is missing or `json` is not an object.
+/// Returns the member at a key of an object. Returns an empty array if the member is missing or `json` is not
+/// an object.
 const Json& member(const Json& json, const char* key) {
   static const Json none = Json::array();
   const auto found = json.is_object() ? json.find(key) : json.end();

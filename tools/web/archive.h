@@ -45,7 +45,7 @@ class DiskTask {
   /// For a file: returns the open file, or null if the file does not exist or may not be shown.
   [[nodiscard]] const std::shared_ptr<const RegularFile>& file() const noexcept { return file_; }
 
-  // The answer_ functions and fail() are called by the disk thread.
+  // The disk thread calls the functions answer_... and fail().
   void answer_health(const nlohmann::ordered_json& health);
   void answer_text(std::shared_ptr<const std::string> text);
   void answer_file(std::shared_ptr<const RegularFile> file);

@@ -12,8 +12,8 @@
 namespace softgrip::web {
 
 /// Receives one request and sends one response: a complete response, a file in pieces, or a stream of
-/// messages. A client that reads too slowly is disconnected. The number of its unsent bytes is limited, so
-/// that it does not delay other clients.
+/// messages. A client that reads too slowly is disconnected. The number of unsent bytes of a client is
+/// limited, so that a slow client does not delay other clients.
 class Client {
  public:
   enum class Phase : unsigned char {

@@ -179,8 +179,8 @@ void Commander::stop(GivenUp& start) {
   start.stop = send_numbered(tools::stop_of(start.start_id));
 }
 
-/// Requests the stop of the starts that were given up while there was no connection. Repeats the request for
-/// starts whose stop the daemon did not confirm.
+/// Requests the stop of starts that were given up while there was no connection, and of starts whose stop the
+/// daemon did not confirm.
 void Commander::stop_again(Nanoseconds now) {
   const auto is_due = [](const GivenUp& start) { return start.stop == 0; };
   if (std::none_of(given_up_.begin(), given_up_.end(), is_due)) return;

@@ -29,7 +29,7 @@ std::string message_of(std::string_view kind, const Json& data) {
 }
 
 void LiveState::take_status(Json status) {
-  // A smaller time means that the daemon has restarted, so its trend begins again.
+  // If the time is smaller than before, the daemon has restarted, so its trend begins again.
   if (number(status, "time_s") < number(status_, "time_s")) trend_.clear();
   status_ = std::move(status);
   note_trend();

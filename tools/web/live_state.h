@@ -18,7 +18,7 @@ class LiveState {
   static constexpr double trend_s = 60;
   static constexpr std::size_t events_kept = 200;
 
-  /// The take_ functions store new data of the daemon and add a message for the open pages.
+  /// The functions take_... store new data of the daemon and add a message for the open pages.
   void take_status(nlohmann::ordered_json status);
   void take_event(nlohmann::ordered_json event);
   void take_statistics(nlohmann::ordered_json statistics);

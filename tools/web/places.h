@@ -20,7 +20,8 @@ struct Guest {
   };
   Stay stay = Stay::asking;
   Role role = Role::none;
-  Nanoseconds moved_at = 0;  ///< time of the last progress, or of the connection if there was no progress
+  Nanoseconds moved_at = 0;  ///< time of the last progress; before any progress, time at which the client
+                             ///< connected
   std::size_t unsent = 0;    ///< number of bytes that wait to be sent
 };
 
@@ -48,9 +49,9 @@ using Victim = std::optional<std::size_t>;  ///< index of the connection to clos
 /// Considers connections whose request is incomplete after `long_pause`. Returns the one with the lowest
 /// role, and among equal roles the oldest.
 [[nodiscard]] Victim gives_way_to_newcomer(const std::vector<Guest>& guests, Nanoseconds now);
-/// Chooses the connection to close when a client with `role` needs a lingering connection and their largest
-/// number is reached. Returns a connection with the same or a lower role whose response makes no progress, or
-/// any connection with a lower role. Nullopt: refuse the client.
+/// Chooses the connection to close when a client with `role` needs a lingering connection and the largest
+/// number of these is reached. Returns a connection with a lower role, or one with the same role whose
+/// response makes no progress. Nullopt: refuse the client.
 [[nodiscard]] Victim gives_way_to_lingering(const std::vector<Guest>& guests, Role role, Nanoseconds now);
 /// Chooses the connection to close when too many bytes are unsent and a client with `role` needs memory.
 /// Returns the connection with the lowest role that has made no progress for the longest time. Nullopt:

@@ -30,9 +30,9 @@ namespace softgrip::web {
 class Recordings {
  public:
   static constexpr std::size_t most_listed = 200;
-  /// Largest number of folders that are read for a list; the newest are read. If too few of them contain a
-  /// file that may be shown, the list is shorter than `most_listed`. This number limits the memory and the
-  /// time for a list, however many folders exist.
+  /// Largest number of folders that are read for a list; the newest are read. If too few of these folders
+  /// contain a file that may be shown, the list is shorter than `most_listed`. This number limits the memory
+  /// and the time for a list, even if many more folders exist.
   static constexpr std::size_t most_considered = 2000;
   static constexpr std::size_t largest_file = std::size_t{16} << 20U;
 

@@ -231,7 +231,7 @@ void Server::take_piece(Visitor& visitor) {
   const auto piece = std::exchange(download.piece, nullptr);
   const auto bytes = std::string_view(piece->text()).substr(0, download.file->size - download.read);
   download.read += bytes.size();
-  // If the file has become shorter, fewer bytes exist than the head of the response announced.
+  // If the file has become shorter, it has fewer bytes than the head of the response announced.
   visitor.leaves = bytes.empty() || !visitor.client.add(bytes);
   if (download.read == download.file->size) visitor.client.finish();
 }

@@ -22,7 +22,7 @@ namespace softgrip::web {
 /// Counters of the program softgrip-web, which its metrics report.
 struct OwnCounts {
   std::size_t connections = 0;
-  std::size_t followers = 0;             ///< number of the open connections that are open pages
+  std::size_t followers = 0;             ///< number of connections that belong to open pages
   std::size_t unsent = 0;                ///< number of bytes that wait to be sent
   std::uint64_t turned_away = 0;         ///< number of connections that were closed or refused because a
                                          ///< limit was reached
@@ -51,10 +51,10 @@ struct Outcome {
   std::optional<DiskRequest> disk_request;
 };
 
-/// The response to the command or the disk request of an earlier outcome.
+/// The response to a command or to a disk request that an earlier result of serve() contained.
 struct Reply {
   const nlohmann::ordered_json* daemon = nullptr;
-  const DiskTask* disk = nullptr;  ///< if the task is not done, the time limit for the disk was exceeded
+  const DiskTask* disk = nullptr;  ///< result of the disk; not done: the time limit for the disk was exceeded
 };
 
 class Site {
