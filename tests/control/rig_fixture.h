@@ -64,7 +64,7 @@ class SimulatedRig {
   void request(const Request& request) { request_ = request; }
   /// Pauses the whole control process for this duration.
   void pause(double seconds) { now_ += static_cast<Nanoseconds>(std::llround(seconds * 1e9)); }
-  /// Runs one period and checks all invariants of the commands.
+  /// Runs one control period and checks all invariants of the commands.
   const TickOutput& tick();
   void run(double seconds);
   /// Runs ticks until the rig is in this state, for at most `seconds`. Returns false if the rig does not

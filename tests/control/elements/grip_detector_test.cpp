@@ -109,8 +109,9 @@ model::Model perturbed(double share, std::uint64_t seed) {
   model::Model model = twin();
   for (model::BlockSpec& block : model.blocks) {
     for (double& value : block.values) {
-      value *= std::round(value) == value && value < 10 ? 1 : off(random);  // the exponent, a whole number
-                                                                            // below 10, remains unchanged
+      value *= std::round(value) == value && value < 10 ? 1 : off(random);  // the exponent of the model, a
+                                                                            // whole number below 10, remains
+                                                                            // unchanged
     }
   }
   return model;

@@ -75,8 +75,8 @@ TEST(Planner, FollowsThePublishedModelWhichHasNone) {
 }
 
 // The reference stays between 11 and 19 mm. For a sine that goes down to 6 mm, the search ends with errors of
-// up to 1.8 mm because of the play operators. With an elastic gain in place of the play operators, it does
-// not.
+// up to 1.8 mm because of the play operators. If an elastic gain replaces the play operators, these errors do
+// not occur.
 TEST(Planner, FollowsAMeasuredArmOfPlaysWhereItUnloadsLittle) {
   LimitSettings wide = limits;
   wide.pressure_max_kpa = 110;

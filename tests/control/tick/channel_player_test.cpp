@@ -55,8 +55,8 @@ TEST(ChannelPlayer, AProfileBeginsWithItsFirstPressure) {
   EXPECT_EQ(player.demand(7.25).pressure_kpa, 21);
 }
 
-// While the finger presses on a part, an integral would increase the gripping pressure, so it is held. In a
-// step that neither grips nor holds a part, the integral must continue.
+// While the finger presses on a part, the integral of the feedback would increase the gripping pressure.
+// Therefore the integral is held in steps that grip or hold a part. In all other steps, it must continue.
 TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
   const Step grip = step_of(StepKind::grip);
   for (const StepKind kind : {StepKind::move, StepKind::grip, StepKind::hold, StepKind::release,

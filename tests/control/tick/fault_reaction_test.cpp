@@ -171,7 +171,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
   EXPECT_EQ(rig.output().channels[0].command_kpa, rest_kpa) << "an acknowledgement moves no finger";
   EXPECT_EQ(rig.result(0), GripResult::none);
 
-  if (rest_kpa != 0) {  // a finger whose action is hold may hold a part, so vent it before the next grip
+  if (rest_kpa != 0) {  // the safe action hold may have kept a part, so vent the finger before the next grip
     rig.request(Request::Kind::vent);
     ASSERT_TRUE(rig.run_until(State::idle, 2));
   }

@@ -109,7 +109,7 @@ TEST(TrackingRun, OneSeedOneResult) {
   EXPECT_NE(first.rmse_mm, track(run).rmse_mm);
 }
 
-// Computes the share of models that are not judged healthy, although their parameters deviate by this
+// Computes the share of models that are not judged healthy if their parameters deviate at random by this
 // scatter. The share must agree with the rate that model_health.h states.
 TEST(TrackingRun, ModelHealthToleratesAFewPercentAndNotTwenty) {
   const auto not_healthy = [](double scatter) {
