@@ -132,8 +132,8 @@ std::string follow(std::span<const Step> path) {
   Bus bus(board, rig, loop, reconnect, clock, shared, statistics);
   LeastLoop controller(shared);
 
-  bool may_rise = true;  // true: since the last start, no event has occurred that forbids a rise of the
-                         // output
+  bool may_rise = true;  // true: the output may rise, because the controller has not stopped since its last
+                         // start
   const auto exchange = [&]() -> std::string {
     board.look();
     const int trips = board.trips;

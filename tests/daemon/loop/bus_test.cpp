@@ -84,7 +84,7 @@ TEST_F(BusTest, ASilentLoopMeansSafeOutputsUntilATickThatKnowsCommandsNoMoreThan
                          // changed
   step();
   EXPECT_EQ(last_written(), 3);
-  command(4, 3, false);  // the loop has ended its motion for another reason
+  command(4, 3, false);  // the loop has ended its motion, but not because the outputs have changed
   step();
   EXPECT_EQ(last_written(), 3);
   command(4, 3, false,
@@ -555,8 +555,8 @@ TEST_F(BusTest, OutputsFoundFurtherFromRestOrNotAtAllDoNotRaiseTheCommands) {
   }
 }
 
-// A gateway that repeats an old reading causes the same values. The daemon must then continue to hold the
-// part.
+// The driver reads the same values if a gateway repeats an old reading. In this case, the daemon must
+// continue to hold the part.
 TEST_F(BusTest, AHoldIsNotDroppedForOutputsFoundNearerToRest) {
   command(12, 12, true);
   step();

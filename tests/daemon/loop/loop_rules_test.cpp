@@ -139,7 +139,7 @@ TEST(LoopRules, TheHookSeesAnAllocation) {
   if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers have their own allocator";
   allocations.store(0);
   armed = true;
-  // Use a volatile pointer, so that the compiler does not remove the calls of malloc() and free().
+  // The volatile pointer prevents that the compiler removes the calls of malloc() and free().
   void* volatile memory = std::malloc(16);
   std::free(memory);
   armed = false;

@@ -110,7 +110,8 @@ TEST(TripInput, AnEdgeWithoutItsPartnerIsSuspect) {
 }
 
 /// Checks two guarantees of the header with random contacts. A disturbance that is shorter than the debounce
-/// time, with a quiet contact after it, never trips. If the contact does not become quiet, it trips in time.
+/// time, with a quiet contact after it, never trips the input. If the contact does not become quiet, the
+/// input trips in time.
 TEST(TripInput, KeepsItsBoundsOnRandomContacts) {
   constexpr std::uint64_t seed = 20261120;
   std::mt19937_64 random(seed);
