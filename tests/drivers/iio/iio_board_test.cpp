@@ -1,5 +1,5 @@
-// Tests the board of the computer's own converters. Plain files, with the paths that sysfs uses, simulate the
-// converters.
+// Tests the board that consists of analog converters of the computer. Plain files, with the paths that sysfs
+// uses, simulate the converters.
 
 #include "drivers/iio/iio_board.h"
 
@@ -309,7 +309,8 @@ TEST_F(IioBoardTest, OneChannelUnderTwoWordsIsRefused) {
   EXPECT_NE(refusal().find("both are "), std::string::npos) << refusal();
 }
 
-/// Tests with converters on a bus. They disappear and return with another device number of the kernel.
+/// Tests with converters on a bus. The converters disappear and return with another device number of the
+/// kernel.
 class IioBusTest : public IioBoardTest {
  protected:
   IioBusTest() {

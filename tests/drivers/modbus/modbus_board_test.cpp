@@ -308,9 +308,9 @@ TEST_F(ModbusBoardTest, SaysHowManyClientsTheBoardCounts) {
   EXPECT_FALSE(board_->fed_by_readers());
 }
 
-/// Tests a board whose watchdog trip remains until it is cleared. Coil 32 is set after a trip; writing 1 to
-/// coil 33 clears it. During a trip the board confirms writes, but its outputs (holding registers 10 and 11)
-/// remain 0.
+/// Tests a board whose watchdog trip remains until a client clears it. Coil 32 is set after a trip; writing 1
+/// to coil 33 clears the trip. During a trip the board confirms writes, but its outputs (holding registers 10
+/// and 11) remain 0.
 class WatchdogTest : public ModbusBoardTest {
  protected:
   WatchdogTest() {

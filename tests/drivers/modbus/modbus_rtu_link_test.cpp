@@ -75,7 +75,7 @@ struct Outcome {
 };
 
 /// Sends one request, to which `misbehave` responds, and then opens a session with a correct module. Returns
-/// the outcome of both.
+/// the outcome of the request.
 Outcome ask_once(const std::function<void(ScriptedLine&, const Bytes&)>& misbehave,
                  SerialLine settings = line_at("")) {
   ScriptedLine line([&](ScriptedLine& self, const Bytes& request, std::size_t index) {
@@ -150,7 +150,8 @@ TEST(ModbusRtuLink, ALateReplyIsNeverTakenForALaterAnswer) {
                  [](ScriptedLine& line, const Bytes& request) {
                    line.wait(110ms);
                    Bytes late = good_reply(request);
-                   late[4] = 9;  // so that the data differ from the correct data of the next response
+                   late[4] = 9;  // change the data, so that they differ from the correct data of the next
+                                 // response
                    late.resize(late.size() - 2);
                    line.send(checked(late));
                  },
@@ -254,7 +255,9 @@ TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondAnswerIsNotBelieved) {
   for (const bool lost : {true, false}) {
     ScriptedLine line([lost](ScriptedLine& self, const Bytes& request, std::size_t index) {
       if (index == 0 && lost) return;
-      if (index == 0) self.wait(130ms);  // this response is late, and later requests are answered as well
+      if (index == 0)
+        self.wait(130ms);  // this response is late; the module also responds to all later
+                           // requests
       const std::size_t one = 8;
       for (std::size_t at = 0; at + one <= request.size(); at += one) {
         const auto first = request.begin() + static_cast<std::ptrdiff_t>(at);

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 const std::string by_id = "/dev/serial/by-id/usb-1a86_USB_Serial-if00-port0";
 
-/// Tests with copies of the folders /dev and /run, which contain what udev creates.
+/// Tests with a folder that contains /dev and /run with the links that udev creates.
 class SerialDevice : public testing::Test {
  protected:
   void plug(const std::string& node, const std::string& number, const std::string& port,
