@@ -41,7 +41,7 @@ const sysid::Waveform first_load{
     "first", "", {{0, 0}, {1, 0}, {4, 30}, {7, 0}, {9, 0}, {13, 55}, {17, 0}, {20, 0}}};
 
 /// Returns the response of the finger to the waveform. With `after_first`, the first load and a long rest
-/// precede it, because the finger retains the softening.
+/// precede the waveform, because the finger retains the softening by this load.
 sysid::Log played(const sysid::Waveform& waveform, bool after_first, std::uint64_t seed) {
   sysid::Log log;
   log.name = log.path = waveform.name;

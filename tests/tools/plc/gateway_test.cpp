@@ -113,7 +113,7 @@ TEST_F(GatewayTest, RefusesEachCommandOnceWithoutADaemon) {
   EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::no_such_command));
 }
 
-/// The test passes unless the fuzz target aborts, which it does if a checked property does not hold.
+/// If a checked property does not hold, the fuzz target aborts and the test fails.
 TEST(PlcRequests, TheSeedsOfTheFuzzTargetAreAnsweredWholeAndCutOff) {
   std::size_t seeds = 0;
   for (const auto& entry :
@@ -159,7 +159,8 @@ TEST_F(GatewayTest, ACommandThatWasRefusedOnOneConnectionIsNotExecutedOnAnother)
   daemon_comes();
   const Masters::Id second = come();
   put(plc_, 0, CommandCode::none);
-  put(second, 1, CommandCode::start);  // refused, because this connection has not written the newest counter
+  put(second, 1, CommandCode::start);  // the start is refused, because this connection has not written the
+                                       // newest counter
   EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
   put(plc_, 1, CommandCode::start);
   EXPECT_TRUE(sent().empty());

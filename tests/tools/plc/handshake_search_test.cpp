@@ -126,7 +126,7 @@ struct World {
   std::deque<Line> lines;
   std::deque<Json> answers;
   // Data that the world records for its checks.
-  int halts = 0;  // number of vents of masters and of stops because of a silent master that were executed
+  int halts = 0;  // number of executed stops and vents, including stops because of a silent master
   std::optional<Frame> waiting;
   bool watched = false;
   bool owed = false;  // a master has become silent, and no daemon has executed a stop since

@@ -58,7 +58,7 @@ TEST(Handshake, OnlyTheNextCounterIsExecuted) {
   for (const int wrong : {0, 1, 4, 5, 40000, 65535}) {
     EXPECT_FALSE(handshake.write(plc, {static_cast<std::uint16_t>(wrong), start})) << wrong;
     EXPECT_TRUE(plc.refused) << wrong;
-    // A wrong counter must be refused without a command as well.
+    // A wrong counter must also be refused if the block contains no command.
     EXPECT_FALSE(handshake.write(plc, {static_cast<std::uint16_t>(wrong), none})) << wrong;
     EXPECT_TRUE(plc.refused) << wrong;
   }
@@ -101,8 +101,8 @@ TEST(Handshake, OfTwoMastersThatCountToTheSameNumberTheSecondIsRefused) {
   EXPECT_FALSE(handshake.write(first, {0, none}));
   EXPECT_FALSE(handshake.write(second, {0, none}));
   EXPECT_TRUE(handshake.write(first, {1, start}));
-  EXPECT_FALSE(handshake.write(second, {1, vent}));  // refused, so that this connection cannot read that its
-                                                     // vent was accepted
+  EXPECT_FALSE(handshake.write(second, {1, vent}));  // the vent is refused, so that this connection cannot
+                                                     // read that it was accepted
   EXPECT_TRUE(second.refused);
   handshake.finish(1, Outcome::accepted);
   EXPECT_FALSE(handshake.write(second, {1, vent}));
@@ -139,8 +139,8 @@ TEST(Handshake, OnlyStopAndVentOvertake) {
   EXPECT_TRUE(plc.refused);
   EXPECT_TRUE(handshake.write(plc, {3, vent}));
   EXPECT_FALSE(handshake.waits());
-  handshake.finish(1, Outcome::accepted);  // not reported, because a later command has superseded this
-                                           // command
+  handshake.finish(1, Outcome::accepted);  // this end is not reported, because a later command has superseded
+                                           // the command
   EXPECT_EQ(handshake.outcome(), Outcome::executing);
   handshake.finish(3, Outcome::accepted);
   EXPECT_EQ(handshake.done_counter(), 3);

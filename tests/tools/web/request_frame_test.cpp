@@ -70,7 +70,7 @@ TEST(RequestFrame, HeadsHaveABound) {
       << "refused at once, before the end of the header";
 }
 
-/// The test passes unless the fuzz target aborts, which it does if a checked property does not hold.
+/// If a checked property does not hold, the fuzz target aborts and the test fails.
 TEST(RequestFrame, TheSeedsOfTheFuzzTargetAreServedWholeAndCutOff) {
   std::size_t seeds = 0;
   for (const auto& entry :

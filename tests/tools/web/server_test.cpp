@@ -59,7 +59,7 @@ class ServerTest : public ::testing::Test {
 
   Descriptor connect() const {
     Descriptor socket{::socket(AF_INET, SOCK_STREAM, 0)};
-    // A small receive buffer of the client keeps most of the response in the server.
+    // A small receive buffer of the client, so that most of the response remains in the server.
     const int small = 4096;
     ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &small, sizeof small);
     sockaddr_in address{};
