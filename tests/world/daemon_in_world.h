@@ -53,9 +53,10 @@ struct Life {
   std::string record_folder;  ///< folder of all recordings, in place of the folder of the rig file; empty:
                               ///< not set
   std::shared_ptr<const daemon::LoadedSequence>
-      sequence;  ///< the only sequence of a run that ends with it, as in `softgrip run`; null: a service
-  std::shared_ptr<const daemon::SequenceLoader> loader;  ///< loads the sequences of clients; if it is set,
-                                                         ///< the daemon has a socket
+      sequence;  ///< sequence of a run that ends with this sequence, as in `softgrip run`; null: the daemon
+                 ///< runs as a service
+  std::shared_ptr<const daemon::SequenceLoader> loader;  ///< loads the sequences of clients; null: the daemon
+                                                         ///< has no socket
 };
 
 class DaemonInWorld {

@@ -96,7 +96,7 @@ class WorldBoard final : public drivers::Board {
     std::function<void()> on_exchange;  ///< function that is called when an exchange begins
     std::function<void()> on_hindered;  ///< called when a peculiarity of the board has made an exchange fail
     /// Called when the daemon has read the outputs. `foreign_writes` is the number of writes that another
-    /// client has made before.
+    /// client has made before this reading.
     std::function<void(std::uint64_t foreign_writes)> on_read;
   };
   WorldBoard(Hardware& hardware, Habits habits, Line& line, Scheduler& scheduler, Callbacks callbacks);

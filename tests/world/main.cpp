@@ -32,7 +32,7 @@ struct Options {
   bool habits = false;
 };
 
-/// Number of worlds from which on every kind of incident must have occurred.
+/// Smallest number of simulated worlds in which every kind of incident must occur at least once.
 constexpr std::uint64_t enough_worlds = 10;
 
 struct Sum {

@@ -6,7 +6,8 @@
 namespace softgrip::world {
 namespace {
 
-/// Time without the end of its command after which a master synchronises its counter again.
+/// Longest time for which a master waits for the end of a command. After this time, it synchronises its
+/// counter again.
 constexpr Nanoseconds master_patience = 3 * ns_per_s;
 constexpr std::size_t most_wanted = 3;
 constexpr auto vent_command = static_cast<std::uint16_t>(plc::CommandCode::vent);

@@ -303,7 +303,8 @@ void Monitor::foreign_wrote(std::span<const double> outputs_kpa) noexcept {
 
 void Monitor::watch_foreign(Nanoseconds now, const Excuse& excuse, Nanoseconds duration) {
   if (!foreign_unseen_ || excuse.paused || excuse.line_but_for_foreign) return;
-  // A daemon that is faulted or starting writes the rest pressures, so it need not report the other client.
+  // A daemon that is faulted or starting writes the rest pressures. It need not report the writes of another
+  // client.
   const bool answered = state_ == State::faulted || state_ == State::starting;
   foreign_unseen_ = answered ? 0 : *foreign_unseen_ + duration;
   if (*foreign_unseen_ > foreign_bound)

@@ -27,8 +27,8 @@ struct Excuse {
   bool paused = false;   ///< true: a thread or the whole daemon process is paused
   bool no_line = false;  ///< the line or the board prevents exchanges, or has done so and no exchange has
                          ///< succeeded since
-  bool line_but_for_foreign = false;  ///< like no_line, but without the disturbances by writes of another
-                                      ///< client
+  bool line_but_for_foreign = false;  ///< like no_line, but disturbances by writes of another client are not
+                                      ///< included
   bool no_daemon = false;
 };
 
@@ -54,13 +54,13 @@ class Monitor {
   }
   /// States whether a program without a control loop may move pressures away from rest.
   void may_rise(bool allowed) noexcept { armed_ = allowed; }
-  /// Called when another client has written these outputs. Until the daemon has read them, it may move them
-  /// within the slew limits up to its own last command. After it has read them, it may do so only if its safe
-  /// action is to hold.
+  /// Called when another client has written these outputs. Before the daemon has read them, it may move the
+  /// outputs within the slew limits, up to its own last command. After the reading, it may do so only if its
+  /// safe action is to hold.
   void foreign_wrote(std::span<const double> outputs_kpa) noexcept;
   void foreign_ended() noexcept { foreign_unseen_.reset(); }
   /// Called when the daemon has read the outputs. `foreign_writes` is the number of writes that another
-  /// client has made before.
+  /// client has made before this reading.
   void outputs_read(std::uint64_t foreign_writes) noexcept { foreign_read_ = foreign_writes; }
   /// Called when the board's watchdog has vented. `has_spoken` is true if the daemon has had a successful
   /// exchange, so that it can know of the trip.

@@ -6,7 +6,7 @@
 
 namespace softgrip::world {
 
-/// Runs one such world. `options.tool` must be Tool::calibrate or Tool::doctor.
+/// Runs one simulated world without a daemon. `options.tool` must be Tool::calibrate or Tool::doctor.
 [[nodiscard]] WorldResult run_motion_world(const Library& library, std::uint64_t seed,
                                            const WorldOptions& options);
 

@@ -134,7 +134,8 @@ class World final : public Host {
     daemon_->on_submit = [this](Request::Kind kind, std::uint32_t id) { monitor_.submitted(kind, id); };
     if (guest_) guest_->boots(*daemon_);
     recorded_.clear();
-    ticked_ = 0;  // a daemon that died at its first tick must not hide the first tick of this daemon
+    ticked_ = 0;  // reset, because a daemon that died at its first tick must not hide the first tick of the
+                  // next daemon
   }
 
  private:
