@@ -87,7 +87,7 @@ inline std::vector<Json> damaged(const Json& line) {
   const Json flat = line.flatten();
   std::vector<std::string> places;
   for (const auto& [leaf, value] : flat.items()) {
-    // Add each path from the root of the JSON value to this leaf once.
+    // Add the path of each value on the way from the root of the line to the present leaf, each path once.
     for (std::size_t end = 0; end != std::string::npos;) {
       end = leaf.find('/', end + 1);
       const std::string place = leaf.substr(0, end);

@@ -200,9 +200,9 @@ double Monitor::known_kpa(std::size_t channel, double output_kpa) const {
   return foreign_left_[channel] && (unread || holds) ? last_kpa_[channel] : output_kpa;
 }
 
-/// Checks that the daemon writes the rest pressures after a gap in communication during which the board has
-/// vented or may have vented. Returns true if it wrote them after such a gap. The daemon reads its clock
-/// after it wakes up and before the exchange begins.
+/// Checks that the daemon writes the rest pressures after a gap in communication that is so long that the
+/// board may have vented. Returns true if the daemon wrote the rest pressures after such a gap. The daemon
+/// reads its clock after it wakes up and before the exchange begins.
 bool Monitor::watch_gap(Nanoseconds began, Nanoseconds now, std::span<const double> commands_kpa) {
   if (watchdog_ == 0 || last_began_ == 0 || woke_ == 0) return false;
   bool rested = true;

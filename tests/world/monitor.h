@@ -27,8 +27,8 @@ struct Excuse {
   bool paused = false;   ///< true: a thread or the whole daemon process is paused
   bool no_line = false;  ///< the line or the board prevents exchanges, or has done so and no exchange has
                          ///< succeeded since
-  bool line_but_for_foreign = false;  ///< like no_line, but disturbances by writes of another client are not
-                                      ///< included
+  bool line_but_for_foreign = false;  ///< the line or the board prevents exchanges as for no_line; writes of
+                                      ///< another client are not counted as a disturbance
   bool no_daemon = false;
 };
 

@@ -101,7 +101,7 @@ class WorldClock : public Clock {
     scheduler_.sleep_until_shown(due);
     slept_ = true;
   }
-  /// Returns the time that the thread read from the clock first after its last sleep.
+  /// Returns the time of the first reading of the clock after the thread's last sleep.
   [[nodiscard]] Nanoseconds woke() const noexcept { return woke_; }
 
  private:

@@ -64,19 +64,19 @@ struct Sight {
   bool pressure = false;  ///< true: the pressure monitor must give valid readings
 };
 
-/// Drives a board with the daemon's own bus (daemon/loop/bus.h) instead of the control loop. As in the
+/// Drives a board with the daemon's own bus (daemon/loop/bus.h) in place of the control loop. As in the
 /// daemon, a gap in communication that is as long as the board's watchdog time means that the board has
 /// vented. The bus then writes the rest pressures.
 ///
-/// - Outputs move away from rest only in ramp(). It starts from the last confirmed values and stays within
-/// the slew limits. A gap does not make the next step larger.
+/// - Outputs move away from rest only in ramp(). A ramp starts from the last confirmed values and stays
+/// within the slew limits. A gap does not make the next step larger.
 /// - The session ends if a gap reaches the watchdog time.
 /// - The session ends if the board reports a trip, rejects a write or was written by another client.
 /// - The session ends if the board does not respond for `bus_down_cycles`.
 /// - After its end, the session moves nothing, and every later call returns the same failure. Only leave()
-/// still writes, and only values that are not further from rest than the present outputs.
-/// - The session writes the rest pressures from the first exchange on. After destruction all channels are at
-///   rest, or leave() returned false.
+/// still writes. Its values are not further from rest than the present outputs.
+/// - The session writes the rest pressures from the first exchange on. After its destruction, all channels
+/// are at rest, or leave() has returned false.
 class MotionSession {
  public:
   template <class T>

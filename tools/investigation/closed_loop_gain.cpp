@@ -63,9 +63,9 @@ class Rigs {
   [[nodiscard]] double mean() const { return mean_mm_; }
   [[nodiscard]] double amplitude() const { return amplitude_mm_; }
 
-  /// Returns the result with a feedforward from this model. This is the inverse of the whole model, if it
-  /// exists. Otherwise, it is the better of a plan with the model and the inverse of the model's invertible
-  /// part. The error is infinite if neither exists.
+  /// Returns the result with a feedforward from this model. The feedforward is the inverse of the whole
+  /// model, if this inverse exists. Otherwise, it is the better of two: a plan with the model, or the inverse
+  /// of the model's invertible part. The error is infinite if neither exists.
   [[nodiscard]] ClosedLoopScheme with_model(const model::Model& believed) const {
     ClosedLoopScheme whole = measured(believed, FeedforwardKind::full_model);
     if (whole.refused.empty()) return whole;

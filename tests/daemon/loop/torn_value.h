@@ -14,8 +14,8 @@ namespace softgrip::daemon::testing {
 /// A value of several equal words. If the words of a copy differ, the copy was interrupted.
 class TornValue {
  public:
-  /// Function that is called once, in the middle of the next copy in this thread. It does what another thread
-  /// could do at the worst moment.
+  /// Function that is called once, in the middle of the next copy in this thread. A test gives it the actions
+  /// that another thread could take at the worst moment.
   static inline thread_local std::function<void()> halfway;
 
   TornValue() = default;

@@ -1,5 +1,5 @@
 #pragma once
-// Writes the text format of Prometheus, version 0.0.4.
+// Writes metrics in the text format of Prometheus, version 0.0.4.
 
 #include <string>
 #include <string_view>
