@@ -13,8 +13,8 @@ namespace {
 constexpr std::uint64_t added_noise = 1;
 
 /// Returns the sampling interval of a log with constant interval, or 0 for any other log.
-double sample_time_of(const sysid::Log& log) {
-  return log.size() < 2 ? 0 : sysid::sampling_of(log).sample_time_s();
+double sample_time_of(const Log& log) {
+  return log.size() < 2 ? 0 : sampling_of(log).sample_time_s();
 }
 
 model::Surroundings surroundings_at(const Log& log, std::size_t i) {

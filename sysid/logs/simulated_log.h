@@ -11,7 +11,7 @@
 namespace softgrip::sysid {
 
 /// Returns the samples of a test signal from 0 to its end. displacement_mm is empty.
-[[nodiscard]] sysid::Log sampled_signal(model::SignalName signal, double rate_hz);
+[[nodiscard]] Log sampled_signal(model::SignalName signal, double rate_hz);
 
 struct SimulationSettings {
   /// Standard deviation of white noise [mm]. It is added to the noise of the model's own sensor blocks.
@@ -26,6 +26,6 @@ struct SimulationSettings {
 /// false, the command is piecewise linear between samples. Before the first sample, the command rises once to
 /// its first value and is then held. If the log contains supply_kpa or temperature_c, they are inputs of the
 /// model. Equal inputs and settings give identical results.
-void simulate(const model::Model& model, const SimulationSettings& settings, sysid::Log& log);
+void simulate(const model::Model& model, const SimulationSettings& settings, Log& log);
 
 }  // namespace softgrip::sysid

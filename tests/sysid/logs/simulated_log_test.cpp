@@ -85,7 +85,7 @@ TEST(Simulate, UsesTheTimesOfAnIrregularLog) {
   Log regular = sampled_signal(model::SignalName::tp2, 1000);
   simulate(model, {}, regular);
   // Keep samples at increasing distances. The command remains linear between the kept samples.
-  sysid::Log irregular;
+  Log irregular;
   for (std::size_t i = 0; i < regular.size(); i += 1 + i % 3) {
     irregular.time_s.push_back(regular.time_s[i]);
     irregular.pressure_command_kpa.push_back(regular.pressure_command_kpa[i]);
