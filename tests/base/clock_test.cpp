@@ -52,7 +52,7 @@ TEST(MonotonicClock, GoesOnWhileTheMachineSleeps) {
     const Nanoseconds ahead = clock.now() - monotonic();
     if (ahead < day - ns_per_s || ahead > day + ns_per_s) return 1;
     if (time_asleep() != day) return 2;
-    alarm(10);  // With CLOCK_MONOTONIC the sleep would last a day.
+    alarm(10);  // With CLOCK_MONOTONIC, sleep_until() would sleep for a day.
     const Nanoseconds due = clock.now() + ns_per_s / 50;
     clock.sleep_until(due);
     return clock.now() >= due ? 0 : 3;

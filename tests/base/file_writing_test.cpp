@@ -11,7 +11,7 @@
 
 #include "base/files.h"
 
-// Tests that files are written completely or not at all.
+// Tests that a write to a file produces either the complete file or no file.
 namespace softgrip::file_writing_test {
 namespace {
 
@@ -85,7 +85,8 @@ TEST_F(FileWritingTest, ANewFileHasThePermissionsThatTheUmaskLeaves) {
   EXPECT_EQ(now.st_mode & 07777U, 0640U);
 }
 
-/// In a shared folder, another user could place a link to one of this user's files.
+/// In a shared folder, another user could create a symbolic link with the name of the result. The link could
+/// point to a file of this user.
 TEST_F(FileWritingTest, ALinkInThePlaceOfAResultIsReplacedAndNotFollowed) {
   const fs::path link = folder_ / "result.csv";
   fs::create_symlink("rig.yaml", link);

@@ -44,7 +44,8 @@ TEST_F(FilesTest, AFileThatGivesNoSizeIsReadToItsEndAndWithinTheBound) {
   EXPECT_FALSE(read_file("/proc/self/status", 100));
 }
 
-/// A pipe without a writer must be refused. If the function waited for a writer, this test would not end.
+/// A named pipe must be refused. If the function waited for a process that writes to the pipe, this test
+/// would not end.
 TEST_F(FilesTest, APipeIsRefusedWithoutWaiting) {
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
   const auto text = read_file(at("pipe"), 100);

@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Counts how many threads are inside visit() at the same time.
+/// Counts the largest number of threads that are inside visit() at the same time.
 class Crowd {
  public:
   void visit() {
@@ -79,12 +79,12 @@ TEST(ParallelFor, LoopsWithinALoopShareItsThreads) {
     });
   }
   EXPECT_EQ(leaves, 15);
-  // A thread that has waited for other threads continues before the thread that replaced it has ended, so
-  // three threads can run for a moment.
+  // While a thread waits in the inner loop, a third thread may take its place. The waiting thread continues
+  // before the third thread has ended, so three threads can run for a moment.
   EXPECT_LE(crowd.most(), 3);
 }
 
-/// Returns true if two items of a loop run at the same time.
+/// Returns true if two items of a parallel loop run at the same time.
 bool side_by_side() {
   std::atomic<int> inside{0};
   std::atomic<bool> met{false};
@@ -135,7 +135,7 @@ TEST(ParallelFor, PassesAnExceptionOnWhenAllIsDone) {
                  std::runtime_error);
     ASSERT_EQ(done, 7);
   }
-  // The thread that the loop used has been returned to the budget.
+  // The loop has returned its additional thread to the budget, so this thread can be taken.
   EXPECT_EQ(ThreadBudget::current()->take(5), 1U);
   ThreadBudget::current()->give_back(1);
 }
