@@ -24,7 +24,7 @@ def mm(i):
 
 
 def log_text(head, row, samples=SAMPLES):
-    """Returns the text of a log: `head`, and one line for each sample. row(i) returns the line of sample i."""
+    """Returns the text of a log. The first line is `head`; row(i) returns the line of sample i."""
     return "\n".join([head, *(row(i) for i in range(samples))]) + "\n"
 
 
@@ -40,7 +40,8 @@ class ForeignCase(unittest.TestCase):
         (self.data / name).write_bytes(text if isinstance(text, bytes) else text.encode())
 
     def put_plain(self, name="a.csv", **changed):
-        """Writes a log in the units of the contract; `changed` maps the numbers of lines to their replacements."""
+        """Writes a log in the units of the project. `changed` maps a line number (key line1, line2, ...) to the new
+        text of the line."""
         lines = log_text("t_s,u_kpa,y_mm", lambda i: f"{0.1 * i:.1f},{kpa(i):.4f},{mm(i):.4f}").splitlines()
         for number, line in changed.items():
             lines[int(number.removeprefix("line")) - 1] = line
@@ -55,18 +56,18 @@ class ForeignCase(unittest.TestCase):
         return log_table.read_table(self.table_path(text), self.data)
 
     def read(self, keys):
-        """Reads the first log of a table. `entry` contains the keys of the table entry as lines of YAML."""
+        """Returns the first log of a table. `keys` are the lines of YAML of its table entry."""
         entry = self.table("logs:\n- file: a.csv\n" + textwrap.indent(textwrap.dedent(keys), "  ")).logs[0]
         return log_reading.read_log(entry, self.data)
 
     def spoiled(self, keys):
-        """Returns the message about a log that cannot be used."""
+        """Asserts that the first log of the table cannot be used, and returns the message."""
         with self.assertRaises(log_reading.Spoiled) as caught:
             self.read(keys)
         return str(caught.exception).replace(f"{self.data}/", "").replace(f"{self.folder}/", "")
 
     def assert_log(self, log, samples=SAMPLES):
-        """Asserts that the log is the one that put_plain() writes."""
+        """Asserts that the log has the samples that put_plain() writes."""
         self.assertEqual(len(log.time_s), samples)
         for i in range(samples):
             self.assertAlmostEqual(log.time_s[i], 0.1 * i, 6)

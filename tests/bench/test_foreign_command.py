@@ -11,8 +11,8 @@ from foreign_case import ForeignCase
 if importlib.util.find_spec("scipy"):
     import foreign
 
-# This program records its call, writes a model, and answers from a file. It refuses the log whose name is in the file
-# `refuse`.
+# This program replaces softgrip. It records its arguments, writes a model, and prints an answer from a file.
+# It refuses the log whose name is in the file `refuse`.
 PROGRAM = """#!/usr/bin/python3
 import json, pathlib, sys
 folder, words = pathlib.Path("{folder}"), sys.argv[1:]
@@ -73,7 +73,7 @@ class Command(ForeignCase):
         (self.folder / "diagnose.json").write_text(json.dumps(diagnosis))
 
     def run_it(self, *options, table=TABLE):
-        """(exit code, printed text)"""
+        """Runs foreign.py and returns (exit code, printed text)."""
         (self.data / "foreign.yaml").write_text(table)
         (self.folder / "calls").write_text("")
         printed = io.StringIO()

@@ -1,4 +1,5 @@
-"""Tests bench/foreign/output_error.py on known linear systems, and the comparison of the methods."""
+"""Tests bench/foreign/output_error.py on linear systems with known parameters, and the comparison of the
+identification methods."""
 import importlib.util
 import json
 import math
@@ -23,8 +24,8 @@ def drive(seed):
 
 
 class Plant:
-    """A known system with an immediate gain of 0.1 mm/kPa, a lag of 0.5 s, and a mode of 1.5 Hz or creep of 8 s. The
-    system is integrated with 20 steps per sample."""
+    """A linear system with known parameters: an immediate gain of 0.1 mm/kPa, a lag of 0.5 s, and either a resonance
+    at 1.5 Hz or creep with a time constant of 8 s. The system is integrated with 20 steps per sample."""
 
     def __init__(self, resonance, start=(0.0, 0.0, 0.0)):
         self.resonance, self.state = resonance, list(start)

@@ -1,4 +1,5 @@
-"""Tests bench/foreign/insert_effects.py: effects inserted into the readings of real runs, and the table of the sets."""
+"""Tests bench/foreign/insert_effects.py, which adds simulated effects to the readings of real runs, and the results
+table of the data sets."""
 import unittest
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""Tests bench/foreign/scipy_bouc_wen.py on a log with a known answer; needs scipy."""
+"""Tests bench/foreign/scipy_bouc_wen.py on a log whose model is known. Needs scipy."""
 import importlib.util
 import json
 import math
@@ -12,7 +12,8 @@ SAMPLES = 600
 
 
 def relaxed(pressures, share):
-    """Applies a gain, and creep that approaches `share` kPa per kPa with a time constant of 2 s."""
+    """Returns the readings of a system with an offset of 3 mm, a gain of 0.2 mm/kPa, and creep. The creep pressure
+    approaches `share` times the pressure with a time constant of 2 s."""
     creep, readings = 0.0, []
     for p in pressures:
         creep += (share * p - creep) * 0.05 / 2

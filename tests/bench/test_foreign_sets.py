@@ -1,4 +1,4 @@
-"""Tests bench/foreign/set_table.py: data sets, and the messages about mistakes in their tables."""
+"""Tests bench/foreign/set_table.py: how it reads data sets, and its messages about mistakes in their tables."""
 import pathlib
 
 from foreign_case import BENCH, ForeignCase

@@ -1,4 +1,5 @@
-"""Tests bench/foreign/horch.py on simulated control loops, and the judgement of an answer on a labelled loop."""
+"""Tests bench/foreign/horch.py on simulated control loops, and the judgement of a diagnosis of a loop whose fault is
+known."""
 import importlib.util
 import math
 import random
@@ -15,8 +16,8 @@ SAMPLES, LAG_S = 1500, 8.0
 
 
 class Stem:
-    """A valve stem with stiction. The stem moves only if the command leaves a band around the stem position, and then
-    moves to the command."""
+    """A valve stem with stiction. If the command differs from the stem position by more than `band`, the stem jumps
+    to the command. Otherwise the stem does not move."""
 
     def __init__(self, band):
         self.band, self.at = band, 0.0
@@ -28,8 +29,8 @@ class Stem:
 
 
 def loop(seed, band=0.0, disturbance=0.0, gain=0.4, reset_s=6.0, noise=0.02):
-    """Returns (command, reading) of a proportional-integral controller on a first-order process, with 1 s per
-    sample."""
+    """Returns (command, reading) of a control loop: a proportional-integral controller on a first-order process with
+    a sample time of 1 s."""
     draw, stem = random.Random(seed), Stem(band)
     process, integral, commands, readings = 0.5, 0.0, [], []
     period_s = draw.uniform(35, 60)
@@ -59,8 +60,8 @@ class Phase(unittest.TestCase):
         self.assertNotIn("free", verdicts)
 
     def test_oscillating_disturbances_are_no_stiction(self):
-        # The integral part shifts the phase by less than 30 degrees, because its reset time is longer than the period /
-        # (2 pi).
+        # The reset time is longer than the period / (2 pi), so the integral part shifts the phase by less
+        # than 30 degrees.
         verdicts = [horch.verdict(*loop(seed, disturbance=0.5, reset_s=20))[0] for seed in range(20)]
         self.assertEqual(verdicts.count("sticks"), 0)
         self.assertGreaterEqual(verdicts.count("free"), 18)
