@@ -18,7 +18,8 @@ std::vector<std::string> shipped() {
   std::vector<std::string> paths;
   const std::filesystem::path config = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "config";
   for (const auto& entry : std::filesystem::recursive_directory_iterator(config)) {
-    // The sequence in config/vacuum needs a vacuum, which the other rigs refuse.
+    // The sequence in config/vacuum needs a vacuum. The other rigs have no vacuum, so they refuse this
+    // sequence.
     const bool vacuum = entry.path().string().find("/config/vacuum/") != std::string::npos;
     if (!vacuum && entry.path().extension() == ".yaml") paths.push_back(entry.path().string());
   }
@@ -54,7 +55,7 @@ TEST(Examples, OfEveryKindAreThere) {
   }
 }
 
-/// Collects all keys below a node, except the channel names that the author of the file chose.
+/// Collects all keys below a node, except the channel names that the author of the file has chosen.
 void collect_keys(const document::Node& node, std::set<std::string>& keys) {
   for (const document::Node::Entry& entry : node.entries) {
     if (entry.key != "left" && entry.key != "right") keys.insert(entry.key);
@@ -107,14 +108,14 @@ TEST(Check, AFolderIsAllThatIsInItAndEachFileOnce) {
   EXPECT_FALSE(report.has_rig);
 }
 
-/// A folder that contains the given files and is removed after the test.
+/// A temporary folder with the given files. The destructor removes the folder.
 class CheckFolder : public ::testing::Test {
  protected:
   CheckFolder() { std::filesystem::create_directories(folder_ / "sub/.hidden"); }
   ~CheckFolder() override { std::filesystem::remove_all(folder_); }
   void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
   using Changes = std::vector<std::pair<std::string, std::string>>;
-  /// Writes the shipped simulated rig after replacing the given texts.
+  /// Writes a copy of the shipped simulated rig in which the given texts are replaced.
   void write_rig(Changes changes) {
     std::ostringstream read;
     read << std::ifstream(config_ / "rig.yaml").rdbuf();

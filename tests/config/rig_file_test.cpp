@@ -1,4 +1,5 @@
-// Reads the shipped rig files and compares the values. If a key is missing or wrong, there must be an error.
+// Reads the shipped rig files and compares the values with the expected ones. Tests that a missing or wrong
+// key causes an error.
 
 #include "rig/rig_file.h"
 
@@ -139,7 +140,8 @@ TEST(RigFile, AVacuumIsSimulatedWithinTheValvesRange) {
       << simulated.detail();
 }
 
-/// Reads the text of a shipped rig after the given replacements, as if the result were in the original file.
+/// Replaces the given texts in a shipped rig file and reads the result. Relative paths refer to the folder of
+/// the shipped file.
 rig::RigReading edited(const std::string& name, const std::vector<std::pair<std::string, std::string>>& edits,
                        Problems& problems) {
   Problems parsing;
@@ -303,8 +305,8 @@ TEST(RestPressure, OfTheBoardsWatchdogIsThatOfTheChannel) {
       << "the difference is within 1 % of the range: " << problems.format();
 }
 
-// The limits apply only to the daemon. The board can write a pressure beyond these limits, up to the range of
-// the valve.
+// The limits of the channel apply to the daemon only. The board itself can set a pressure beyond these
+// limits, up to the range of the valve.
 TEST(RestPressure, OfTheBoardsWatchdogIsNotBeyondTheLimits) {
   using Edits = std::vector<std::pair<std::string, std::string>>;
   const auto with = [](Edits edits, const Edits& more) {
@@ -314,7 +316,8 @@ TEST(RestPressure, OfTheBoardsWatchdogIsNotBeyondTheLimits) {
   const Edits vacuum{{"pressure_min_kpa: -40", "pressure_min_kpa: -80"},
                      {"pressure_max_kpa: 60", "pressure_max_kpa: -10"},
                      {"  rest_kpa: 0 ", "  rest_kpa: -10 "}};
-  const Edits inflates{{"valve: {at_v: [0, 10]", "valve: {at_v: [0, 5]"}};  // 5 V are 100 kPa
+  const Edits inflates{{"valve: {at_v: [0, 10]", "valve: {at_v: [0, 5]"}};  // the valve reaches 100 kPa at 5
+                                                                            // V
   const Edits no_pressure{{"range_kpa: [-100, 100]", "range_kpa: [-100, 0]"}};
   for (const Edits& edits : {with(vacuum, inflates), with({{"rest_kpa: 0", "rest_kpa: 60"}}, inflates)}) {
     Problems problems;
@@ -409,15 +412,15 @@ void for_each_entry(Node& node, const std::string& path, const Use& use) {
   for (Node& item : node.items) for_each_entry(item, path + "-.", use);
 }
 
-/// Returns the problems for which a document is refused, or nullopt if it is accepted.
+/// Returns the problems of a document that is refused, or nullopt if the document is accepted.
 std::optional<std::string> refusal(const Document& document) {
   Problems problems;
   if (rig::read_rig(document, problems)) return std::nullopt;
   return problems.format();
 }
 
-/// Returns true if the text names the key. If channels share the entry, the text may name a key below the
-/// entry instead.
+/// Returns true if the text of a problem names the key. If channels share the entry, the text may name a key
+/// below the entry instead.
 bool is_named(const Node::Entry& entry, const std::string& text) {
   return text.find("`" + entry.key + "`") != std::string::npos ||
          std::any_of(entry.value.entries.begin(), entry.value.entries.end(),
@@ -460,7 +463,7 @@ TEST_P(EveryKey, IsRefusedWhenItsValueIsNonsense) {
     nonsense.kind = Node::Kind::scalar;
     nonsense.at = taken.at;
     nonsense.scalar = "non sense/..";
-    // For these keys every text is valid, so an empty text is used.
+    // These keys accept every text, so the test uses an empty text for them.
     const std::set<std::string> free{"recorder.directory", "socket.path", "socket.sequence_directory"};
     if (free.contains(path)) nonsense.scalar.clear();
     owner.entries[index].value = nonsense;
