@@ -7,7 +7,7 @@
 namespace softgrip::document::brackets_test {
 namespace {
 
-/// Returns the brackets that are still open at the end of a text with their line and column, for example
+/// Returns the brackets that are not closed at the end of a text, each with line and column. An example is
 /// "[1:5 {2:3".
 std::string open_at_end(const std::string& text) {
   std::string out;

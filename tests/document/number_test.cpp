@@ -1,5 +1,5 @@
-// Tests the conversion of texts to numbers. It must be exact and independent of the locale, and must give a
-// hint if a text is not a number.
+// Tests the conversion of texts to numbers. The conversion must be exact and independent of the locale. If a
+// text is not a number, the message must give a hint.
 
 #include "document/number.h"
 #include "base/numbers.h"

@@ -61,7 +61,7 @@ TEST(Parse, AnEmptyValueStandsWhereItIsMissing) {
   const Document document = parse("a.yaml", "a:\n\n# comment below\nb: 1\nc:\n  -\n  - 2\n", problems);
   EXPECT_TRUE(problems.empty()) << problems.format();
   EXPECT_EQ(value_of(document.root, "a").at.line,
-            3);  // line 3 instead of 1, because the comment hides the position of the colon
+            3);  // line 3, because the parser cannot see the colon in line 1 behind the comment
   EXPECT_EQ(value_of(document.root, "c").items[0].at, (Location{6, 3}));
 }
 
@@ -109,8 +109,10 @@ TEST(Parse, BytesMustBeUtf8AndPrintable) {
             (Lines{"1:4: the byte \\xff is not UTF-8 (and 1 more such bytes)"}));
   EXPECT_EQ(problems_of("a: \xc0\x80\n"),
             (Lines{"1:4: the byte \\xc0 is not UTF-8 (and 1 more such bytes)"}));
-  EXPECT_EQ(problems_of("a: \xed\xa0\x80\n").size(), 1U);      // a surrogate
-  EXPECT_EQ(problems_of("a: \xf4\x90\x80\x80\n").size(), 1U);  // beyond U+10FFFF
+  EXPECT_EQ(problems_of("a: \xed\xa0\x80\n").size(), 1U);      // an encoded surrogate, which UTF-8 does not
+                                                               // allow
+  EXPECT_EQ(problems_of("a: \xf4\x90\x80\x80\n").size(), 1U);  // a code above U+10FFFF, which Unicode does
+                                                               // not define
   EXPECT_EQ(problems_of("a: \xc3"), (Lines{"1:4: the byte \\xc3 is not UTF-8"}));
   EXPECT_EQ(problems_of(std::string("a: \0b\n", 6)),
             (Lines{"1:4: the text contains the control character \\x00"}));
@@ -147,8 +149,8 @@ TEST(Parse, SyntaxErrorsSayWhatWasOpen) {
 }
 
 TEST(Parse, AnOpenQuoteDoesNotSwallowTheRestOfTheFile) {
-  // The YAML parser itself accepts a quoted text that is not closed before the end of the file if the file
-  // ends with a line break.
+  // The YAML parser accepts a quoted text without a closing quote if the file ends with a line break. The
+  // check of the project must refuse this text.
   for (const char* const text : {"a: 'open\n", "a: \"open\nb: 2\n\n", "a: \"open \\\"\n", "a: 'it''s\n"}) {
     EXPECT_EQ(problems_of(text), (Lines{"1:4: a quote is opened here but never closed"})) << text;
   }
@@ -184,7 +186,7 @@ TEST(Parse, BoundsAreExact) {
 void parse_on_small_stack(const std::string& text) {
   pthread_attr_t attributes;
   ASSERT_EQ(pthread_attr_init(&attributes), 0);
-  // 512 KiB, because sanitizers enlarge the stack frames and need stack for their own threads.
+  // The size is 512 KiB, because sanitizers enlarge the stack frames and use the stack for their own data.
   ASSERT_EQ(pthread_attr_setstacksize(&attributes, 512 * 1024), 0);
   pthread_t thread{};
   auto run = [](void* argument) -> void* {

@@ -1,4 +1,4 @@
-// Tests how a problem is formatted for the user.
+// Tests the message that the user sees for a problem.
 
 #include "document/problem.h"
 
@@ -72,7 +72,7 @@ TEST(Problems, RepetitionsGo) {
   EXPECT_EQ(problems.without_repeats().size(), 2U);
 }
 
-/// Returns the quoted line and the line with the caret of a formatted problem.
+/// Returns two lines of the message for a problem: the quoted line of the file and the line with the caret.
 std::pair<std::string, std::string> shown_line(const Problem& problem) {
   Problems problems;
   problems.add(problem);
@@ -86,7 +86,7 @@ TEST(Problems, TheCaretStandsUnderTheCharacterWhateverItsBytes) {
   const auto [line, caret] = shown_line(problem_at(1, 10, "größe: 1"));
   EXPECT_EQ(line, "    größe: 1");
   EXPECT_EQ(caret,
-            "           ^");  // the column is a number of bytes; the 7 characters before it have 9 bytes
+            "           ^");  // column 10 is counted in bytes; the 7 characters before the colon have 9 bytes
   const auto [tabbed, below] = shown_line(problem_at(1, 3, "\ta: \x1b[1m"));
   EXPECT_EQ(tabbed, "    \\ta: \\x1b[1m");
   EXPECT_EQ(below, "       ^");
@@ -125,7 +125,7 @@ TEST(Shown, ControlCharactersAreVisible) {
 TEST(Nearest, FindsSlipsOfTheFingerOnly) {
   const std::vector<std::string> keys{"pressure_min_kpa", "pressure_max_kpa", "name", "rate_hz"};
   EXPECT_EQ(nearest("presure_max_kpa", keys), "pressure_max_kpa");
-  EXPECT_EQ(nearest("nmae", keys), "");  // 2 changes in 4 letters are too many
+  EXPECT_EQ(nearest("nmae", keys), "");  // two of four letters are wrong, so no key is suggested
   EXPECT_EQ(nearest("nam", keys), "name");
   EXPECT_EQ(nearest("rate_hertz", keys), "rate_hz");
   EXPECT_EQ(nearest("temperature", keys), "");

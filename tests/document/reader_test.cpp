@@ -1,4 +1,5 @@
-// Tests every getter with every kind of mistake. All mistakes of a document must be reported in one pass.
+// Tests every getter of MapReader with every type of mistake. One pass must report all mistakes of a
+// document.
 
 #include "document/reader.h"
 
@@ -13,8 +14,7 @@ namespace {
 
 using Use = std::function<void(MapReader&)>;
 
-/// Returns the problems that `use` reports when it reads `text`, as "line:column: message
-/// hint".
+/// Reads `text` with `use` and returns the problems, each as "line:column: message hint".
 Lines reported(const std::string& text, const Use& use) {
   Problems problems;
   const Document document = parse("test.yaml", text, problems);
@@ -197,7 +197,7 @@ TEST(Reader, ADocumentCutShortLacksNothing) {
 }
 
 TEST(Reader, AWordThatTheSyntaxErrorAddedToTheLastValueIsNotJudged) {
-  // The YAML parser takes "1 name", the text up to the second colon, as the value of `delay_s`.
+  // For the YAML parser, the value of `delay_s` is "1 name", because it ends at the second colon.
   EXPECT_EQ(reported("delay_s: 1\n  name: x\n", use_delay).size(), 1U);
 }
 

@@ -31,7 +31,7 @@ void check(const Node& node, int depth, std::size_t& nodes) {
   }
 }
 
-/// Reads some known keys of each map, so that all kinds of hints occur.
+/// Reads a number of keys of each map, so that every type of hint occurs.
 void read(const Document& document, const Node& node, Problems& problems) {
   {
     MapReader reader(document, node, problems, "the map");
