@@ -29,7 +29,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Logs of the model bench_twin and of a variant with another gain, written by `softgrip simulate`.
+/// Logs of the model bench_twin and of a model with a different gain. `softgrip simulate` writes them.
 class LibraryAndCommand : public testing::Test {
  protected:
   LibraryAndCommand() {
@@ -54,7 +54,7 @@ class LibraryAndCommand : public testing::Test {
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text_of(path("errors"));
     return text_of(output);
   }
-  /// Returns the JSON without the given keys, whose values differ from call to call.
+  /// Returns the JSON after removing the keys `without`, because their values differ from call to call.
   static Json plain(const std::string& text, std::initializer_list<const char*> without) {
     Json json = Json::parse(text);
     for (const char* key : without) json.erase(key);
@@ -153,8 +153,8 @@ TEST_F(LibraryAndCommand, DiagnoseAChange) {
   EXPECT_NE(found.verdict, "unchanged");
 }
 
-/// Requests a stop of the work after the time `after`. Returns the time [s] from this request to the
-/// exception. If the work ends without an exception, the test fails.
+/// Starts `work` and requests its stop after the time `after`. Returns the time [s] from the request to the
+/// exception. If `work` ends without an exception, the test fails.
 template <class Work>
 double time_to_stop_s(std::chrono::milliseconds after, Work work) {
   std::stop_source stop;

@@ -1,11 +1,11 @@
-# Sourced: runs the programs of examples/cpp and compares their output.
+# Functions to source: they run the programs of examples/cpp and compare the output of these programs.
 source=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")
 model=$source/config/models/bench_twin.yaml
 daemon=
 end_daemon() { [ -z "$daemon" ] || kill "$daemon" 2>/dev/null || true; }
 
 fail() { echo "$(basename "$0"): $*" >&2; exit 1; }
-# says TEXT COMMAND...  runs the command; its output must contain the text
+# says TEXT COMMAND...  runs the command and fails if its output does not contain TEXT
 says() {
   local text=$1
   shift
@@ -13,8 +13,8 @@ says() {
   grep -qF -- "$text" output.txt || { cat output.txt >&2; fail "'$text' is not in the output of: $*"; }
 }
 
-# run_examples FOLDER SOFTGRIP SOFTGRIPD  runs each example of the folder with logs of softgrip and a rig of softgripd.
-# On exit, call end_daemon.
+# run_examples FOLDER SOFTGRIP SOFTGRIPD  runs each example in FOLDER. SOFTGRIP writes the logs and SOFTGRIPD
+# runs the rig for the examples. On exit, the caller calls end_daemon.
 run_examples() {
   local examples=$1 softgrip=$2 softgripd=$3
   says "19.99," "$examples/simulate_finger" "$model"
@@ -25,7 +25,7 @@ run_examples() {
 
   "$softgrip" simulate --model "$model" --input tp1 --rate-hz 20 --noise-mm 0.05 --out one.csv >/dev/null
   "$softgrip" simulate --model "$model" --input tp2 --rate-hz 20 --noise-mm 0.05 --seed 2 --out other.csv >/dev/null
-  # A file of another program: other column names, bar, semicolons.
+  # A log file of another program, with other column names, the unit bar, and semicolons between the columns.
   awk -F, 'BEGIN {print "Time [s];Pressure setpoint [bar];Displacement [mm]"}
     NR > 1 {printf "%s;%.8f;%s\n", $1, $2 / 100, $3}' one.csv >external.csv
   says "transport_delay" "$examples/diagnose_csv" external.csv report.html
@@ -37,7 +37,7 @@ run_examples() {
   says "too few grips" "$examples/nightly_health" recordings/one.csv baseline night
   grep -q "<html" night/health-.html && [ -s night/health-scores.jsonl ] || fail "no page or no scores of the health"
 
-  # A daemon whose board is simulated in its process.
+  # A daemon that simulates its board.
   sed -e "s#/tmp/softgrip.sock#$PWD/socket#; s#/tmp/softgrip-runs#$PWD/runs#; s#models/bench_twin.yaml#$model#" \
     -e "s#sequence_directory: sequences#sequence_directory: $source/config/sequences#" "$source/config/rig.yaml" >rig.yaml
   "$softgripd" --config rig.yaml >daemon.log 2>&1 &

@@ -21,7 +21,7 @@ struct Course {
   std::vector<double> value;
 };
 
-/// Returns a periodic signal that begins at `low`, rises to `high` and returns.
+/// Returns a sine signal that begins at `low`, rises to `high` and returns to `low`.
 [[nodiscard]] inline Course sine(double low, double high, double frequency_hz, std::size_t samples,
                                  double step_s) {
   Course course;

@@ -17,7 +17,7 @@ apt-get -q update >"$work/apt.log"
 apt-get -q install -y --no-install-recommends "${packages[@]}" >>"$work/apt.log" 2>&1 || { cat "$work/apt.log" >&2; fail "apt-get"; }
 
 cd "$work"
-# The block of the page that begins with the copy of the examples.
+# Takes from the page the commands that copy and build the examples.
 sed -n '/^ *cp -r \/usr\/share\/doc\/libsoftgrip-dev/,/```/p' "$source/docs/how-to/library-cpp.md" | grep -v '```' >lines.sh
 [ "$(wc -l <lines.sh)" -eq 3 ] || fail "docs/how-to/library-cpp.md has no 3 lines that build the examples"
 bash -eu lines.sh >build.log 2>&1 || { cat build.log >&2; fail "build"; }
