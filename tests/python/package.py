@@ -1,4 +1,4 @@
-"""Makes the package importable. Use `import package` before `import softgrip`."""
+"""Adds the folder of the package to the module path. Use `import package` before `import softgrip`."""
 
 import pathlib
 import sys

@@ -1,5 +1,5 @@
-"""Tests models, logs and diagnosis with arrays: results equal to those of the commands, results that can be pickled,
-and exceptions for invalid arguments.
+"""Tests the functions for models, logs and diagnosis on arrays. Their results must equal those of the commands and
+must be picklable. Invalid arguments must raise an exception.
 
 Needs the folder python of a build (SOFTGRIP_BUILD), which contains the extension module.
 """
@@ -227,7 +227,8 @@ class Imports(unittest.TestCase):
 
 
 class HostileArguments(unittest.TestCase):
-    """Tests that invalid arguments of any kind cause only an exception."""
+    """Tests that an invalid argument of any type raises an exception of the package and does not crash the
+    process."""
 
     BAD = [None, "", "text", b"bytes", 1j, [], [[]], [1, 2, 3], [1], [np.nan, np.nan], [np.inf, 0], [0, -1], {}, {1: 2},
            object(), np.zeros((2, 2)), np.zeros(0), np.array(["a", "b"]), np.array([None, 1]), [True, False], 1e308,
@@ -344,7 +345,7 @@ class Threads(unittest.TestCase):
         identify(log, starts=50, threads=1)
         done.set()
         other.join()
-        self.assertGreater(len(ticks), 3)  # if the GIL were held, only the first would run
+        self.assertGreater(len(ticks), 3)  # if the fit held the GIL, `ticks` would have only one entry
 
     def test_fits_in_threads_give_one_result(self):
         from concurrent.futures import ThreadPoolExecutor

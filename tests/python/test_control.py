@@ -1,4 +1,5 @@
-"""Limits, PID, controller and boards from Python: their numbers, and exceptions for any argument.
+"""Tests limits, PID, controller and boards from Python: their numerical results, and exceptions for invalid
+arguments.
 
 Needs the folder python of a build (SOFTGRIP_BUILD), which has the extension module.
 """

@@ -1,4 +1,4 @@
-"""Tests that the examples in examples/python run and have at most 80 lines. Each example is one file."""
+"""Tests that each example in examples/python runs, is a single file and has at most 80 lines."""
 
 import os
 import pathlib
@@ -16,7 +16,7 @@ MODEL = SOURCE / "config/models/bench_twin.yaml"
 
 
 class Examples(unittest.TestCase):
-    ran = {"nightly_health.py"}  # in test_health.py
+    ran = {"nightly_health.py"}  # test_health.py runs this example
 
     def run_example(self, name, *arguments, expect=0):
         done = subprocess.run([sys.executable, EXAMPLES / name, *map(str, arguments)], capture_output=True, text=True,
@@ -58,7 +58,7 @@ class Examples(unittest.TestCase):
         self.assertRegex(said, r"0001-none: .*none\.csv")
 
     def check_grip(self, at):
-        """With a daemon whose board is simulated in its process."""
+        """Runs the examples that need a daemon. The daemon simulates its board."""
         text = (SOURCE / "config/rig.yaml").read_text()
         for before, after in (("/tmp/softgrip.sock", f"{at}/socket"), ("/tmp/softgrip-runs", f"{at}/runs"),
                               ("models/bench_twin.yaml", str(MODEL)),

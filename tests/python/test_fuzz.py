@@ -36,11 +36,11 @@ MODEL = SOURCE / "config/models/bench_twin.yaml"
 LONGEST_CALL_S = 0.3
 HUGE = 200_000
 class Enough(Exception):
-    """Ends a long call by its progress callback."""
+    """Raised by the progress callback to end a long call."""
 
 
 class FromArgument(Exception):
-    """What an argument itself raises."""
+    """Raised by a test argument when the package converts the argument."""
 
 
 class Raises:
@@ -64,7 +64,7 @@ class Raises:
 
 
 class Lies:
-    """Whose conversions return other types than they should."""
+    """An argument whose conversion methods return values of the wrong type."""
 
     def __float__(self):
         return "1"
@@ -77,7 +77,7 @@ class Lies:
 
 
 def vectors(chance):
-    """Arguments where a vector is expected."""
+    """Returns arguments to pass where a function expects a vector."""
     size = chance.choice([0, 1, 2, 3, 50, 51])
     t = np.arange(size) * 0.1
     frozen = t.copy()
@@ -98,7 +98,7 @@ def vectors(chance):
 
 
 def scalars(chance):
-    """Arguments where a number is expected."""
+    """Returns arguments to pass where a function expects a number."""
     return [float("nan"), float("inf"), -float("inf"), 0, -0.0, -1, 1, 1.5, 1e308, -1e308, 5e-324, 2**31, 2**32, 2**63, 2**64,
             2**200, -2**63, -2**200, True, "3", b"3", None, [], [1], np.float32(1), np.int64(-1), np.uint64(2**64 - 1),
             np.array(1.0), np.array([1.0]), np.array([1.0, 2.0]), decimal.Decimal("1e400"), fractions.Fraction(1, 3), 1j,
@@ -106,7 +106,7 @@ def scalars(chance):
 
 
 def texts(chance):
-    """Arguments where a text or a path is expected."""
+    """Returns arguments to pass where a function expects a text or a path."""
     return ["", "text", "x" * 300_000, "a\0b", "\ud800", "\udcff", "\U0001f600", b"bytes", b"\xff", None, 3, [], "/", "/dev/null",
             "/no/such", "..", " ", "\n", "name: x", "[" * 1000, "{a: &a [*a]}", "auto", "command", "rest", "mm", "deg", "day",
             "full_model", "back_calculation", "play", pathlib.Path("/no/such"), Raises(), Lies(), np.str_("text"),
@@ -118,7 +118,7 @@ def anything(chance):
 
 
 class World:
-    """Valid arguments, and what is called with them."""
+    """The functions under test and valid arguments for them."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -132,7 +132,8 @@ class World:
         prediction, cause = validation.predictions[0], results.Cause("x", "x", 1.0, (0.0, 2.0), (), ())
         change = results.Change("x", "x", (), (cause,), "mm", "{}", "")
         vector, number, text, other = vectors, scalars, texts, anything
-        # Function: valid arguments by name, with what else may be there. A position: "0", "1".
+        # Maps the name of a function to its call and its arguments. Each argument has a valid value and a
+        # function that returns other values. Positional arguments are named "0", "1".
         self.targets = {}
 
         def target(name, call, /, **arguments):
@@ -218,12 +219,12 @@ class World:
         target("read_columns", recordings.read_columns, path=(self.folder / "log.csv", text))
         target("read_report", recordings.read_report, path=(self.folder / "log.csv", text))
         target("Recording.read", recordings.Recording.read, folder=(self.folder, text))
-        # Drawing is matplotlib's; of the package are the checks before it.
+        # matplotlib draws the picture. This test covers only the checks of the package before the drawing.
         target("plots", lambda log, axes: (validation.plot(log, axes), prediction.plot(axes), change.plot(axes)),
                log=("no such log", text), axes=(3, lambda c: [[], [1], [1, 2, 3], 3]))
 
     def logs(self, chance):
-        """Where logs are expected."""
+        """Returns arguments to pass where a function expects logs."""
         t = self.log.t[:chance.choice([2, 3, 20, 200])]
         odd = [Log(t, chance.choice([t, 0 * t, -t]), chance.choice([t, t * np.nan, 0 * t, t * 1e300]),
                    unit=chance.choice(["mm", "deg"])) for _ in range(2)]
@@ -231,7 +232,7 @@ class World:
 
 
 class Frame(collections.UserDict):
-    """Columns with to_numpy(), as those of a data frame."""
+    """A table whose columns have to_numpy(), like a pandas data frame."""
 
     def __init__(self, values):
         super().__init__()

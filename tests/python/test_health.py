@@ -1,5 +1,5 @@
-"""Tests the health of recordings: values and pages equal to those of `softgrip health`, results that can be pickled,
-and exceptions for invalid arguments.
+"""Tests the health analysis of recordings. Values and pages must equal those of `softgrip health`, and results must
+be picklable. Invalid arguments must raise an exception.
 
 Needs the folder python of a build (SOFTGRIP_BUILD), which has the extension module.
 """
@@ -28,7 +28,8 @@ MADE = ("made", "made_unix_s")
 
 
 class Health(unittest.TestCase):
-    """Recordings of one grip of two fingers per day for 12 days. The left finger leaks from the ninth day on."""
+    """Writes recordings of one grip of two fingers per day for 12 days. From the ninth day on, the left finger
+    leaks."""
 
     @classmethod
     def setUpClass(cls):

@@ -25,7 +25,7 @@ STATUS = {"state": "running", "result": "HOLDING", "channels": [CHANNEL], "owner
           "sequence": {"name": "pick", "request": 3, "client": None, "parameters": {"a": 1}, "step": 0, "step_name": "s",
                        "steps": 2, "ended": None}}
 PARAMETER = {"name": "a", "unit": "kpa", "lower": 0, "upper": 9, "default": 4, "about": ""}
-# For each request: a valid result, and the function of the package that reads it.
+# Maps each request to a valid result and to the function of the package that reads this result.
 RESULTS = {
     "status": (STATUS, lambda result: Status.of(result, "status")),
     "sequences": ({"sequences": [{"name": "a", "about": "", "parameters": [PARAMETER], "problems": [PROBLEM]}]},
@@ -43,7 +43,7 @@ OTHERS = (None, True, False, 0, -1, 1.5, 10**400, "", "x", "\ud800", [], [1], {}
 
 
 def places(value, path=()):
-    """Returns the paths of a value and of all values in it. The test may replace the value at each path."""
+    """Yields the path of `value` and the paths of all values in it. The test can replace the value at each path."""
     yield path
     if isinstance(value, dict):
         for key in value:
@@ -54,7 +54,8 @@ def places(value, path=()):
 
 
 def put(value, path, other):
-    """Returns a copy with `other` at that path, or without the value at that path if `other` is the function `put`."""
+    """Returns a copy of `value` with `other` at `path`. If `other` is the function `put` itself, the copy has no
+    value at `path`."""
     if not path:
         return other
     copy = dict(value) if isinstance(value, dict) else list(value)
@@ -67,7 +68,8 @@ def put(value, path, other):
 
 class Malformed(unittest.TestCase):
     def hear(self, command, said):
-        """Returns the result or the exception of the package for a line that follows a request of that name."""
+        """Sends the request `command` and passes the line `said` to the session as its reply. Returns "taken",
+        "malformed" or "error"."""
         session = Session()
         session.subscribed({"since": 0, "started_at": "x"})
         number, _ = session.request("start" if command == "check" else command,

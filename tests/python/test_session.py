@@ -1,4 +1,4 @@
-"""Tests how the clients interpret the daemon's lines. The tests use no socket."""
+"""Tests, without a socket, how the clients interpret the lines that the daemon sends."""
 
 import json
 import unittest
@@ -14,7 +14,7 @@ def line(**said):
 
 
 class Events:
-    """A session that receives the events of one grip."""
+    """A client session that receives the events of one grip."""
 
     def __init__(self, request=3):
         self.session = Session()
@@ -98,7 +98,8 @@ class Story(unittest.TestCase):
         told = Events()
         told.tell("overall_result", "HOLDING")
         told.session.subscribed({"since": 0, "started_at": "second"})
-        told.tell("overall_result", "RELEASED")  # for a request of the new daemon with the same number
+        told.tell("overall_result", "RELEASED")  # belongs to a request of the new daemon; requests of both
+                                                 # daemons can have the same number
         self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
         told.session.grip = 3
         self.assertFalse(told.session.ended())
@@ -116,7 +117,7 @@ class Starts(unittest.TestCase):
         number, sent = session.request("start", {"sequence": "pick"})
         (start_id,) = session.starts
         self.assertEqual(json.loads(sent)["start_id"], start_id)
-        session.forget(number)  # as after an exception during the wait for the answer
+        session.forget(number)  # the client does this if an exception ends the wait for the answer
         session.receive(line(id=number, ok=True, result={"request": 5}))
         self.assertEqual(session.starts, {start_id: 5})
         self.assertEqual(session.grip, 5)
