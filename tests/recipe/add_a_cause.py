@@ -3,9 +3,9 @@
 
     add_a_cause.py --source DIR --work DIR
 
-The first line of a fence says what to do with it: ```cpp file=PATH is a new file; ```diff file=PATH adds lines between
-existing lines; ```sh is run; ```text expect must appear in the output of the build in which the last registration is
-missing."""
+The first line of a code block selects what the program does with the block. ```cpp file=PATH: writes the block to a
+new file. ```diff file=PATH: adds lines between existing lines. ```sh: runs the block. ```text expect: requires the
+text in the output of a build without the last registration."""
 import argparse
 import os
 import pathlib
@@ -20,8 +20,8 @@ FENCE = re.compile(r"^```(\w+)(?: ([^\n]*))?\n(.*?)^```$", re.MULTILINE | re.DOT
 
 
 def copy_of(source, target):
-    """Copies the files that the repository tracks or would add. Without a repository, copies everything except the
-    builds."""
+    """Copies the files that git tracks or would add. If the source is not a git repository, copies all files except
+    the builds."""
     if target.exists():
         kept = target / "build"
         for path in target.iterdir():
@@ -39,8 +39,8 @@ def copy_of(source, target):
 
 
 def insert(path, hunk):
-    """Adds the new lines (+) of a hunk at the only place at which the other lines of the hunk are found, regardless of
-    spacing."""
+    """Adds the lines marked + of a hunk to a file. The other lines of the hunk must occur in the file exactly once;
+    differences in spacing are ignored."""
     parts = [(line[0], line[1:]) for line in hunk.splitlines()]
     assert all(mark in " +" for mark, _ in parts), f"{path}: a hunk only adds"
     wanted = [line.split() for mark, line in parts if mark == " "]
@@ -67,7 +67,7 @@ def main():
     args = parser.parse_args()
     copy = args.work / "source"
     copy_of(args.source, copy)
-    if shutil.which("ccache"):  # unchanged files are taken from the existing build
+    if shutil.which("ccache"):  # ccache reuses the objects of unchanged files from the existing build
         os.environ.update(CMAKE_CXX_COMPILER_LAUNCHER="ccache", CCACHE_NOHASHDIR="1",
                           CCACHE_BASEDIR=os.path.commonpath([args.source, copy]))
     run("cmake --preset release -DSOFTGRIP_TESTS=ON -DSOFTGRIP_BENCHMARKS=OFF", copy)
@@ -84,7 +84,8 @@ def main():
             insert(copy / file[1], body)
         elif file:
             (copy / file[1]).write_text(body)
-    # A block that no cause uses must not compile, and the message must be that of the page.
+    # A block that no cause uses must not compile. The error message of the compiler must be the one that the
+    # page quotes.
     refused = run("cmake --build build/release --target softgrip_sysid_diagnosis_causes", copy, check=False)
     assert refused.returncode != 0 and expected, "a block without a cause compiles"
     for sentence in expected:

@@ -1,7 +1,7 @@
 """Carries out a page of docs/how-to in a copy of the source tree, and builds it.
 
-The code of the page is used as it is: a fence ```cpp file=PATH is a new file, ```diff file=PATH changes a file. The
-lines that a diff keeps or removes must be in the file exactly once.
+The code blocks of the page are used unchanged. A block ```cpp file=PATH is a new file; a block ```diff file=PATH
+changes a file. The lines that a diff keeps or removes must occur in the file exactly once.
 """
 
 import os
@@ -16,7 +16,7 @@ from source_copy import SOURCE, copy_sources  # noqa: E402
 
 
 class RecipeError(AssertionError):
-    """The edits of the page do not fit the source."""
+    """Raised if an edit of the page does not fit the source."""
 
 
 FENCE = re.compile(r"^```(\w+) file=(\S+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -41,7 +41,7 @@ class Tree:
         copy_sources(self.folder)
 
     def carry_out(self, page):
-        """Carries out the fences of the page and returns their number."""
+        """Applies the code blocks of the page to the copy and returns the number of blocks."""
         fences = FENCE.findall((SOURCE / page).read_text(encoding="utf-8"))
         for language, name, body in fences:
             path = self.folder / name
@@ -55,7 +55,7 @@ class Tree:
         return len(fences)
 
     def make(self, *targets):
-        """Builds like the release preset, with a compiler cache if one is installed."""
+        """Builds the targets with the release preset. Uses ccache if it is installed."""
         launcher = shutil.which("ccache")
         options = [f"-DCMAKE_CXX_COMPILER_LAUNCHER={launcher}"] if launcher else []
         environment = {**os.environ, "CCACHE_BASEDIR": str(self.folder)}
