@@ -1,4 +1,4 @@
-"""Hides the differences between pymodbus 3.0 of Debian 12 and pymodbus 3.8 of Debian 13."""
+"""Provides one interface for pymodbus 3.0 of Debian 12 and pymodbus 3.8 of Debian 13."""
 
 import asyncio
 
@@ -14,7 +14,7 @@ except ModuleNotFoundError:
 
     OLD = False
 
-#: The first address of the blocks of a context. The newer version always counts from 1.
+#: First address of a data block. Since pymodbus 3.8, data blocks begin at 1.
 FIRST_REGISTER = 0 if OLD else 1
 
 __all__ = [
@@ -29,14 +29,14 @@ __all__ = [
 
 
 class ModbusSlaveContext(datastore.ModbusSlaveContext):
-    """Registers counted from 0, as in the messages."""
+    """A server context whose registers have the addresses of the Modbus messages, which begin at 0."""
 
     def __init__(self, **blocks):
         super().__init__(**blocks, **({"zero_mode": True} if OLD else {}))
 
 
 def block():
-    """Returns a block with all registers of a table."""
+    """Returns a data block with the 65536 registers of one Modbus table."""
     return ModbusSequentialDataBlock(FIRST_REGISTER, [0] * 65536)
 
 

@@ -1,13 +1,13 @@
 #pragma once
-// Counts the allocations of a thread. In a test program it replaces operator new and, unless a sanitizer has
-// its own allocator, malloc. It is a separate translation unit, so that the compiler cannot optimise across
-// it.
+// Counts the memory allocations of a thread. The functions replace operator new in a test program. They also
+// replace malloc if no sanitizer brings its own allocator. They are in a separate translation unit, so that
+// the compiler cannot optimise the calls away.
 
 #include <cstddef>
 
 namespace softgrip::test {
 
-/// Starts or stops counting this thread's allocations; initially they are not counted.
+/// Starts or stops the count of this thread's allocations. The count is initially stopped.
 void count_allocations(bool on) noexcept;
 /// Returns the number of counted allocations of this thread.
 [[nodiscard]] std::size_t allocations() noexcept;

@@ -3,12 +3,12 @@
 # UNIT is the configured unit whose ExecStart= exists; SOURCE the folder systemd/.
 set -euo pipefail
 unit=$2 source=$3
-# 1.5 of 10, as tenths.
+# The largest accepted exposure level of systemd-analyze, 1.5 of 10, in tenths.
 most_exposure=15
 
 case $1 in
   verify)
-    # systemd prints keys that it does not know, but returns 0: any output is a failure.
+    # For unknown keys, systemd prints a message but returns 0. Therefore, any output is a failure.
     said=$(systemd-analyze verify --man=no "$unit" 2>&1) || true
     [ -z "$said" ] || { echo "$said"; exit 1; }
     ;;
@@ -25,7 +25,8 @@ case $1 in
     grep '^dialout:x:20:softgrip$' "$root/etc/group"
     ;;
   folders)
-    # As root, the folders are created and an old one is emptied. Without root, the file is only read.
+    # As root, systemd-tmpfiles creates the folders and removes old files from one of them. Without root, it
+    # only reads its configuration file.
     root=$(mktemp -d) && trap 'rm -rf "$root"' EXIT
     mkdir "$root/etc"
     printf 'softgrip:x:%s:%s::/:/\n' "$(id -u)" "$(id -g)" >"$root/etc/passwd"
@@ -36,7 +37,7 @@ case $1 in
     mkdir "$runs/kept" && touch "$runs/kept/run.csv" "$runs/health/notes.yaml"
     systemd-tmpfiles --root="$root" --clean "$source/softgrip.tmpfiles"
     [ -f "$runs/kept/run.csv" ]
-    # In this copy of the file, an age of one second is old enough.
+    # This copy of the configuration file removes files after 1 s instead of 90 days.
     sed 's/90d$/1s/' "$source/softgrip.tmpfiles" >"$root/etc/softgrip.conf"
     sleep 1.5
     systemd-tmpfiles --root="$root" --clean "$root/etc/softgrip.conf"
@@ -44,12 +45,14 @@ case $1 in
     [ -f "$runs/health/notes.yaml" ]
     ;;
   rules)
-    # Every rule that gives the group access to a chip or a converter first asks the daemon if the rig file names it.
+    # Each rule gives the group access to a GPIO chip or a converter. Before that, the rule must ask the
+    # daemon if the rig file names this device.
     rules=$source/softgrip.rules.in
     asks='PROGRAM="@CMAKE_INSTALL_FULL_BINDIR@/softgripd --config @SOFTGRIP_CONFIGURATION@/rig_service.yaml --device %k"'
     grep -E 'SUBSYSTEM=="(gpio|iio)"' "$rules" >/dev/null
     if grep -E 'SUBSYSTEM=="(gpio|iio)"' "$rules" | grep -vF "$asks"; then exit 1; fi
-    # The answers: 0 for a device that the file names, 6 for another one, 3 for a file that cannot be read.
+    # The daemon answers with its exit code. 0: the rig file names the device. 6: the rig file does not name
+    # the device. 3: the rig file cannot be read.
     softgripd=$(sed -n 's/^ExecStart=\([^ ]*\) .*/\1/p' "$unit")
     folder=$(mktemp -d) && trap 'rm -rf "$folder"' EXIT
     cp -r "$source/../config" "$folder"
