@@ -1,5 +1,6 @@
-"""Runs a campaign over simulated worlds. The workflow of workflows/ runs several missing worlds in parallel, until all
-are done or the time is over. The module also returns the command by which a page was made."""
+"""Runs a campaign of diagnoses of simulated worlds. The workflow in workflows/ simulates and diagnoses several worlds
+in parallel. It runs only worlds that have no result yet, and stops when all worlds are done or the time limit is
+reached. The module also returns the command that repeats a campaign, for its page."""
 import csv
 import hashlib
 import json
@@ -24,7 +25,7 @@ def write_table(path, worlds, judge):
 
 
 def collect(ledger, worlds, out, planned, told):
-    """Adds the results of the workflow to the ledger. Returns the failures, one line each."""
+    """Adds the results of the workflow to the ledger. Returns one line for each world that failed."""
     wrong = []
     for world in worlds:
         row = out / "world" / name_of(world) / "row.json"
@@ -40,8 +41,9 @@ def collect(ledger, worlds, out, planned, told):
 
 
 def run(ledger, planned, judge, args, told):
-    """Adds the results of `judge`.run_world(build, folder, world) to the ledger. told(world, result) returns a line for
-    the screen. No world is started after args.most_minutes (None: all worlds are run)."""
+    """Runs all planned worlds that are not in the ledger, and adds the results of `judge`.run_world(build, folder,
+    world) to the ledger. told(world, result) returns the line that is printed for a result. After args.most_minutes,
+    no further world is started; with None, all worlds are run."""
     left = list({name_of(world): world for world in planned if world not in ledger}.values())
     if not left or args.most_minutes == 0:
         return
@@ -58,8 +60,8 @@ def run(ledger, planned, judge, args, told):
 
 
 def command(script, parser, args, options):
-    """Returns the command line with the `options` that differ from the defaults, the folder of an option that needs it,
-    and the page."""
+    """Returns the command line that repeats a campaign. It contains each of the `options` whose value is not the
+    default, `--work DIR` if the script has this option, and the page."""
     line = f"{script} --work DIR" if hasattr(args, "work") else script
     for option in options:
         value = getattr(args, option)

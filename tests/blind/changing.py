@@ -1,10 +1,11 @@
 """Makes, diagnoses and judges one world with a changed finger. The fixed worlds of the test suite and the campaign use
 this module.
 
-A world: family (`textbook` or `first`), cause (or `none`), strength (of the usual one: `--strength 8` of the worlds),
-seed, columns (`pressure` or `command`), zero_mm and warmer_c (of the later day). The healthy logs are the finger's
-campaign 0, the later ones its campaign 1: other waveforms, other noise. The engine is called as a user calls it. A world
-may have the keys of varying.py: with `closed_loop` the later logs are recorded in closed loop.
+A world has these keys: family (`textbook` or `first`), cause (or `none`), strength (1: the option `--strength 8` of
+the generator), seed, columns (`pressure` or `command`), and zero_mm and warmer_c of the later logs. The healthy logs
+are campaign 0 of the finger. The later logs are campaign 1, with different waveforms and different noise. The
+diagnosis is called as a user calls it. A world may also have the keys of varying.py. If `closed_loop` is true, the
+later logs are recorded in closed loop.
 """
 import json
 import pathlib
@@ -18,13 +19,13 @@ import varying
 GIVEN = {"textbook": pathlib.Path(__file__).resolve().parent / "textbook/given.yaml", "first": judging.GIVEN}
 PROGRAM = {"textbook": "tests/blind/textbook/textbook-world", "first": "tests/blind/blind-world"}
 USUAL = 8
-# Causes with the same readings, and the names of the same law in the other family.
+# Maps a cause to the causes that change the readings in the same way, so that no log can distinguish them.
 TWINS = {"stiffening": {"sensor_nonlinearity"}, "sensor_nonlinearity": {"stiffening"}}
 
 
-# Parameters with the same meaning in a world and in the answer: the name in the world and the name in the answer. A
-# textbook valve lags inside its regulator's loop, a textbook sensor from sample to sample, and the band of a dead band
-# is one of sticking or of dragging.
+# Maps the name of a parameter in a world to the name of this parameter in a diagnosis. Only parameters with
+# the same meaning in both are listed. In the textbook family, valve lag and sensor lag have a different
+# meaning. The band of a dead band is not listed, because it can be a band of stiction or of drag.
 SAME_NUMBERS = {"transport_delay": {"delay_s": "delay_s"}, "valve_lag": {"time_constant_s": "time_constant_s"},
                 "pressure_saturation": {"limit_kpa": "limit_kpa"}, "actuator_threshold": {"threshold_kpa": "threshold_kpa"},
                 "sensor_lag": {"time_constant_s": "time_constant_s"},
@@ -37,8 +38,9 @@ OTHERWISE_IN_TEXTBOOKS = {"valve_lag", "sensor_lag"}
 
 
 def intervals(family, cause, diagnosis, truth):
-    """Returns, for a true change that is reported first and each parameter that world and answer share, the true value,
-    the reported value, its interval, and whether the interval covers the true value."""
+    """Compares the parameters of the first reported cause with the truth, if this cause is the true change. Returns,
+    for each parameter that has the same meaning in both, the true value, the reported value, its interval, and
+    whether the interval covers the true value."""
     if not diagnosis["causes"] or diagnosis["causes"][0]["id"] != cause:
         return []
     if family == "textbook" and cause in OTHERWISE_IN_TEXTBOOKS:
@@ -70,7 +72,7 @@ def judge(cause, diagnosis):
 
 
 def make(build, world, work):
-    """Returns (healthy logs, later logs, truth)."""
+    """Writes the logs of a world. Returns (healthy logs, later logs, truth)."""
     program = [build / PROGRAM[world["family"]], "--seed", str(world["seed"])]
     program += ["--pressure"] if world["columns"] == "pressure" else []
     runs = ["--runs", str(world.get("baseline_runs", varying.BASELINE_RUNS)), *varying.of_generator(world, False)]
@@ -85,7 +87,7 @@ def make(build, world, work):
 
 
 def run_world(build, folder, world, threads=1):
-    """Makes and diagnoses the world. Returns the world with the results."""
+    """Simulates and diagnoses the world. Returns a copy of the world with the results added."""
     build = pathlib.Path(build).resolve()
     work = pathlib.Path(tempfile.mkdtemp(dir=folder))
     try:

@@ -3,8 +3,8 @@
 
     fixed_investigation.py --build BUILD CAUSE[+CAUSE]:STRENGTH:SEED:EXPERIMENT ...
 
-EXPERIMENT is the experiment that must resolve the ambiguity; `none`: the logs alone show the true cause. The exit code
-is 0 if all worlds are resolved.
+EXPERIMENT is the experiment that must resolve the ambiguity, or `none` if the logs alone must show the true cause.
+The exit code is 0 if the true cause of every world is found.
 """
 import argparse
 import sys

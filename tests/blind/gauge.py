@@ -4,8 +4,7 @@ FOLDER WORLD..."`.
 
     gauge.py BLIND_WORLD FOLDER [option of blind-world ...] POSITIONS_CSV GAUGE_OUT
 
-FOLDER is the folder of rig.py, which contains the earlier commands, so the gauge check takes place after these
-commands.
+FOLDER contains the earlier commands of rig.py. The simulation plays these commands before the gauge check.
 """
 import pathlib
 import subprocess

@@ -1,4 +1,5 @@
-"""Lets `softgrip investigate` resolve the ambiguity of a blind world by experiments and a gauge check on this world."""
+"""Lets `softgrip investigate` play experiments and a gauge check on a simulated world, until only one cause
+remains."""
 import json
 import pathlib
 import shlex
@@ -9,8 +10,8 @@ import tempfile
 import judging
 
 HERE = pathlib.Path(__file__).resolve().parent
-# Causes that remain equal for every command and every gauge check: lags of valve and sensor, unless the pressure is
-# recorded.
+# Sets of causes that no command and no gauge check can separate. A valve lag and a sensor lag are equal if
+# the pressure is not recorded.
 INDISTINGUISHABLE = [{"valve_lag", "sensor_lag"}]
 
 
@@ -24,8 +25,8 @@ def outcome_of(hidden, step):
 
 
 def investigate_world(build, folder, world, gauge=True):
-    """Returns `before` and `outcome`, the judgement of the first and of the last verdict (judging.judge), and
-    `resolved_by`, the experiment after which the verdict contained only the truth."""
+    """Investigates a simulated world. Returns `before` and `outcome`, the judgements (judging.judge) of the first and
+    of the last verdict. `resolved_by` is the experiment after which the verdict contained only the true cause."""
     build = pathlib.Path(build).resolve()
     with tempfile.TemporaryDirectory(dir=folder) as name:
         work = pathlib.Path(name)

@@ -1,4 +1,5 @@
-"""Makes, diagnoses and judges one blind world. The fixed worlds of the test suite and the campaign use this module.
+"""Simulates one world with hidden effects, diagnoses its logs, and judges the diagnosis. The fixed worlds of the test
+suite and the campaign use this module.
 
 The diagnosis is called as a user calls it and never receives the truth.
 """
@@ -13,8 +14,8 @@ import varying
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 GIVEN = ROOT / "tests/blind/given.yaml"
 
-# Parameters with the same meaning in the diagnosis and in the world: effect -> {name in the diagnosis: f(parameters of
-# the world)}.
+# Maps an effect to its parameters with the same meaning in the diagnosis and in the world. Each entry maps
+# the name in the diagnosis to a function that computes the value from the parameters of the world.
 SAME_MEANING = {
     "transport_delay": {"delay_s": lambda n: n["delay_s"]},
     "valve_lag": {"time_constant_s": lambda n: n["time_constant_s"]},
@@ -35,8 +36,9 @@ SAME_MEANING = {
     "outliers": {"size_mm": lambda n: n["size_mm"], "probability": lambda n: n["share"]},
 }
 
-# Effects outside the catalogue of causes that structure has a name for all the same: a lag that differs between
-# filling and venting, a hysteresis of another shape.
+# Effects that are not in the catalogue of causes, and the causes of the catalogue that describe them
+# correctly. The two effects are a lag that differs between filling and venting, and a hysteresis of a
+# different shape.
 STRUCTURE_OF = {"outside_fill_vent_lag": {"valve_lag"}, "outside_stop_operators": {"hysteresis_shape"}}
 
 
@@ -45,7 +47,7 @@ def is_outside(cause):
 
 
 def judge(hidden, diagnosis):
-    """Returns the judgement of a diagnosis if `hidden` (ids) is the truth:
+    """Returns the judgement of a diagnosis. `hidden` contains the ids of the effects that the world really has:
 
     right            the verdict is correct, and no wrong cause is reported
     ambiguous_right  the verdict is ambiguous, and the true causes are among the listed causes
@@ -66,7 +68,8 @@ def judge(hidden, diagnosis):
         return "missed"
     if verdict == "cause_found" and set(named) == set(hidden):
         return "right"
-    # Every set must hold another hidden cause.
+    # Each reported set of a cause and its alternatives must contain a hidden cause that no other set
+    # contains.
     left = list(hidden)
     for one in sorted(sets, key=len):
         held = [cause for cause in left if cause in one]
@@ -77,8 +80,8 @@ def judge(hidden, diagnosis):
 
 
 def covered(hidden, truth, diagnosis):
-    """Returns, for each parameter with an interval and a known true value, whether the interval covers the true
-    value."""
+    """Returns True or False for each parameter that has an interval and a corresponding true value. True: the
+    interval covers the true value."""
     found = {}
     for cause in diagnosis["causes"]:
         if cause["id"] not in hidden:
@@ -94,14 +97,14 @@ def covered(hidden, truth, diagnosis):
 
 
 def diagnose(build, model, logs, out, *options):
-    """Returns (diagnosis, None), or (None, message) if the program fails."""
+    """Runs `softgrip diagnose`. Returns (diagnosis, None), or (None, message) if the program fails."""
     done = subprocess.run([build / "tools/softgrip", "diagnose", "--model", model, "--data", *logs, "--out", out,
                            *options, "--json"], capture_output=True, text=True)
     return (json.loads(done.stdout), None) if done.returncode == 0 else (None, done.stderr[-300:])
 
 
 def run_world(build, folder, world):
-    """Makes the world and diagnoses its logs. Returns the world with the results."""
+    """Simulates and diagnoses the world. Returns a copy of the world with the results added."""
     build = pathlib.Path(build).resolve()
     work = pathlib.Path(tempfile.mkdtemp(dir=folder))
     try:

@@ -1,10 +1,10 @@
-"""Stores outcomes as lines of JSON, so that a long run can be stopped and continued."""
+"""Stores the results of worlds as lines of JSON, so that a long campaign can be stopped and continued."""
 import json
 
 
 class Ledger:
-    """`rows`: the rows in the file. A world with the same values of `keys` as one of the rows is known. A key that a
-    row or a world lacks counts as None, so that ledgers of earlier versions stay valid."""
+    """The results in a file. `rows` contains the rows of the file. A world counts as done if a row has the same
+    values of `keys`. A missing key counts as None, so that files of earlier versions stay valid."""
 
     def __init__(self, path, keys):
         self.path, self.keys = path, keys

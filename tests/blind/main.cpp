@@ -1,17 +1,17 @@
-// blind-world writes the logs of one simulated world, and the true effects to another place.
+// blind-world writes the logs of one simulated world to a folder, and its true effects to a separate file.
 //
 //   blind-world --seed N --out DIR --truth FILE [--cause ID[,ID]] [--strength X] [--poor] [--pressure]
 //               [--campaign N] [--zero-mm Z] [--warmer-c D] [--runs N] [--variation X] [--closed-loop]
 //               [--command CSV ... --log FILE] [--gauge CSV --log FILE]
 //
-// DIR receives log_1.csv ... in the project's log format and no other file. With --command the same world
-// plays the commands of these files after its campaign, in the given order, and writes the last response as
-// one log. With --campaign the same finger is driven by other waveforms, with other noise; Z is added to
-// every reading, D to every temperature. With --gauge an operator then holds the sensor's target at the
-// positions in the first column of that file [mm], and the readings of the sensor are written next to these
-// positions. --runs is the number of logs [3; 1 with --poor]. --variation is the strength of the run-to-run
-// variation (variation.h) [0]; --list-runs prints the runs that it draws. With --closed-loop a controller
-// plays the commands of all logs.
+// DIR receives log_1.csv ... in the project's log format and no other file. With --command, the world plays
+// the commands of these files after its campaign, in the order of the options. It writes the response to the
+// last file as one log. With --campaign, the same finger is driven by different waveforms, with different
+// noise. Z [mm] is added to every reading and D [degC] to every temperature. With --gauge, a simulated
+// operator holds the target of the sensor at the positions in the first column of this file [mm]. This check
+// follows the commands. The sensor readings are written next to the positions. --runs is the number of logs
+// [3; 1 with --poor]. --variation is the strength of the run-to-run variation (variation.h) [0]; --list-runs
+// prints the parameters of the varied runs. With --closed-loop, a controller plays the commands of all logs.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -108,7 +108,8 @@ blind::Base scattered(std::uint64_t seed) {
   return base;
 }
 
-// Makes the commands the references of a controller whose sensor has this zero offset.
+// Converts the commands of a log to references of a controller. `zero_mm` is the zero offset of the
+// controller's sensor.
 void close_loop(blind::LogInput& log, const blind::Sensor& sensor, double mm_per_kpa, double zero_mm,
                 std::uint64_t seed) {
   log.offset_mm += zero_mm;
@@ -194,8 +195,8 @@ double duration_s(const std::vector<blind::LogInput>& logs) {
 void write_truth(const std::string& path, const Arguments& a, const blind::Effects& effects,
                  const std::map<std::string, blind::Scaled>& scaled, const blind::Sensor& sensor) {
   std::ofstream file(path);
-  // All digits are written: with six digits, the rounding error of a frequency would exceed the accuracy of
-  // an estimate from ten minutes of logs.
+  // The truth is written with all digits. With six digits, the rounding error of a frequency would exceed the
+  // error of an estimate from ten minutes of logs.
   file.precision(std::numeric_limits<double>::max_digits10);
   file << "{\"seed\": " << a.seed << ", \"strength\": " << a.strength << ", \"noise_mm\": " << sensor.noise_mm
        << ", \"effects\": {";

@@ -3,7 +3,8 @@
 
     rig.py BLIND_WORLD FOLDER [option of blind-world ...] COMMAND_CSV LOG_OUT
 
-The world continues from call to call: earlier commands are stored in FOLDER and are played before the new command.
+The state of the world continues from call to call, because each call stores its command in FOLDER and plays all
+earlier commands first.
 """
 import pathlib
 import shutil

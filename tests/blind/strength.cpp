@@ -7,7 +7,8 @@
 namespace blind {
 namespace {
 
-constexpr double coarse_step_s = 0.0025;  // accurate enough to measure a strength; the logs use the fine step
+constexpr double coarse_step_s = 0.0025;  // accurate enough to scale an effect; the logs are simulated with a
+                                          // finer step
 
 std::vector<double> flat(const Base& base, const Effects& effects, const std::vector<LogInput>& logs,
                          std::uint64_t seed) {
@@ -46,8 +47,8 @@ void subtract(std::vector<double>& from, const std::vector<double>& direction, d
   for (std::size_t k = 0; k < from.size(); ++k) from[k] -= factor * direction[k];
 }
 
-// Performs the Gram-Schmidt orthonormalisation twice, so that the vectors are orthogonal except for rounding
-// errors.
+// Runs the Gram-Schmidt orthonormalisation twice, because rounding errors make the vectors of a single run
+// slightly non-orthogonal.
 void orthonormalise(std::vector<std::vector<double>>& directions) {
   for (std::size_t i = 0; i < directions.size(); ++i) {
     for (int pass = 0; pass < 2; ++pass)

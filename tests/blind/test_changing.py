@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests the judgement of worlds with a changed finger."""
+"""Tests changing.judge(), which judges the diagnoses of fingers that have changed."""
 import unittest
 
 from changing import intervals, judge

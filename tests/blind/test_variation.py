@@ -2,7 +2,7 @@
 """Tests the run-to-run variation of the simulated fingers: test_variation.py BLIND_WORLD TEXTBOOK_WORLD [unittest
 option ...]
 
-Without variation the programs must write the same bytes as before they had this option.
+Without the option --variation, the programs must write the same bytes as the versions that did not have this option.
 """
 import csv
 import hashlib
@@ -17,7 +17,7 @@ import unittest
 BLIND, TEXTBOOK = sys.argv.pop(1), sys.argv.pop(1)
 PROGRAMS = {"blind": BLIND, "textbook": TEXTBOOK}
 
-# SHA-256 of all logs of a call, of the programs before the variation.
+# SHA-256 of all logs of a call, recorded before the programs had the option --variation.
 GOLDEN = {
     ("--seed", "1"): ("e20640d7e0299022", "db8a9764eacf24ad"),
     ("--seed", "7", "--poor", "--pressure"): ("1d9d11191617df3b", "d956ade25f225e8d"),
@@ -29,7 +29,7 @@ RUNS = 400
 
 
 def logs(program, *options):
-    """Returns the bytes of each log, in order."""
+    """Runs the program and returns the bytes of each log, in order."""
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         subprocess.run([program, *options, "--out", work / "logs", "--truth", work / "truth.json"], check=True)
@@ -37,7 +37,7 @@ def logs(program, *options):
 
 
 def columns(log):
-    """{name: values}"""
+    """Returns {column name: values} of a log."""
     rows = list(csv.DictReader(io.StringIO(log.decode())))
     return {name: [float(row[name]) for row in rows] for name in rows[0]}
 
@@ -72,11 +72,11 @@ class Off(unittest.TestCase):
 
 
 class Drawn(unittest.TestCase):
-    """Tests the means and the standard deviations of the drawn runs."""
+    """Tests the means and the standard deviations of the random parameters of many runs."""
 
     def assert_spread(self, values, mean, deviation):
         self.assertAlmostEqual(statistics.mean(values), mean, delta=4 * deviation / RUNS ** 0.5)
-        # The tolerance is 4 standard errors of a standard deviation.
+        # The tolerance is 4 times the standard error of the standard deviation.
         self.assertAlmostEqual(statistics.stdev(values) / deviation, 1, delta=4 / (2 * RUNS) ** 0.5)
 
     def test_offset_gain_temperature_and_supply(self):
@@ -112,7 +112,7 @@ class Drawn(unittest.TestCase):
 
 
 class Logs(unittest.TestCase):
-    """Tests that the logs have the drawn variation."""
+    """Tests that the logs of the programs have the variation that --list-runs prints."""
 
     def test_1_3_and_6_runs(self):
         for name, program in PROGRAMS.items():
@@ -132,7 +132,8 @@ class Logs(unittest.TestCase):
                 settled = columns(logs(program, "--runs", "1")[0])["displacement_mm"]
                 varied = [columns(log)["displacement_mm"] for log in logs(program, "--variation", "1", "--runs", "4")]
                 self.assertLess(abs(settled[0]), 0.2)
-                # Creep and hysteresis of the pulse before the recording.
+                # The pulse before the recording leaves creep and hysteresis, so the first reading is above
+                # 0.2 mm.
                 self.assertGreater(min(y[0] for y in varied), 0.2)
 
     def test_the_size_of_the_variation_scales_with_its_strength(self):

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Tests the run-to-run variation as an option of the campaigns: plans, generators, ledgers and pages."""
+"""Tests the option for the run-to-run variation in the campaigns: their plans, the calls of the generators, the
+ledgers and the pages."""
 import argparse
 import contextlib
 import io
@@ -61,7 +62,7 @@ class Plans(unittest.TestCase):
 
 
 class Generators(unittest.TestCase):
-    """Tests that the programs are called with the options of the world."""
+    """Tests that the generator programs are called with the options for the variation of the world."""
 
     def called(self, function, *arguments_of):
         calls = []

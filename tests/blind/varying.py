@@ -1,7 +1,7 @@
-"""Handles the run-to-run variation (variation.h): options of a campaign, keys of a world, options of its generator, and
-text of its page."""
+"""Handles the run-to-run variation (variation.h): the options of a campaign, the keys of a world, the options of the
+generator program, and the text of the page."""
 
-KEYS = ("variation", "closed_loop", "baseline_runs")  # of a world; a world without them is as before they existed
+KEYS = ("variation", "closed_loop", "baseline_runs")  # keys of a world; worlds of earlier versions do not have them
 BASELINE_RUNS = 3
 
 
@@ -14,7 +14,7 @@ def add_options(parser, baseline_runs=False):
 
 
 def of_world(args, baseline_runs=BASELINE_RUNS):
-    """Returns the keys of a world of this campaign."""
+    """Returns the keys that the options of this campaign add to a world."""
     keys = {}
     if getattr(args, "variation", 0):
         keys["variation"] = args.variation
@@ -26,20 +26,20 @@ def of_world(args, baseline_runs=BASELINE_RUNS):
 
 
 def belongs(row, args):
-    """Returns True if a row of a ledger has the variation of this campaign."""
+    """Returns True if a row of the ledger has the same variation and closed-loop setting as this campaign."""
     own = of_world(args)
     return all(row.get(key) == own.get(key) for key in ("variation", "closed_loop"))
 
 
 def of_generator(world, closed_loop=True):
-    """Returns the options of the program that writes the logs of a world. `closed_loop`: True if the world has a closed
-    loop."""
+    """Returns the options of the program that writes the logs of a world. `closed_loop`: pass the setting for the
+    closed loop, too."""
     options = ["--variation", str(world["variation"])] if "variation" in world else []
     return [*options, "--closed-loop"] if closed_loop and world.get("closed_loop") else options
 
 
 def text(args):
-    """Returns the sentences about the variation on a page."""
+    """Returns the sentences of a page that describe the variation."""
     closed = " A controller plays the commands of the logs (closed loop)." if getattr(args, "closed_loop", False) else ""
     strength = getattr(args, "variation", 0)
     if not strength:

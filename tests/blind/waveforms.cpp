@@ -128,7 +128,7 @@ LogInput surrounded(std::vector<double> command_kpa, double rate, double campaig
 
 namespace {
 
-// Returns the log of a run, in which the unrecorded pulse precedes the command at the sample rate of the run.
+// Returns the log of a run at the sample rate of the run. The unrecorded pulse precedes the command.
 LogInput varied(std::vector<double> command, const variation::Run& run, double start_s,
                 const Campaign& campaign) {
   const double rate = run.rate_hz > 0 ? run.rate_hz : rate_hz;

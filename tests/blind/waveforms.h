@@ -1,5 +1,6 @@
 #pragma once
-// Draws the inputs of a campaign from a seed: commands, temperature and supply pressure.
+// Draws the inputs of a campaign: commands, temperature and supply pressure. A seed determines the random
+// values.
 
 #include <cstdint>
 #include <vector>
@@ -19,7 +20,8 @@ struct Campaign {
 /// steps with holds and a rest; sines over a decade of rates with sharp steps, a rest and a repetition.
 std::vector<LogInput> draw_campaign(const Campaign& campaign);
 
-/// Returns a log with a given command. Temperature and supply continue where the campaign ended.
+/// Returns a log with a given command. Its temperature and supply pressure continue where those of the
+/// campaign ended.
 LogInput surrounded(std::vector<double> command_kpa, double rate_hz, double campaign_start_s,
                     std::uint64_t seed);
 

@@ -25,7 +25,7 @@ double sign(double x) {
   return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
-// All parameters that the integration needs. They are looked up once.
+// All parameters that the integration needs. They are looked up once per simulation, not in every step.
 struct Numbers {
   explicit Numbers(const Effects& e)
       : delay_s(number(e, "transport_delay", "delay_s", 0)),
@@ -75,14 +75,14 @@ struct Numbers {
       modulation, modulation_hz, stops_mm, crosstalk_mm, recovery;
 };
 
-// The state that continues from one log to the next.
+// The state of the finger that continues from one log to the next.
 struct Memory {
   double largest_kpa = 0;
   double campaign_s = 0;
 };
 
-// Returns x after a step in which x relaxes towards a linearly changing target, by the classical Runge-Kutta
-// method.
+// Returns x after one step of the classical Runge-Kutta method. x relaxes towards a target that changes
+// linearly.
 double relax(double x, double from, double to, double tau, double dt) {
   const auto f = [&](double share, double value) { return (from + share * (to - from) - value) / tau; };
   const double k1 = f(0, x), k2 = f(0.5, x + 0.5 * dt * k1), k3 = f(0.5, x + 0.5 * dt * k2),
@@ -114,8 +114,8 @@ class Rig {
 
   double pressure() const { return pressure_; }
 
-  // Sets the reading as if the target were removed from the finger and held at this position. All dynamics of
-  // the sensor have settled.
+  // Simulates a gauge check: the target of the sensor is removed from the finger and held at this position.
+  // All transients of the sensor have decayed.
   void hold_target(double position_mm) { seen_mm_ = position_mm; }
   void wait(double duration_s) { memory_.campaign_s += duration_s; }
 
@@ -247,7 +247,8 @@ class Rig {
          mode_v_ = 0, mode_target_ = 0, played_ = 0, bump_ = 0, next_bump_s_ = 3;
 };
 
-// Follows the reference of a log. Without a reference the commands do not change.
+// Runs the controller that follows the reference of a log. If the log has no reference, the commands stay
+// unchanged.
 class Follower {
  public:
   Follower(const Base& base, const LogInput& log) : log_(log) {
@@ -255,7 +256,7 @@ class Follower {
       controller_.emplace(span_mm(base, largest_command_kpa) / largest_command_kpa, largest_command_kpa,
                           log.rate_hz);
   }
-  // Sets the command of the sample after `k`, whose reading without noise is `y`.
+  // Computes the command of sample `k` + 1. `y` is the displacement at sample `k` without sensor noise.
   void decide(std::size_t k, double y, std::vector<double>& command) {
     if (!controller_ || k < log_.unrecorded || k + 1 >= command.size()) return;
     const double seen = quantised(y + log_.noise_mm[k - log_.unrecorded], Sensor{}.step_mm);

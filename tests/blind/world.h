@@ -1,7 +1,7 @@
 #pragma once
-// A simulated world that may contain a hidden effect. Its actuator model and its integration with a fine step
-// are independent of the project, and the program links no code of the project. The equations follow the
-// definitions of the causes, not those of the blocks.
+// A simulated world that may contain a hidden effect. It has its own model of the actuator and its own
+// integration with a fine step, and links no code of the project. The equations implement the definitions of
+// the causes, not the code of the blocks.
 
 #include <cstdint>
 #include <map>
@@ -40,9 +40,9 @@ struct LogInput {
   std::vector<double> supply_kpa;
   // Run-to-run variation (variation.h).
   double gain = 1, offset_mm = 0;
-  std::size_t unrecorded = 0;  // number of first samples that precede the recording
-  // Closed loop: a controller follows the reference from the first recorded sample on. Its sensor adds
-  // `noise_mm`, one value per recorded sample.
+  std::size_t unrecorded = 0;  // number of samples at the start that are not recorded
+  // Closed loop: from the first recorded sample on, a controller follows the reference. `noise_mm` is the
+  // noise of the controller's sensor, one value per recorded sample.
   std::vector<double> reference_mm, noise_mm;
 };
 
@@ -66,8 +66,8 @@ struct GaugeWork {
   std::size_t samples = 200;  // number of readings that are averaged at each position
 };
 
-/// Returns the samples of each position, displacement before noise and quantisation. `start_s` is the time of
-/// the campaign at the start of the check. Drift, disturbances and wrong samples continue during the check.
+/// Returns the readings at each position [mm], before noise and quantisation. `start_s` is the time of the
+/// campaign at the start of the check. Drift, disturbances and wrong samples continue during the check.
 std::vector<std::vector<double>> held_at(const Effects& effects, const std::vector<double>& positions_mm,
                                          double start_s, std::uint64_t seed, const GaugeWork& work);
 
@@ -78,11 +78,11 @@ void drop_unrecorded(LogInput& in, LogOutput& out);
 /// `pressure_kpa` and falls again.
 double span_mm(const Base& base, double pressure_kpa);
 
-/// Returns white noise that the seed determines.
+/// Returns white noise. The seed determines the values.
 std::vector<double> noise(std::size_t samples, double rms, std::uint64_t seed);
 double quantised(double value, double step);
 
-/// Adds noise that the seed determines, and then quantises the values.
+/// Adds noise to the values and quantises them. The seed determines the noise.
 std::vector<double> measured(const std::vector<double>& clean, double rms, double step, std::uint64_t seed);
 
 const std::vector<std::string>& library_ids();

@@ -1,4 +1,4 @@
-// Draws the commands of a campaign, with temperature and supply pressure.
+// Draws the commands, the temperature and the supply pressure of a campaign at random.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -10,7 +10,7 @@ namespace textbook {
 namespace {
 
 constexpr double pi = 3.14159265358979;
-using Points = std::vector<std::pair<double, double>>;  // time, pressure
+using Points = std::vector<std::pair<double, double>>;  // time [s], pressure [kPa]
 
 std::vector<double> joined(const Points& points, double rate_hz) {
   std::vector<double> out;
@@ -26,7 +26,7 @@ std::vector<double> joined(const Points& points, double rate_hz) {
   return out;
 }
 
-// Returns triangles of many amplitudes and rates. The larger triangles have minor loops.
+// Returns triangles of many amplitudes and rates. Every third triangle contains a minor loop.
 std::vector<double> triangles(std::mt19937_64& random, double rate_hz) {
   std::uniform_real_distribution<double> peak(20, 60), half(1.2, 5);
   Points points{{0, 0}, {1, 0}};
@@ -71,7 +71,7 @@ std::vector<double> sines(std::mt19937_64& random, double rate_hz) {
 using Draw = std::vector<double> (*)(std::mt19937_64&, double);
 constexpr Draw kinds[] = {triangles, stairs, sines};
 
-// One drawn run, with its input signal and its differences from the other runs.
+// The parameters of one run that are drawn at random: its variation, sample rate and command.
 struct Drawn {
   variation::Run run;
   double rate_hz;

@@ -1,4 +1,4 @@
-// The numerical values of the hidden effects.
+// The parameter values of the hidden effects.
 #include <algorithm>
 #include <cmath>
 #include <random>

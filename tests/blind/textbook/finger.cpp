@@ -82,8 +82,8 @@ double Finger::play(double q) noexcept {
   return sum;
 }
 
-// Maxwell-slip model: a spring in parallel with Coulomb elements, driven by a force. Solves K y + sum clamp(k
-// (y - anchor), +-f) = q.
+// Maxwell-slip model: a spring in parallel with Coulomb elements, driven by a force. Solves K y + sum(clamp(k
+// (y - anchor), -f, f)) = q for the displacement y.
 double Finger::maxwell_slip(double q) noexcept {
   constexpr double stiffness = 0.6 / slips;
   const auto limit = [this](std::size_t i) {
@@ -107,8 +107,9 @@ double Finger::maxwell_slip(double q) noexcept {
 }
 
 // Preisach model: relays switch on at a and off at b, with 0 <= b <= a and the weight 2 (1 + envelope b). The
-// relays that are on lie below a stepped line in the (a, b) plane. Its corners are the remembered turning
-// points of the input: the highest, the lowest after it, the next highest and so on.
+// relays that are on lie below a stepped line in the (a, b) plane. The corners of the line are the turning
+// points of the input that the model remembers. They are the highest maximum, the lowest minimum after this
+// maximum, the highest maximum after this minimum, and so on.
 double Finger::preisach(double q) noexcept {
   const auto triangle = [this](double high, double low) {
     const double d = high - low;
@@ -116,7 +117,8 @@ double Finger::preisach(double q) noexcept {
   };
   q = std::max(0.0, q);
   const bool rising = q > input_;
-  // While the input falls, memory_ ends with a maximum; while it rises, it ends with a minimum or is empty.
+  // While the input falls, the last entry of memory_ is a maximum. While the input rises, the last entry is a
+  // minimum, or memory_ is empty.
   if (rising == (memory_.size() % 2 == 1)) memory_.push_back(input_);
   input_ = q;
   while (memory_.size() >= 2) {
@@ -136,8 +138,8 @@ double Finger::preisach(double q) noexcept {
   return (1 - 2 * numbers_.width) * q + 2 * numbers_.width * sum;
 }
 
-// A bending tube that is divided into slices. The pressure acts on a growing cross-section against
-// viscoelastic rubber, which is described by a Prony series.
+// A bending tube that the model divides into slices. The pressure acts on a growing cross-section. The
+// viscoelastic rubber resists; a Prony series describes its relaxation.
 double Finger::tube(double q, double step_s) noexcept {
   const double pull = 0.25 * std::max(0.0, q);
   double bend = 0;

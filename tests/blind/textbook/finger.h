@@ -1,5 +1,5 @@
 #pragma once
-// Soft fingers of five makes. Each make has its own kind of hysteresis, creep with time constants over
+// Soft fingers of five makes. Each make has a different type of hysteresis, creep with time constants over
 // several decades, and a slight curvature.
 
 #include <array>
@@ -17,28 +17,30 @@ struct FingerNumbers {
   double width = 0.1;         // width of the hysteresis; 0: no loops
   double curvature = 0.1;
   double creep = 0.15;           // share of the displacement that creeps
-  double creep_tilt = 0;         // exponent of the weight tau^creep_tilt of a branch with time constant tau
+  double creep_tilt = 0;         // exponent of the weight tau^creep_tilt of a creep branch with time constant
+                                 // tau
   double envelope = 0.1;         // nonlinearity of the loops (generalised play, Preisach density)
-  double longest_creep_s = 1e9;  // branches with longer time constants are left out
+  double longest_creep_s = 1e9;  // creep branches with a longer time constant [s] are left out
 };
 
 const std::vector<std::string>& makes();
 FingerNumbers draw_finger(const std::string& make, std::uint64_t seed);
 
-/// A parameter that differs between fingers of one make, with the bounds within which its value is drawn.
+/// A parameter that differs between fingers of one make. Its value is drawn at random within the bounds.
 struct OwnNumber {
   double FingerNumbers::*member;
   double low, high;
 };
-/// Returns the parameters whose changes a refitted model may absorb: width, curvature, creep and tilt of the
-/// creep.
+/// Returns the parameters that a refit can change to absorb an effect: width, curvature, creep and tilt of
+/// the creep.
 std::vector<OwnNumber> own_numbers(const std::string& make);
 
-/// A finger that starts without load and without a load history.
+/// A finger that has never been loaded.
 class Finger {
  public:
   explicit Finger(const FingerNumbers& numbers);
-  /// Returns the displacement [mm] after `step_s` at the gauge pressure `pressure_kpa`.
+  /// Simulates a step of `step_s` with the gauge pressure `pressure_kpa` at its end. Returns the displacement
+  /// [mm].
   double step(double pressure_kpa, double step_s);
 
  private:
@@ -55,7 +57,8 @@ class Finger {
   FingerNumbers numbers_;
   std::array<double, branches> weight_{}, tau_s_{}, branch_{};
   double full_ = 1;             // value of raw() at working_kpa after a long hold
-  std::vector<double> memory_;  // plays, anchors of the slip elements, or turning points of the input
+  std::vector<double> memory_;  // states of the plays, anchors of the slip elements, or turning points of the
+                                // input
   double input_ = 0;            // input of the relays before this step
   double balance_ = 0;          // strain of the spring of the Maxwell-slip model
   std::array<double, slices> stretch_{}, thickness_{};

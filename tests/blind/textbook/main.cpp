@@ -1,16 +1,17 @@
-// textbook-world writes the logs of one simulated world of textbook physics, and the true effects to another
-// place.
+// textbook-world simulates a world with textbook equations. It writes the logs to a folder and the true
+// effects to a separate file.
 //
 //   textbook-world --seed N --out DIR --truth FILE [--make NAME] [--cause ID[,ID...]] [--strength X] [--poor]
 //                  [--campaign N] [--pressure] [--no-temperature] [--no-supply] [--zero-mm Z] [--warmer-c D]
 //                  [--runs N] [--variation X] [--closed-loop] [--rate-hz R]
 //   textbook-world --list | --makes | --probe flow|rest|hold|loops|relays|span|creep
 //
-// Without --make, the seed chooses the make. The strength of a cause is its excess error (strength.h)
-// divided by the noise of 0.04 mm. With --campaign the same finger and valve are driven by other waveforms,
-// with other noise. Z is added to every reading, D to every temperature. --runs is the number of logs [3; 1
-// with --poor]. --variation is the strength of the run-to-run variation (variation.h) [0]; with a variation
-// the sample rate of each log is also drawn. With --closed-loop a controller plays the commands of all logs.
+// Without --make, the seed chooses the make. The strength of a cause is its unexplained error (strength.h)
+// divided by the noise of 0.04 mm. With --campaign, the same finger and valve are driven by different
+// waveforms, with different noise. Z [mm] is added to every reading and D [degC] to every temperature. --runs
+// is the number of logs [3; 1 with --poor]. --variation is the strength of the run-to-run variation
+// (variation.h) [0]; with a variation the sample rate of each log is also drawn. With --closed-loop a
+// controller plays the commands of all logs.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -32,8 +33,8 @@ namespace {
 
 constexpr double noise_mm = 0.04, step_mm = 0.01, pressure_noise_kpa = 0.05, supply_noise_kpa = 0.3,
                  temperature_noise_c = 0.05;
-// Mechanisms above this size are visible, because white noise of 0.04 mm hides only much smaller mechanisms
-// over the 15,000 samples of a campaign.
+// Smallest displacement change by a mechanism that a diagnosis can detect. White noise of 0.04 mm hides only
+// much smaller changes over the 15,000 samples of a campaign.
 constexpr double visible_mm = noise_mm / 4;
 
 struct Arguments {
@@ -108,7 +109,7 @@ Arguments arguments(int argc, char** argv) {
   return a;
 }
 
-// Draws the noise of the sensors for successive samples.
+// Draws the noise of the sensors, sample after sample.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : random_(seed) {}
@@ -126,7 +127,8 @@ class Noise {
   std::normal_distribution<double> normal_{0, 1};
 };
 
-// Makes the commands the references of a controller, whose readings have the same noise as the log.
+// Converts the commands of a log to references of a controller. The readings of this controller have the same
+// noise as the log.
 void close_loop(textbook::Log& log, const textbook::World& world, double zero_mm, std::uint64_t seed) {
   Noise noise(seed);
   for (std::size_t k = log.unrecorded; k < log.command_kpa.size(); ++k)
@@ -166,8 +168,8 @@ void write_log(const std::string& path, const textbook::Log& log, const textbook
 void write_truth(const Arguments& a, const textbook::World& world, const std::map<std::string, double>& own,
                  const std::map<std::string, textbook::Scaled>& hidden) {
   std::ofstream file(a.truth);
-  // All digits are written: with six digits, the rounding error of a frequency would exceed the accuracy of
-  // an estimate from ten minutes of logs.
+  // The truth is written with all digits. With six digits, the rounding error of a frequency would exceed the
+  // error of an estimate from ten minutes of logs.
   file.precision(std::numeric_limits<double>::max_digits10);
   file << "{\"seed\": " << a.seed << ", \"strength\": " << a.strength << ", \"noise_mm\": " << noise_mm
        << ", \"make\": \"" << world.finger.make << "\", \"span_mm\": " << world.finger.span_mm

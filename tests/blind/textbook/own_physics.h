@@ -1,6 +1,6 @@
 #pragma once
-// Expresses the physics of a world without a hidden effect as causes that a diagnosis can report. If a
-// diagnosis reports one of these causes, the report is correct and not a false alarm.
+// Lists the causes that a diagnosis may correctly report for a world without a hidden effect, because the
+// valve and the finger of the world have these mechanisms. Such a report is not a false alarm.
 
 #include <map>
 #include <string>
@@ -25,8 +25,8 @@ namespace textbook {
 std::map<std::string, double> own_physics(const World& world, const std::vector<Log>& logs,
                                           std::uint64_t seed, double visible_mm);
 
-/// Time constant above which creep counts as slow. Each branch of a two-branch model that was identified from
-/// such logs is faster (10 s in given.yaml).
+/// Time constant [s] above which creep counts as slow. In a model with two creep branches that was identified
+/// from such logs, both branches are faster (10 s in given.yaml).
 inline constexpr double slowest_twin_s = 15;
 
 }  // namespace textbook

@@ -24,8 +24,8 @@ void probe_rest() {
   }
 }
 
-// Prints the true pressure one minute after a step to a level, from below and from above, and the change of
-// the pressure in the next 10 s.
+// Prints the true pressure one minute after a step to a level, once with a rising and once with a falling
+// step. Also prints the change of the pressure in the next 10 s.
 void probe_hold() {
   std::puts("seed,command_kpa,pressure_kpa,wander_kpa");
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -43,7 +43,8 @@ void probe_hold() {
   }
 }
 
-// Prints the displacement at working pressure after a very long hold next to the nominal span.
+// Prints two values for each make: the displacement at working pressure after a very long hold, and the
+// nominal span.
 void probe_span() {
   std::puts("make,seed,span_mm,displacement_mm");
   for (const std::string& make : makes()) {
@@ -90,8 +91,8 @@ void probe_loops() {
   }
 }
 
-// Prints a varying pressure and the output of the relays, so that another program can compare this output
-// with a sum over single relays.
+// Prints a varying pressure and the displacement of the Preisach model. Another program compares the
+// displacement with a sum over single relays.
 void probe_relays() {
   FingerNumbers numbers = draw_finger("preisach", 1);
   numbers.creep = numbers.curvature = 0;

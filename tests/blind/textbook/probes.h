@@ -1,5 +1,5 @@
 #pragma once
-// Tests single parts of the simulated worlds and prints the results as tables on the standard output.
+// Tests single components of the simulated worlds and prints the results as tables on the standard output.
 
 #include <string>
 

@@ -4,9 +4,9 @@
 //   textbook-rig --seed N --make NAME [--fingers 3]
 //
 // Listens on a free port of the loopback interface and prints it: "listening on 127.0.0.1:PORT". All fingers
-// are equal, and each has its own valve, so that controllers can be compared at the same time. Output i
-// commands finger i (0 to 10 V for 0 to 100 kPa). Input i is the sensor of finger i (0 to 10 V for -5 to 45
-// mm), and input 4 + i is the pressure of finger i. Ends when its client disconnects.
+// have the same parameters, and each has its own valve. So several controllers can run at the same time and
+// can be compared. Output i commands finger i (0 to 10 V for 0 to 100 kPa). Input i is the sensor of finger i
+// (0 to 10 V for -5 to 45 mm), and input 4 + i is the pressure of finger i. Ends when its client disconnects.
 #include <arpa/inet.h>
 #include <modbus/modbus.h>
 #include <unistd.h>
@@ -95,7 +95,7 @@ class Rig {
 
   modbus_mapping_t* mapping() const { return mapping_.get(); }
 
-  /// Simulates the time since the last call, and updates the inputs of the board.
+  /// Simulates the time from the last call until now, and updates the inputs of the board.
   void follow() {
     const auto now = std::chrono::steady_clock::now();
     for (; at_ + step_ <= now; at_ += step_) {
@@ -111,8 +111,8 @@ class Rig {
   }
 
  private:
-  // Returns a value whose high word comes first. The conversions of libmodbus are not used, because they have
-  // changed between versions.
+  // Returns two registers as one float value; the first register contains the high word. The conversions of
+  // libmodbus are not used, because they differ between its versions.
   double volts(int at, std::size_t i) const {
     const std::uint16_t* words = registers_of(at, i);
     return static_cast<double>(std::bit_cast<float>((static_cast<std::uint32_t>(words[0]) << 16) | words[1]));

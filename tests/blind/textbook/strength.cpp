@@ -21,8 +21,8 @@ std::vector<double> difference(std::vector<double> of, const std::vector<double>
   return of;
 }
 
-// Solves a linear system by Gaussian elimination with pivoting. The value of a direction that depends
-// linearly on the others is 0.
+// Solves a linear system by Gaussian elimination with pivoting. If a direction depends linearly on the
+// others, its coefficient is 0.
 std::vector<double> solved(std::vector<std::vector<double>> a, std::vector<double> b) {
   const std::size_t n = b.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -66,8 +66,8 @@ void Recalibration::add(std::vector<double> change_mm, double low, double high) 
   for (std::size_t i = 0; i + 1 < directions_.size(); ++i) products_[i].push_back(products_.back()[i]);
 }
 
-// At the optimum, every parameter is either free or at one of its bounds. The parameters are few, so all
-// combinations are tried. The optimum is the best combination that satisfies the bounds.
+// At the optimum, every parameter is either between its bounds or at one of them. There are only a few
+// parameters, so the function tries all combinations and takes the best one that respects the bounds.
 double Recalibration::left_mm(const std::vector<double>& difference_mm) const {
   const std::size_t n = directions_.size();
   const double square = dot(difference_mm, difference_mm);
@@ -149,8 +149,8 @@ Scaled Excess::scaled(const std::string& id, double target_mm) const {
     }
     return excess_mm;
   };
-  // The search goes upwards to the first amplitude that is large enough. It cannot start at the largest
-  // amplitude, because there a smaller gain may explain most of the effect.
+  // The search raises the amplitude until the error is large enough. It does not start at the largest
+  // amplitude, because a smaller gain may explain most of such a large effect.
   double low = std::log(1e-3), high = low, below = 0, above = at(low);
   while (above < target_mm && high < 0) {
     low = high;

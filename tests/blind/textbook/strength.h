@@ -1,5 +1,5 @@
 #pragma once
-// The strength of an effect in a world, and the scaling of an effect to a requested strength.
+// Computes the strength of an effect in a world, and scales an effect to a requested strength.
 
 #include <string>
 #include <vector>
@@ -8,15 +8,15 @@
 
 namespace textbook {
 
-/// Computes the part of a displacement difference that changes of a few parameters of the finger cannot
-/// explain. The difference is linear in these changes. Zero and gain are unbounded, and every other parameter
-/// stays within its bounds.
+/// Computes the part of a displacement change that a refit of the finger's parameters cannot explain. The
+/// model of the refit is linear in these parameters. Zero and gain have no bounds; every other parameter has
+/// bounds.
 class Recalibration {
  public:
-  /// Starts with only zero and gain as parameters.
+  /// Creates a refit with two parameters, zero and gain.
   explicit Recalibration(const std::vector<double>& displacement_mm);
-  /// Adds a parameter. A change by one unit changes the displacement by `change_mm`, and the parameter may
-  /// change by `low` to `high` units.
+  /// Adds a parameter to the refit. A change of the parameter by one unit changes the displacement by
+  /// `change_mm`. The parameter may change by `low` to `high` units.
   void add(std::vector<double> change_mm, double low, double high);
   /// Returns the RMS [mm] of the unexplained part of `difference_mm`.
   double left_mm(const std::vector<double>& difference_mm) const;
@@ -27,25 +27,25 @@ class Recalibration {
     double low, high;
   };
   std::vector<Direction> directions_;
-  std::vector<std::vector<double>> products_;  // scalar products of all directions
+  std::vector<std::vector<double>> products_;  // scalar products of all pairs of directions
 };
 
 struct Scaled {
   Numbers numbers;
   double excess_mm = 0;
-  bool reachable = true;  // true if the excess is within 15 % of the target
+  bool reachable = true;  // true if the unexplained error is within 15 % of the target
 };
 
-/// The strength of an effect is the part of its change of the displacement that a refitted model cannot
-/// explain, as RMS over the campaign. In the refit, zero and gain are unbounded, and the parameters of the
-/// finger (own_numbers) stay within the bounds of its make. The whole displacement change by a leak counts,
-/// because the measured pressure shows a leak, although a leak changes the displacement like a smaller gain.
+/// The strength of an effect is the part of its displacement change that a refitted model cannot explain, as
+/// RMS [mm] over the campaign. In the refit, zero and gain have no bounds, and the parameters of the finger
+/// (own_numbers) stay within the bounds of its make. A leak changes the displacement like a smaller gain, but
+/// the measured pressure shows the leak. Therefore the whole displacement change by a leak counts.
 class Excess {
  public:
   Excess(const World& world, const std::vector<Log>& logs, std::uint64_t seed);
   double of_mm(const Effects& effects) const;
-  /// Returns the effect with the smallest amplitude that gives `target_mm`, or with the nearest amplitude if
-  /// none does.
+  /// Returns the effect with the smallest amplitude whose strength is `target_mm`. If no amplitude has this
+  /// strength, returns the effect with the nearest strength.
   Scaled scaled(const std::string& id, double target_mm) const;
 
  private:

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Tests the physics of textbook-world by its output alone: test_textbook_world.py PROGRAM [unittest option ...]"""
+"""Tests the physics of textbook-world. The test reads only the output of the program. test_textbook_world.py PROGRAM
+[unittest option ...]"""
 import collections
 import csv
 import functools
@@ -38,7 +39,7 @@ def displacements(logs):
 
 
 def beyond_zero_and_gain(change, plain):
-    """Returns the RMS of the residual of `change` after a fit of a straight line in `plain`."""
+    """Fits the straight line offset + gain * `plain` to `change`. Returns the RMS of the residual."""
     count = len(change)
     change_mean, plain_mean = sum(change) / count, sum(plain) / count
     change, plain = [c - change_mean for c in change], [p - plain_mean for p in plain]
@@ -85,7 +86,7 @@ class Finger(unittest.TestCase):
         rows = [{name: float(value) for name, value in row.items()} for row in probe("relays")]
         width, envelope, span_mm = (rows[0][name] for name in ("width", "envelope", "span_mm"))
         count = 120
-        # Switching up at `on`, down at `off`; density 2 (1 + envelope off).
+        # Each relay switches on at `on` and off at `off`. Its weight is 2 (1 + envelope off).
         relays = [[(i + 0.5) / count, (j + 0.5) / count, False] for i in range(count) for j in range(i + 1)]
         half = [0.5 if on == off else 1 for on, off, _ in relays]
 
@@ -121,7 +122,8 @@ class Finger(unittest.TestCase):
                  if row["make"] == "fractional" and 0.1 < float(row["time_s"]) < 400}
         values = list(curve.values())
         steps = [b - a for a, b in zip(values, values[1:])]
-        # From one doubling of time to the next the step grows by 2^exponent; the exponent is drawn from 0.1 .. 0.25.
+        # The times are powers of 2. Each displacement step is larger than the step before by the factor
+        # 2^exponent. The exponent is drawn from 0.1 to 0.25.
         exponents = [math.log2(b / a) for a, b in zip(steps, steps[1:])]
         self.assertGreater(len(exponents), 8)
         for exponent in exponents:
@@ -142,7 +144,8 @@ class Campaign(unittest.TestCase):
         usual, often = (displacements(world(*rate)[0][:1]) for rate in ((), ("--rate-hz", "200")))
         change = [a - b for a, b in zip(usual, often[::2])]
         self.assertIn(len(often), range(2 * len(usual) - 2, 2 * len(usual) + 1))
-        # Two readings of 0.04 mm of noise each, and what a rarer look at the same valve makes of the command.
+        # The difference contains the noise of two readings, 0.04 mm each. It also contains the difference
+        # between commands that the valve samples at 100 Hz and at 200 Hz.
         self.assertLess(math.sqrt(sum(c * c for c in change) / len(change)), 0.07)
 
     def test_columns_can_be_left_out(self):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests trial.judge, the judgement of the diagnosis of a textbook world."""
+"""Tests trial.judge(), which judges the diagnosis of a textbook world."""
 import pathlib
 import sys
 import unittest

@@ -1,7 +1,9 @@
-"""Makes, diagnoses and judges one world of textbook physics. The fixed worlds and the campaign use this module.
+"""Simulates one world with textbook equations, diagnoses its logs and judges the diagnosis. The fixed worlds and the
+campaign use this module.
 
-A world: causes, strength, seed, make, columns (`pressure` or `command`: whether the measured pressure is recorded) and
-given (`plain` or `commissioned`: which model the diagnosis starts from).
+A world has these keys: causes, strength, seed, make, columns and given. `columns` is `pressure` if the measured
+pressure is recorded, otherwise `command`. `given` selects the model with which the diagnosis starts, see
+given_model().
 """
 import json
 import pathlib
@@ -17,8 +19,9 @@ import judging  # noqa: E402
 import varying  # noqa: E402
 
 GIVEN = HERE / "given.yaml"
-NOISE_MM = 0.04  # noise of the readings that textbook-world writes
-# What the structure that the logs choose may leave of a world without an effect, held out, over the noise.
+NOISE_MM = 0.04  # RMS noise of the readings that textbook-world writes [mm]
+# Largest permitted held-out error of the identified structure in a world without an effect, divided by the
+# noise.
 HELD_OUT_AT_MOST = {"pressure": 1.6, "command": 5}
 
 
@@ -31,8 +34,8 @@ def listed(build, option):
 
 
 def judge(hidden, own, diagnosis):
-    """Returns the judgement of a diagnosis if `hidden` (ids) is the truth and `own` (ids) are the causes of the world
-    without a hidden effect.
+    """Returns the judgement of a diagnosis. `hidden` contains the ids of the hidden effects. `own` contains the
+    causes that the world has even without a hidden effect.
 
     found    hidden causes that are reported or are alternatives of a reported cause; each report finds at most one
     alone    found causes that are reported without alternatives
@@ -60,12 +63,12 @@ def judge(hidden, own, diagnosis):
 
 
 def hiding(world):
-    """Returns the options of make_logs() that hide the causes of the world."""
+    """Returns the options for make_logs() that add the hidden effects of the world."""
     return ["--cause", ",".join(world["causes"]), "--strength", str(world["strength"])] if world["causes"] else []
 
 
 def make_logs(build, work, world, *options):
-    """Returns (paths of the logs, truth)."""
+    """Writes the logs of the world. Returns (paths of the logs, truth)."""
     command = [program(build), "--seed", str(world["seed"]), "--make", world["make"], "--out", work / "logs", "--truth",
                work / "truth.json", *varying.of_generator(world), *options]
     if world["columns"] == "pressure":
@@ -75,15 +78,16 @@ def make_logs(build, work, world, *options):
 
 
 def identified(build, logs, out, threads):
-    """Returns identify.json with the structure that is identified from the logs, or None."""
+    """Identifies a model from the logs. Returns the content of identify.json, or None if the program fails."""
     done = subprocess.run([build / "tools/softgrip", "identify", "--structure", "auto", "--data", *logs, "--out", out,
                            "--threads", str(threads)], capture_output=True, text=True)
     return json.loads((out / "identify.json").read_text()) if done.returncode == 0 else None
 
 
 def given_model(build, work, world, threads):
-    """`plain`: the Bouc-Wen twin of another finger. `commissioned`: what `softgrip identify --structure auto` makes of
-    another campaign of this finger, on which nothing is hidden."""
+    """Returns the path of the model with which the diagnosis starts. `plain`: a Bouc-Wen model of a different finger.
+    `commissioned`: the model that `softgrip identify --structure auto` identifies from another campaign of this
+    finger without a hidden effect."""
     if world["given"] == "plain":
         return GIVEN
     logs, _ = make_logs(build, work / "healthy", world, "--campaign", "1")
@@ -91,7 +95,7 @@ def given_model(build, work, world, threads):
 
 
 def held_out(build, logs, work, threads):
-    """Returns the held-out error of the identified structure, divided by the noise, and the description of the
+    """Identifies a model from the logs. Returns its held-out error, divided by the noise, and the description of its
     structure."""
     report = identified(build, logs, work / "identified", threads)
     if report is None:
@@ -117,7 +121,7 @@ def diagnosed(build, model, logs, work, world, threads):
 
 
 def run_world(build, folder, world, threads=1):
-    """Makes the world and diagnoses its logs. Returns the world with the results."""
+    """Simulates and diagnoses the world. Returns a copy of the world with the results added."""
     build = pathlib.Path(build).resolve()
     work = pathlib.Path(tempfile.mkdtemp(dir=folder))
     try:

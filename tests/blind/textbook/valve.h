@@ -1,16 +1,16 @@
 #pragma once
-// An electro-pneumatic regulator from textbook equations, with ISO 6358 ports on a spool, a tube, and the
-// volume of the finger. Pressures are absolute, in kPa; volumes in dm3; conductances in dm3/(s kPa) at the
-// reference state.
+// A model of an electro-pneumatic pressure regulator from textbook equations. It consists of a spool with ISO
+// 6358 ports, a tube, and the volume of the finger. Pressures are absolute, in kPa; volumes are in dm3;
+// conductances are in dm3/(s kPa) at the reference state.
 
 namespace textbook {
 
 inline constexpr double atmosphere_kpa = 101.325;
-inline constexpr double reference_kpa = 100;  // ISO 8778
+inline constexpr double reference_kpa = 100;  // reference pressure of ISO 8778
 
-/// Returns the flow of ISO 6358-1 [dm3/s at the reference state] from `from_kpa` to `to_kpa`, negative in the
-/// other direction. The flow is choked at and below the critical pressure ratio `b`. It is linear above a
-/// ratio of 0.995, where the slope of the standard is infinite.
+/// Returns the flow of ISO 6358-1 [dm3/s at the reference state] from `from_kpa` to `to_kpa`, negative if the
+/// gas flows from `to_kpa` to `from_kpa`. The flow is choked at and below the critical pressure ratio `b`. It
+/// is linear above a ratio of 0.995, where the slope of the standard is infinite.
 double flow_dm3_s(double conductance, double b, double from_kpa, double to_kpa) noexcept;
 
 struct ValveNumbers {
@@ -22,14 +22,14 @@ struct ValveNumbers {
   double proportional_per_kpa = 0.08, integral_per_kpa_s = 0.25;
   double spool_lag_s = 0.012;
   double overlap = 0.04;               // share of the spool's travel, in either direction
-  double pilot_hysteresis_kpa = 0.15;  // half the width of the hysteresis
+  double pilot_hysteresis_kpa = 0.15;  // half the width of the hysteresis of the pilot stage
 };
 
 /// A valve with isothermal chambers, in which V dp/dt = reference pressure x flow.
 class Valve {
  public:
   explicit Valve(const ValveNumbers& numbers) noexcept : numbers_(numbers) {}
-  /// Simulates one step of `step_s` (at most 0.25 ms with the default numbers).
+  /// Simulates one step of `step_s`, which may be at most 0.25 ms with the default parameters.
   void step(double command_kpa, double supply_kpa, double step_s) noexcept;
   double gauge_kpa() const noexcept { return finger_kpa_ - atmosphere_kpa; }
   double air_kpa_dm3() const noexcept {

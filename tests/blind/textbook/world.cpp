@@ -14,8 +14,8 @@ constexpr double valve_step_s = 0.00025;
 constexpr int finger_steps = 5;     // number of steps of the finger per sample
 constexpr double supply_kpa = 200;  // nominal supply pressure (gauge)
 
-// The parameters of the effects. They are looked up once, because a world is simulated in millions of steps.
-// The parameters of a missing effect are 0.
+// The parameters of the effects of a world. They are looked up once per world, because the simulation takes
+// millions of steps. The parameters of an effect that the world does not have are 0.
 struct Hidden {
   const Effects& effects;
 
@@ -70,12 +70,12 @@ struct Hidden {
   }
 };
 
-// The state that continues from one log to the next.
+// The age of the finger and its largest load, which continue from one log to the next.
 struct Age {
   double time_s = 0, largest_kpa = 0;
 };
 
-// Computes the setpoint of the regulator, sample by sample.
+// Computes the setpoint of the pressure regulator, sample by sample.
 class Asked {
  public:
   Asked(const Hidden& hidden, const Log& log) : h_(hidden), log_(log) {}
@@ -109,7 +109,7 @@ ValveNumbers numbers_of(const World& world, const Hidden& hidden) {
   return numbers;
 }
 
-// The line from the command to the pressure at the finger.
+// The pressure line between the command and the finger, with the regulator.
 class Line {
  public:
   Line(const World& world, const Hidden& hidden, const Log& log, const std::vector<double>& command)
@@ -119,7 +119,7 @@ class Line {
         asked_(hidden, log),
         now_(asked_.at(0, command)) {}
   double gauge_kpa() const { return perfect_ ? now_ : valve_.gauge_kpa(); }
-  // Simulates from sample `k` to the next one. After the last sample the setpoint remains constant.
+  // Simulates from sample `k` to the next sample. After the last sample, the setpoint stays constant.
   void advance(std::size_t k, const std::vector<double>& command) {
     const double next = k + 1 < command.size() ? asked_.at(k + 1, command) : now_;
     const int steps = perfect_ ? 0 : static_cast<int>(std::lround(1 / (log_.rate_hz * valve_step_s)));
@@ -153,7 +153,7 @@ class Body {
   Body(const World& world, const Hidden& hidden, Age& age, const Log& log)
       : h_(hidden), age_(age), log_(log), finger_(world.finger), span_(world.finger.span_mm) {}
 
-  // Returns the displacement at sample `k`. The pressure has changed linearly since the previous sample.
+  // Returns the displacement at sample `k`. Between two samples, the pressure changes linearly.
   double sample(std::size_t k, double pressure_kpa) {
     double y = 0;
     for (int i = 1; i <= finger_steps; ++i) {
@@ -195,7 +195,8 @@ class Body {
       const double below = 1 - std::exp(-(age_.largest_kpa - p) / h_.stress_softening_range_kpa);
       y *= 1 + h_.stress_softening_share * below * age_.largest_kpa / working_kpa;
     }
-    const double per_mm = h_.stiffening_per_mm;  // stiffening does not change the span of the finger
+    const double per_mm = h_.stiffening_per_mm;  // this factor is 1 at the span, so stiffening keeps the span
+                                                 // of the finger
     return y * (1 + per_mm * span_) / (1 + per_mm * std::max(0.0, y));
   }
   double loaded(double y, double dt) {
@@ -259,14 +260,15 @@ class WrongSamples {
   std::uniform_real_distribution<double> chance_{0, 1};
 };
 
-// Follows the reference of a log. Without a reference the commands do not change.
+// Runs the controller that follows the reference of a log. If the log has no reference, the commands stay
+// unchanged.
 class Follower {
  public:
   Follower(const World& world, const Log& log) : log_(log) {
     if (!log.reference_mm.empty())
       controller_.emplace(world.finger.span_mm / working_kpa, working_kpa, log.rate_hz);
   }
-  // Sets the command of the sample after `k`, whose reading without noise is `y`.
+  // Computes the command of sample `k` + 1. `y` is the displacement at sample `k` without sensor noise.
   void decide(std::size_t k, double y, std::vector<double>& command) {
     if (!controller_ || k < log_.unrecorded || k + 1 >= command.size()) return;
     command[k + 1] = controller_->step(log_.reference_mm[k + 1], y + log_.noise_mm[k - log_.unrecorded]);

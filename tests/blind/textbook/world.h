@@ -1,6 +1,6 @@
 #pragma once
-// Simulated worlds of textbook physics. A world consists of a valve, a finger, added effects and a campaign
-// of logs, all drawn from a seed.
+// Simulated worlds with textbook equations. A world consists of a valve, a finger, added effects and a
+// campaign of logs. A seed determines all of them.
 
 #include <cstdint>
 #include <map>
@@ -17,18 +17,18 @@ using Effects = std::map<std::string, Numbers>;
 
 struct Log {
   double rate_hz = 100;
-  // One value per sample; supply_kpa is a gauge pressure.
+  // The inputs of a log, one value per sample. supply_kpa is a gauge pressure.
   std::vector<double> command_kpa, temperature_c, supply_kpa;
   // Run-to-run variation (variation.h).
   double gain = 1, offset_mm = 0;
-  std::size_t unrecorded = 0;  // number of first samples that precede the recording
-  // Closed loop: a controller follows the reference from the first recorded sample on. Its sensor adds
-  // `noise_mm`, one value per recorded sample.
+  std::size_t unrecorded = 0;  // number of samples at the start that are not recorded
+  // Closed loop: from the first recorded sample on, a controller follows the reference. `noise_mm` is the
+  // noise of the controller's sensor, one value per recorded sample.
   std::vector<double> reference_mm, noise_mm;
 };
 
 struct Answer {
-  // The played command, the pressure at the finger, and the displacement without noise.
+  // The outputs of a log: the played command, the pressure at the finger, and the displacement without noise.
   std::vector<double> command_kpa, pressure_kpa, displacement_mm;
 };
 
@@ -53,13 +53,13 @@ std::vector<Log> draw_campaign(const Campaign& campaign);
 void drop_unrecorded(Log& log, Answer& answer);
 double duration_s(const std::vector<Log>& logs);
 
-/// Simulates all logs. Every log starts at rest; age, drift and the largest load continue from log to log.
-/// The time step of the valve is 0.25 ms.
+/// Simulates all logs. Every log starts at rest; the age, the drift and the largest load of the finger
+/// continue from log to log. The time step of the valve is 0.25 ms.
 std::vector<Answer> simulate(const World& world, const Effects& effects, const std::vector<Log>& logs,
                              std::uint64_t seed);
 
-/// Computes only the pressures at the finger, log by log. They take most of the time of a simulation and are
-/// equal for all effects that do not act on the pressure.
+/// Computes only the pressures at the finger, log by log. This takes most of the time of a simulation. The
+/// result can be used for all effects that do not change the pressure.
 using Pressures = std::vector<std::vector<double>>;  // gauge, kPa
 Pressures simulate_pressures(const World& world, const Effects& effects, const std::vector<Log>& logs);
 bool acts_on_pressure(const Effects& effects);
@@ -70,8 +70,8 @@ std::vector<double> displacements(const World& world, const Effects& effects, co
 std::vector<double> displacements(const World& world, const Effects& effects, const std::vector<Log>& logs,
                                   std::uint64_t seed);
 
-/// The conditions for which an effect is drawn: the world, its range of motion and the duration of the
-/// campaign.
+/// The conditions from which the parameters of an effect are drawn: the world, its largest displacement and
+/// the duration of the campaign.
 struct Setting {
   World world;
   double largest_mm = 0;  // largest displacement of the campaign, without effects
@@ -79,8 +79,8 @@ struct Setting {
 };
 
 const std::vector<std::string>& library_ids();
-/// Returns the parameters of an effect at amplitude 0 < s <= 1. The parameters that do not scale with the
-/// amplitude are drawn from the seed.
+/// Returns the parameters of an effect. Amplitude `s` is between 0 and 1; 1 is the largest physical size. The
+/// parameters that do not depend on the amplitude are drawn from the seed.
 Numbers draw_effect(const std::string& id, double s, const Setting& setting, std::uint64_t seed);
 
 }  // namespace textbook
