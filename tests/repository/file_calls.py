@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Checks that one place opens files for reading (base/files.cpp) and one place writes them (base/file_writing.cpp).
+"""Checks that only base/files.cpp opens files for reading, and only base/file_writing.cpp writes files.
 
 Every other call in the C++ code of the programs that opens, creates or renames a file must be listed in file_calls.txt
 with its reason:
 
     PATH: COUNT CALL: REASON
 
-The list may only become shorter: an entry whose call does not exist any more must be deleted. Calls that open a folder
-are not counted.
+The list may only become shorter: if a call is removed, its entry must be deleted. Calls that open a folder are not
+counted.
 """
 
 import pathlib
@@ -19,7 +19,8 @@ from tree import ROOT
 
 LIST = pathlib.Path(__file__).with_name("file_calls.txt")
 THE_PLACES = ("base/files.cpp", "base/file_writing.cpp")
-# By the name in the list. open() without :: is the system call if it has a flag of the system.
+# Maps the name of a call in the list to a regular expression. open() without :: counts as the system call if
+# one of its arguments is a flag such as O_RDONLY.
 CALLS = {
     "fstream": r"\bstd::(?:basic_)?[io]?f(?:stream|ilebuf)\b",
     "fopen": r"\b(?:fopen|fopen64|freopen|fdopen|tmpfile)\s*\(",
@@ -76,7 +77,8 @@ def findings_in(sources, allowed):
 
 
 def check_itself():
-    """Checks that every kind of call is found in code, but not in a comment or a string."""
+    """Checks that the regular expressions find every type of call in code, and do not find a call in a comment or a
+    string."""
     examples = {"fstream": "std::ofstream file(path);", "fopen": "std::fopen(path, mode);",
                 "open": "int file = open(path.c_str(),\n  O_WRONLY | O_CREAT);", "mkstemp": "::mkstemp(name);",
                 "rename": "fs::rename(from, to, error);", "copy": "fs::copy_file(from, to);", "resize": "ftruncate(file, 0);",

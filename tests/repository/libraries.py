@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Checks that the table of docs/explanation/libraries.md has the linked libraries: libraries.py --build BUILD_DIR
+"""Checks that the table in docs/explanation/libraries.md lists the libraries with which the programs are linked:
+libraries.py --build BUILD_DIR
 
-A program may load fewer libraries (--as-needed).
+With the linker option --as-needed, a program may load fewer libraries than its link command names.
 """
 
 import argparse

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Checks that every test to which a document refers exists: named_tests.py [--build BUILD_DIR]
 
-A test is named in inline code or in a code block: `Suite.Name` of GoogleTest, `test_module`, `test_module.Class` or
-`test_module.Class.test_method` of Python, `repository.name` of CTest, and `name_test`, a program or a file. `*`
-stands for any text. `.Name*` belongs to the suite of the word before it. The tests of CTest are read from BUILD_DIR.
+A document names a test in inline code or in a code block. The name can be `Suite.Name` of GoogleTest,
+`repository.name` of CTest, or `name_test`, a program or a file. In Python, the name is `test_module`,
+`test_module.Class` or `test_module.Class.test_method`. `*` matches any text. In `.Name*`, the suite is that of the
+preceding word. The tests of CTest are read from BUILD_DIR.
 """
 
 import argparse
@@ -28,8 +29,8 @@ def google_tests():
 
 
 def python_tests():
-    """Returns module, module.Class and module.Class.test_method of every test_*.py, and the names of the methods
-    alone."""
+    """Returns the names of the Python tests: module, module.Class and module.Class.test_method of every test_*.py,
+    and the names of the methods without module and class."""
     names = set()
     for name in tree.names():
         file = tree.ROOT / name
@@ -52,8 +53,8 @@ def cmake_texts():
 
 
 def ctest_tests(build):
-    """Returns the tests of CTest. Without a build, returns the tests whose complete name is in a CMakeLists.txt, with *
-    for a variable."""
+    """Returns the names of the tests that CTest lists. Without a build, returns the names that are written out in a
+    CMakeLists.txt. In these names, * replaces a CMake variable."""
     if build and (build / "CTestTestfile.cmake").exists():
         texts = [file.read_text() for file in (build / "tests").rglob("CTestTestfile.cmake")]
         return {name for text in texts for name in re.findall(r"^add_test\(\[=\[(.*?)\]=\]", text, re.MULTILINE)}
@@ -62,7 +63,7 @@ def ctest_tests(build):
 
 
 def test_programs():
-    """Returns the programs of GoogleTest and the stems of their files."""
+    """Returns the names of the GoogleTest programs, and the names of their source files without the ending."""
     programs = {name for text in cmake_texts() for name in re.findall(r"softgrip_test\((\w+)", text)}
     stems = {pathlib.PurePosixPath(name).stem for name in tree.names()
              if re.search(r"_test\.(cpp|sh)$", name) or re.fullmatch(r"tests/.*_test\.py", name)}
@@ -75,7 +76,7 @@ class Tests:
         self.programs = test_programs()
 
     def exists(self, word):
-        """Returns whether the test exists, or None if the word is not the name of a test."""
+        """Returns True if the test exists, False if it does not, and None if the word is not the name of a test."""
         if re.fullmatch(r"[A-Z]\w*\*?\.[A-Z*][\w*]*|\*?[A-Z]\w*\*", word):
             return any(fnmatch.fnmatchcase(name, word) for name in self.google)
         if re.fullmatch(r"test_\w+(\.\w[\w*]*)*", word) and not word.endswith(".py"):

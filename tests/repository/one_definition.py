@@ -1,6 +1,6 @@
 """Finds two types with the same name in the same namespace, in headers that do not include each other. Such types
-compile and link, but the program crashes, because the linker uses one destructor for both types. Prints each pair; exit
-code 1 if there is one.
+compile and link, but the program crashes, because the linker uses one destructor for both types. Prints each pair of
+types. The exit code is 1 if there is a pair.
 
     one_definition.py
 """
@@ -16,8 +16,8 @@ DECLARED = re.compile(r"^(?:struct|class|enum class) (?:\[\[\w+\]\] )?(\w+)(?: f
 
 
 def types_of(text):
-    """Returns (namespace, name) of every type that begins a line. The namespace is the last one that was opened before
-    the type."""
+    """Returns (namespace, name) of every type whose declaration starts at the beginning of a line. The namespace is
+    the last one that is opened before the declaration."""
     for found in DECLARED.finditer(text):
         opened = re.findall(r"^namespace ([\w:]+) \{", text[:found.start()], re.M)
         yield (opened[-1] if opened else "", found[1])

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Checks that every file, link and program that the documents name exists, and that no page has the same heading
-twice: paths.py [--build BUILD_DIR]
+"""Checks that every file, link and program that the documents name exists, and that no page contains a heading twice:
+paths.py [--build BUILD_DIR]
 
-It reads the pages of the top folder and docs/. A word of inline code or of a code block is a path of the project if its
-first part is a folder of the project. The programs below build/ are read from BUILD_DIR's ninja file. `*`, `{a,b}` and
-CAPITALS (the reader's own values) match everything that fits.
+It reads the pages of the top folder and docs/. A word of inline code or of a code block is a path of the project if
+its first part is a folder of the project. The programs in build/ are read from the ninja file in BUILD_DIR. `*` and
+words in CAPITALS (values that the reader chooses) match any text; `{a,b}` matches a or b.
 """
 
 import argparse
@@ -29,7 +29,7 @@ def names_and_folders():
 
 
 def programs(build):
-    """Returns the files that ninja makes, relative to the build folder, or None without a build."""
+    """Returns the paths of the files that ninja builds, relative to the build folder, or None without a build."""
     file = build / "build.ninja" if build else None
     if file is None or not file.exists():
         return None
@@ -37,19 +37,19 @@ def programs(build):
 
 
 def alternatives(word):
-    """a{b,c}d -> abd, acd"""
+    """Expands braces: a{b,c}d gives abd and acd."""
     parts = re.split(r"\{([^{}]*,[^{}]*)\}", word)
     choices = [part.split(",") if index % 2 else [part] for index, part in enumerate(parts)]
     return ["".join(choice) for choice in itertools.product(*choices)]
 
 
 def pattern_of(word):
-    """Returns a pattern in which the reader's own values match any text."""
+    """Returns a regular expression for the word, in which the values that the reader chooses match any text."""
     return re.sub(r"<[^<>]*>|\b[A-Z][A-Z_]+\b(?![.])", "*", word)
 
 
 def lines_of(text):
-    """Returns (line number, line, True in a code block) of every line."""
+    """Yields (line number, line, inside) for every line. `inside` is True if the line is in a code block."""
     inside = False
     for number, line in enumerate(text.splitlines(), 1):
         if line.lstrip().startswith("```"):
@@ -59,7 +59,7 @@ def lines_of(text):
 
 
 def words_of(text):
-    """Returns (line number, word) of inline code and of code blocks."""
+    """Yields (line number, word) for each word of inline code and of code blocks."""
     for number, line, inside in lines_of(text):
         for code in [line] if inside else re.findall(r"`([^`]+)`", line):
             for word in re.split(r"[\s'\"=()|;]+", code):
@@ -67,7 +67,8 @@ def words_of(text):
 
 
 def made_by_the_reader(document, text):
-    """Returns the files that the reader of a how-to page makes: those of its code blocks, and examples."""
+    """Returns a function that is true for the files that the reader of a how-to page creates. These are the files of
+    the page's code blocks and files whose names contain "example"."""
     if not document.name.startswith("add-"):
         return lambda word: False
     files = set(re.findall(r"^```\w+ file=(\S+)", text, re.MULTILINE))
@@ -75,7 +76,7 @@ def made_by_the_reader(document, text):
 
 
 def headings_of(text):
-    """Returns (line number, heading) of every heading."""
+    """Yields (line number, heading) for every heading."""
     for number, line, inside in lines_of(text):
         if not inside and re.match(r"#+ +", line):
             yield number, line.lstrip("#").strip()
@@ -138,8 +139,8 @@ class Judge:
             self.findings.append(f"{place}: the link `{target}`: that page has no such heading")
 
     def headings(self, document, text):
-        """Checks for repeated headings. The link to such a heading is ambiguous, and the text may have been pasted
-        twice."""
+        """Checks that no heading is repeated. A link to a repeated heading is ambiguous, and a repeated heading can
+        show that the text was pasted twice."""
         seen = {}
         for number, heading in headings_of(text):
             if heading in seen:

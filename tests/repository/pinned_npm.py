@@ -1,5 +1,5 @@
-"""Checks that npm packages are pinned: exact versions, a hash of each package, and no address of a registry, so that
-the registry of the machine is used."""
+"""Checks that npm packages are pinned. The lock file must contain exact versions and a hash of each package. It must
+not contain the address of a registry, so that npm uses the registry that the machine is configured for."""
 
 import json
 import pathlib

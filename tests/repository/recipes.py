@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Checks that the edits of the how-to pages fit the sources. The edits are made in a copy, without the builds of `ctest
--L recipe`."""
+"""Checks that the edits of the how-to pages fit the sources. The check makes the edits in a copy of the sources but
+does not build it; `ctest -L recipe` also builds the copy."""
 
 import pathlib
 import sys

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Checks that each page of docs/results begins with the meaning of its result and a table of version, date, command
-and conditions, and that each page of docs/ is linked from docs/README.md or docs/results/README.md."""
+"""Checks each page of docs/results. The page must begin with the meaning of its result, followed by a table of
+version, date, command and conditions. Also checks that docs/README.md or docs/results/README.md has a link to each
+page of docs/."""
 
 import re
 import sys

@@ -1,4 +1,5 @@
-"""Compares the rooms of cmake/rooms.cmake with the code and with docs/explanation/architecture.md.
+"""Compares the rooms (source folders with permitted includes) of cmake/rooms.cmake with the code and with
+docs/explanation/architecture.md.
 
     rooms.py            fails if a folder with code is no room, if no include needs an arrow, or if the table of the
                         page differs from rooms.cmake
@@ -16,7 +17,8 @@ product = "base document model control drivers simulation rig daemon sysid tools
 
 
 def rooms():
-    """Returns [(folder, other folders, rooms that it may use)] in the order of the file."""
+    """Returns [(folder, further folders of the room, rooms whose headers it may include)] in the order of the
+    file."""
     text = re.sub(r"#.*", "", (source / "cmake/rooms.cmake").read_text())
     found = []
     for call in re.findall(r"softgrip_room\(([^)]*)\)", text):
@@ -41,7 +43,7 @@ def included_by(folders):
 
 
 def table(known):
-    """Returns the table of the page. `known`: content of each room, by folder."""
+    """Returns the table of the page. `known` maps the folder of each room to the text that describes its content."""
     lines = ["| room | content | may include |\n", "|---|---|---|\n"]
     for folder, _, uses in rooms():
         lines.append(f"| `{folder}` | {known.get(folder, '')} | {', '.join(uses)} |\n")

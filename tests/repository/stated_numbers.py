@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Checks that numbers and names in documents agree with the sources: threads, fingers, worlds, and files that
-include Ceres. The figures of README.md must be on the pages to which it links."""
+"""Checks that numbers and names in documents agree with the sources. These are the threads, the fingers, the
+simulated worlds, and the files that include Ceres. The figures of README.md must be on the pages to which README.md
+links."""
 
 import re
 import sys
@@ -49,7 +50,8 @@ def fingers():
 
 
 def worlds():
-    """Returns the numbers of rows in the tables from which tests/blind makes tests: in every run, and with --all."""
+    """Returns two numbers of rows in the tables of simulated worlds in tests/blind: the rows that every test run
+    uses, and the rows that a run with --all uses."""
     counts = {"": 0, "more_": 0}
     for more in counts:
         for folder, name, world in (("", "fixed_worlds", WORLD), ("textbook/", "fixed_worlds", WORLD),
@@ -70,7 +72,8 @@ def includes_of_ceres():
 
 
 def front_page():
-    """Checks that each version and each count or comparison is on a page to which its row or sentence links."""
+    """Checks the figures of README.md. Each version hash, count and comparison must be on a page to which its table
+    row or sentence links."""
     body = text("README.md").split("## Four results")[1]
     for part in re.split(r"\n(?=[|-]|\n)", body):
         linked = " ".join(one_line(re.sub(r"#.*", "", link)) for link in re.findall(r"\]\(([^)]+\.md[^)]*)\)", part))

@@ -1,4 +1,5 @@
-"""Lists the files of the project that git tracks. In a tarball, lists all files except those of a build."""
+"""Lists the files of the project that git tracks. If the sources come from a tarball, lists all files that do not
+belong to a build."""
 
 import pathlib
 import subprocess

@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""Checks that the includes of a test reach every header, or that untested_headers.txt has the header with a reason.
-
-The list may only become shorter: a header that a test reaches, or that was deleted, must be removed from it.
-"""
+"""Checks that tests include every header, directly or through another header. If no test reaches a header,
+untested_headers.txt must list this header with a reason. The list may only become shorter. So a listed header must be
+removed from the list when a test reaches it or when it is deleted."""
 
 import pathlib
 import re
