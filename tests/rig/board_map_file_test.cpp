@@ -11,7 +11,7 @@ using namespace drivers;
 
 const std::string boards = SOFTGRIP_SOURCE_DIR "/config/boards/";
 
-/// A small valid board map, of which each test changes one line.
+/// A small valid board map. Each test changes one of its lines.
 const std::string valid = R"(name: test
 source: a test
 address_base: 1
@@ -111,12 +111,12 @@ TEST(BoardMapFile, AdamHasTheRegistersOfItsManual) {
   document::Problems problems;
   const auto map = load_board_map(boards + "adam-6024.yaml", problems);
   ASSERT_TRUE(map.has_value()) << problems.format();
-  EXPECT_EQ(map->inputs.registers.address, 0);  // 40001
+  EXPECT_EQ(map->inputs.registers.address, 0);  // register 40001 has address 0
   EXPECT_EQ(map->inputs.registers.count, 6);
-  EXPECT_EQ(map->outputs.registers.address, 10);  // 40011
+  EXPECT_EQ(map->outputs.registers.address, 10);  // register 40011 has address 10
   EXPECT_EQ(map->outputs.registers.count, 2);
   ASSERT_TRUE(map->input_status.has_value());
-  EXPECT_EQ(map->input_status->registers.address, 20);  // 40021
+  EXPECT_EQ(map->input_status->registers.address, 20);  // register 40021 has address 20
   EXPECT_DOUBLE_EQ(map->inputs.scaling.y_at(65535), 10);
   EXPECT_DOUBLE_EQ(map->outputs.scaling.x_at(10), 4095);
 }
@@ -221,8 +221,8 @@ TEST(BoardMapFile, AModuleMayHaveOneDirectionOnly) {
   EXPECT_TRUE(inputs.map->has_inputs());
   EXPECT_FALSE(inputs.map->has_outputs());
 
-  // The keys of inputs require `inputs`, the keys of outputs require `outputs`, and a module needs at least
-  // one of the two.
+  // Keys of inputs require the key `inputs`, and keys of outputs require the key `outputs`. A module needs at
+  // least one of these two keys.
   EXPECT_NE(
       read(without(valid, "inputs:", "outputs:")).problems.format().find("`input_status` needs `inputs`"),
       std::string::npos);
@@ -291,8 +291,9 @@ TEST(BoardMapFile, AHeartbeatHasTwoValuesThatDiffer) {
       << "only a heartbeat may have alternating values";
 }
 
-/// Some couplers reset their watchdog only for function codes in a mask. The reader computes this mask from
-/// the function codes in the file and checks that they include the function that writes the outputs.
+/// Some couplers reset their watchdog only for certain function codes, which a mask selects. The reader
+/// computes this mask from the function codes in the file. It also checks that the mask includes the function
+/// code that writes the outputs.
 TEST(BoardMapFile, AMaskOfFunctionsIsMadeOfThem) {
   std::string text = valid;
   text.replace(text.find("functions: [16]"), 15, "functions: [3, 16, 23]");

@@ -1,5 +1,5 @@
-// Fuzz target: takes arbitrary bytes as a board map. The reader must return a map with usable values, or a
-// refusal with a location.
+// Fuzz target: passes arbitrary bytes to the reader of board maps. The reader must return a map with usable
+// values, or refuse the bytes with a line and a column.
 //
 //   scripts/fuzz.sh board_map_fuzz 30
 
@@ -20,7 +20,7 @@ void require(bool holds) {
 }
 
 void check(const drivers::TerminalBlock& block) {
-  if (block.registers.count == 0) return;  // a module without inputs or without outputs
+  if (block.registers.count == 0) return;  // this module has no inputs or no outputs
   require(std::isfinite(block.raw_min) && std::isfinite(block.raw_max) && block.raw_min < block.raw_max);
   for (const double raw : {block.raw_min, block.raw_max}) {
     const double electrical = block.scaling.y_at(raw);

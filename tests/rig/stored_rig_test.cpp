@@ -14,7 +14,7 @@ RigFile shipped(const std::string& name) {
   return rig ? std::move(*rig) : RigFile{};
 }
 
-/// Returns the files with other paths, which do not exist.
+/// Returns a copy of the files in which the paths are replaced by paths that do not exist.
 std::vector<InputFile> elsewhere(std::vector<InputFile> files) {
   const std::string from = SOFTGRIP_SOURCE_DIR "/config";
   for (InputFile& file : files) {

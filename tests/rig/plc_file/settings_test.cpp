@@ -18,7 +18,7 @@ std::string shipped() {
   return text.str();
 }
 
-/// Returns the problems that are reported after the text `was` of the shipped file has been replaced by `is`.
+/// Replaces the text `was` of the shipped file by `is`. Returns the problems of the changed file.
 std::string said_of(const std::string& was, const std::string& is) {
   std::string text = shipped();
   const std::size_t at = text.find(was);

@@ -10,7 +10,7 @@
 namespace softgrip::web::settings_test {
 namespace {
 
-/// Returns the problems that are reported after the text `was` of the shipped file has been replaced by `is`.
+/// Replaces the text `was` of the shipped file by `is`. Returns the problems of the changed file.
 std::string said_of(const std::string& was, const std::string& is) {
   std::string text = *read_file(SOFTGRIP_SOURCE_DIR "/config/web.yaml", 65536);
   const std::size_t at = text.find(was);
