@@ -1,5 +1,5 @@
-// Tests boards and gateways with peculiarities, on real sockets and serial lines. The emulator has the
-// peculiarity, and the driver can communicate with it only if the corresponding key is set.
+// Tests boards and gateways with unusual behaviour, on real sockets and serial lines. The emulator has the
+// behaviour. The driver can communicate with the emulator only if the key for this behaviour is set.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ RunningRigSettings rig_with(FaultSpec habit) {
   habit.name = "habit";
   RunningRigSettings settings;
   settings.maps = {shipped("softgrip-sim.yaml")};
-  settings.maps[0].watchdog.timeout_s = 60;  // long enough for the pauses of a busy machine
+  settings.maps[0].watchdog.timeout_s = 60;  // watchdog time-out [s], longer than any pause of a busy machine
   settings.maps[0].setup.clear();
   settings.names = {"sim"};
   settings.habits = {std::move(habit)};
@@ -55,9 +55,9 @@ struct Client {
   std::vector<model::Reading> readings;
 };
 
-/// The board ignores requests during the first 0.4 s of a connection. The settle time does not delay safe
-/// outputs, because the board would ignore every write during this time, and each new connection restarts the
-/// 0.4 s.
+/// The board ignores requests during the first 0.4 s of a connection. The driver must write safe outputs
+/// without waiting for the settle time. Otherwise each new connection would restart the 0.4 s, and the board
+/// would ignore every write.
 TEST(BoardHabits, ABoardThatIgnoresWhatComesFirstIsReachedBehindItsSettleTime) {
   RunningRig rig(rig_with(settling(0.4)));
   ModbusSettings settings = rig.board();
@@ -72,7 +72,7 @@ TEST(BoardHabits, ABoardThatIgnoresWhatComesFirstIsReachedBehindItsSettleTime) {
   }
   std::get<drivers::TcpAddress>(settings.links[0]).habits.settle_s = 0.4;
   Client settled(settings);
-  for (int session = 0; session < 2; ++session) {  // the first session and a second session
+  for (int session = 0; session < 2; ++session) {  // tests the first session and a reconnection
     ASSERT_EQ(settled.board.connect(generous), BusStatus::ok) << settled.board.detail();
     ASSERT_EQ(settled.exchange(10 + session), BusStatus::ok) << settled.board.detail();
   }
@@ -91,8 +91,8 @@ TEST(BoardHabits, TheSettleTimeIsPartOfTheDeadlineForConnecting) {
   EXPECT_NE(std::string(board.detail()).find("settled"), std::string::npos) << board.detail();
 }
 
-/// A lost request does not end the connection, and the exchange still ends within its deadline. So the time
-/// until safe outputs are written does not increase.
+/// If a request is lost, the driver repeats the request within the deadline of the exchange and keeps the
+/// connection. So a lost request does not delay the safe outputs.
 TEST(BoardHabits, ALostRequestIsRepeatedWithinTheDeadline) {
   FaultSpec habit = fault_of(FaultKind::lost_request);
   habit.replies = 1;
@@ -155,7 +155,7 @@ TEST(BoardHabits, RtuFramesThatAreRepeatedOrWrongEndTheSession) {
   }
 }
 
-/// Tests a serial line and a serial server on the network.
+/// Tests a serial line, and a serial server that is connected to the network.
 TEST(BoardHabits, StrayBytesAreThrownAway) {
   FaultSpec habit = fault_of(FaultKind::stray_bytes);
   habit.before = 1;
@@ -171,8 +171,8 @@ TEST(BoardHabits, StrayBytesAreThrownAway) {
   }
 }
 
-/// The board has 16 input and 4 output registers, of which a request may contain 4. A value must not be split
-/// between two requests, and each input must be assigned to its own channel.
+/// The board has 16 input and 4 output registers. One request may contain at most 4 registers. The driver
+/// must not split a value between two requests, and must assign each input to its channel.
 TEST(BoardHabits, ABoardThatTakesFewRegistersGetsSeveralRequests) {
   FaultSpec habit = fault_of(FaultKind::few_registers);
   habit.most = 4;

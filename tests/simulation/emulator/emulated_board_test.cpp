@@ -18,7 +18,7 @@ drivers::BoardMap adam() {
   return *map;
 }
 
-/// Returns the PDU of FC16 for both outputs of the ADAM-6024.
+/// Returns the Modbus message (PDU) of function 16 that writes both outputs of the ADAM-6024.
 Bytes write_outputs(std::uint16_t first, std::uint16_t second_value) {
   Bytes pdu{0x10, 0, 10, 0, 2, 4};
   append_word(pdu, first);
@@ -70,7 +70,8 @@ TEST(EmulatedBoard, InputsShowVoltsAndTheirStatus) {
   board.set_input(0, 5);
   board.set_input(1, 12);
   board.set_input(2, -12);
-  EXPECT_EQ(read_one(board, 0, 0x04, 0), 49151);  // (5 + 10) / 20 * 65535 = 49151.25
+  EXPECT_EQ(read_one(board, 0, 0x04, 0), 49151);  // 5 V in the range -10 V to 10 V: (5 + 10) / 20 * 65535 =
+                                                  // 49151.25
   EXPECT_EQ(read_one(board, 0, 0x04, 1), 65535);
   EXPECT_EQ(read_one(board, 0, 0x04, 2), 0);
   EXPECT_EQ(read_one(board, 0, 0x04, 20), 0);

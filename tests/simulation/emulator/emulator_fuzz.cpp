@@ -1,4 +1,4 @@
-// Fuzz target: takes arbitrary bytes, in pieces of any size, as the data that a client sends to the emulator.
+// Fuzz target: sends arbitrary bytes, divided into pieces of any size, to the emulator as a client would.
 //
 //   cmake --preset fuzz && cmake --build --preset fuzz --target emulator_fuzz
 //   build/fuzz/tests/tools/emulator_fuzz -max_total_time=660 -max_len=1024

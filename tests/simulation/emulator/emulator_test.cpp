@@ -21,8 +21,8 @@ FaultSpec fault(std::string name, FaultKind kind) {
   return spec;
 }
 
-/// Two fingers of the model bench_twin without noise on an emulated ADAM-6024, and a client that counts its
-/// transactions.
+/// An emulated ADAM-6024 with two fingers of the model bench_twin without noise, and a client. The client
+/// counts its transactions.
 class EmulatorTest : public testing::Test {
  protected:
   static EmulatorSettings settings(std::vector<FaultSpec> faults = {}) {

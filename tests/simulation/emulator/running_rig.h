@@ -14,15 +14,15 @@ namespace softgrip::simulation::test {
 struct RunningRigSettings {
   std::vector<drivers::BoardMap> maps;  ///< board map of each module
   std::vector<std::string> names;       ///< names of the modules
-  Wire wire = Wire::tcp;                ///< kind of connection; on a network every module is a separate host
+  Wire wire = Wire::tcp;                ///< type of connection; on a network, every module is a separate host
   drivers::SerialLine line;             ///< settings of a serial line; RunningRig creates its pseudo-terminal
   std::size_t channels = 2;
   std::vector<FaultSpec> habits{};  ///< faults that are present from the start
-  bool rtu_over_tcp = false;        ///< true: RTU frames are used on a network
+  bool rtu_over_tcp = false;        ///< true: the network connection uses RTU frames
 };
 
-/// An emulated rig with fingers of the model bench_twin without noise, wired as by default_wiring(). On a
-/// serial line the modules have the unit addresses 1, 2, ...
+/// An emulated rig with fingers of the model bench_twin without noise. Its wiring is the result of
+/// default_wiring(). On a serial line, the unit addresses of the modules are 1, 2, ...
 class RunningRig {
  public:
   explicit RunningRig(const RunningRigSettings& settings);
@@ -34,7 +34,7 @@ class RunningRig {
 
   /// Returns the settings with which a driver connects to the emulator.
   [[nodiscard]] const drivers::ModbusSettings& board() const noexcept { return board_; }
-  /// Ends the emulator and returns it. The emulator may be inspected only after its end.
+  /// Stops the emulator and returns it. A test may inspect the emulator only after it has stopped.
   const Emulator& stop();
 
  private:

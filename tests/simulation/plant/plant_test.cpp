@@ -31,7 +31,7 @@ void settle(Plant& plant, double command_kpa, double seconds) {
   for (int i = 0; i < static_cast<int>(seconds / 0.005); ++i) plant.advance(0.005);
 }
 
-// A plant without an object must give exactly the results of its model, bit for bit.
+// Without an object, a plant must give exactly the same displacement as its model, bit for bit.
 TEST(Plant, WithoutObjectItIsItsModelBitForBit) {
   const unsigned seed = 5;
   std::mt19937 random(seed);
@@ -50,7 +50,8 @@ TEST(Plant, WithoutObjectItIsItsModelBitForBit) {
   EXPECT_GT(plant.displacement_mm(), 1);
 }
 
-// The displacement under a held command does not depend on the size of the steps in which time advances.
+// Under a constant command, the displacement does not depend on the time steps with which the plant is
+// advanced.
 TEST(Plant, AdvancingInPiecesIsTheSame) {
   Plant coarse(settings_of(twin()));
   Plant fine(settings_of(twin()));
@@ -152,7 +153,7 @@ TEST(Plant, NoiseHasItsSizeAndComesFromItsSeed) {
     square += first.reading_mm() * first.reading_mm();
     pressure_square += first.measured_pressure_kpa() * first.measured_pressure_kpa();
   }
-  // The standard error of the RMS of 20,000 numbers is 0.5 %.
+  // The standard error of the RMS of 20,000 random numbers is 0.5 % of the RMS.
   EXPECT_NEAR(std::sqrt(square / count), 0.03, 0.03 * 0.02);
   EXPECT_NEAR(std::sqrt(pressure_square / count), 0.2, 0.2 * 0.02);
   EXPECT_EQ(differing, count);

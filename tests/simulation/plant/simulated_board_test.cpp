@@ -50,7 +50,7 @@ class Rig {
     clock.advance(period);
     return status;
   }
-  /// Performs exchanges for `seconds`. Returns the last status.
+  /// Exchanges commands and readings for `seconds`. Returns the status of the last exchange.
   BusStatus run(double seconds, double left, double right) {
     BusStatus status = BusStatus::ok;
     for (int i = 0; i < static_cast<int>(std::lround(seconds * 200)); ++i) status = exchange(left, right);
@@ -111,8 +111,8 @@ TEST(SimulatedBoard, MovesWhatItIsToldAndReadsItBack) {
   EXPECT_EQ(rig.readings[0].sampled_at, rig.clock.now() - period);
 }
 
-// A reading is taken before the commands of its exchange take effect. So the motion of a finger without
-// latency is visible only in the next exchange.
+// The board takes the readings of an exchange before the commands of this exchange take effect. So even a
+// finger without latency shows its motion only in the next exchange.
 TEST(SimulatedBoard, AReadingDoesNotKnowTheCommandOfItsOwnExchange) {
   SimulatedBoardSettings settings = two_twins();
   for (SimulatedChannel& channel : settings.channels) {
@@ -172,7 +172,7 @@ TEST(SimulatedBoard, AnObjectIsPulledOutAtItsTime) {
   EXPECT_NEAR(rig.readings[0].displacement_mm, rig.readings[1].displacement_mm, 1e-9);
 }
 
-// An event must take effect at its own time, independent of the times of the exchanges.
+// A simulated event must take effect at its own time, even if no exchange happens at this time.
 TEST(SimulatedBoard, EventsHappenAtTheirOwnTimeNotAtTheNextExchange) {
   SimulatedBoardSettings settings = two_twins();
   settings.events.push_back(
@@ -243,7 +243,7 @@ TEST(SimulatedBoard, TheWatchdogVentsAtItsTimeAndHoldsUntilConnect) {
 
 TEST(SimulatedBoard, AnExchangeInTimeKeepsTheWatchdogQuiet) {
   SimulatedBoardSettings settings = two_twins();
-  settings.watchdog_timeout_s = 0.005;  // the time between two exchanges
+  settings.watchdog_timeout_s = 0.005;  // watchdog time-out [s], equal to the time between two exchanges
   Rig rig(settings);
   EXPECT_EQ(rig.run(1, 20, 20), BusStatus::ok);
 }
