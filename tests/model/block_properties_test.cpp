@@ -1,5 +1,4 @@
-// Tests properties that every block of the catalogue must have. A new block is tested without a change of
-// this file.
+// Tests properties that every block of the catalogue must have. A new block is tested automatically.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +19,7 @@ namespace {
 constexpr double tick_s = 5e-3;
 constexpr SignalName signal = SignalName::tp2;
 
-/// Calls `check` for every block type; a failure shows the id of the block.
+/// Calls `check` for every block type. If a check fails, the output contains the id of the block.
 template <class Check>
 void for_every_block(Check&& check) {
   for (std::size_t type = 0; type < catalogue().size(); ++type) {
@@ -29,13 +28,14 @@ void for_every_block(Check&& check) {
   }
 }
 
-/// Returns the model bench_twin with this block added, with the default values of the block.
+/// Returns the model bench_twin with an additional block. The parameters of the block have their default
+/// values.
 Model twin_with(std::size_t type) {
   const Model twin = preset("bench_twin");
   return position_of(twin, type) ? twin : with_block(twin, default_block(type));
 }
 
-/// Returns true if the block draws a random number per sample.
+/// Returns true if the block draws a random number for each sample.
 bool is_random(std::size_t type) {
   return type == block_type<SensorNoise>() || type == block_type<Outliers>();
 }
@@ -62,7 +62,7 @@ TEST(EveryBlock, DoesNothingAtItsNeutralValues) {
   });
 }
 
-// The output segments of a block join without a gap, and their total duration equals the duration of the
+// The output segments of a block must join without a gap. Their total duration must equal the duration of the
 // input.
 TEST(EveryBlock, KeepsTimeAndContinuity) {
   for (std::size_t type = 0; type < catalogue().size(); ++type) {
@@ -102,7 +102,7 @@ TEST(EveryBlock, KeepsTimeAndContinuity) {
   }
 }
 
-// After reset(), a held command does not change the reading while the surroundings remain constant.
+// After reset(), the reading must stay constant under a constant command in constant surroundings.
 TEST(EveryBlock, RestsAfterReset) {
   for_every_block([](std::size_t type) {
     if (is_random(type)) return;
@@ -121,11 +121,12 @@ TEST(EveryBlock, RestsAfterReset) {
   });
 }
 
-// A linear command can be given as one step or as two halves. Blocks that are documented as exact return the
-// same result. For all other blocks the difference after a step of 5 ms must be small.
+// A linear command can be simulated in one step or in two half steps. A block that is documented as exact
+// must give the same reading in both cases. For every other block, the difference must be small for a step of
+// 5 ms.
 TEST(EveryBlock, StepsInHalvesAsInOne) {
-  // These blocks are approximate here. The first three are exact for a linear input, but a lag precedes
-  // them in this chain.
+  // These blocks are approximate in this chain. The first two are lags that are exact for a linear input, but
+  // here another lag precedes them.
   const std::vector<std::size_t> approximate{block_type<AsymmetricValveLag>(),
                                              block_type<ChamberLag>(),
                                              block_type<RateLimit>(),
@@ -158,7 +159,8 @@ TEST(EveryBlock, StepsInHalvesAsInOne) {
   });
 }
 
-// peek() must agree with step(), except that only step() handles a corner of the pressure within the sample.
+// peek() must give the same result as step(), with one difference: only step() takes account of a corner of
+// the pressure within a sample.
 TEST(EveryBlock, ForetellsWhatItsStepGives) {
   for_every_block([](std::size_t type) {
     const BlockInfo& info = catalogue()[type].info;

@@ -1,5 +1,6 @@
 // Compares the chain with results that SciPy computed from the continuous equations. golden/make_golden.py
-// contains its own copy of signals and parameters, so the test also detects an error in a preset or a signal.
+// contains its own copy of signals and parameters, so this test also detects an error in the preset models or
+// the signals of the project.
 
 #include <gtest/gtest.h>
 

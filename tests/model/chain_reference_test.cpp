@@ -1,5 +1,5 @@
 // Compares the chain with a solution by CVODE for the same piecewise linear command. The difference must be
-// below 1e-6 mm at any sample time.
+// below 1e-6 mm for each tested sample time.
 
 #include <gtest/gtest.h>
 
@@ -75,8 +75,8 @@ INSTANTIATE_TEST_SUITE_P(
              std::to_string(static_cast<int>(param.param.rate_hz)) + "Hz";
     });
 
-// Tests the other exponents on bench_twin without its delay (so that jumps of the slope coincide with
-// samples). gamma and eta are scaled so that the state saturates at the same value.
+// Tests the exponents 2, 3 and 4 with the model bench_twin. Without its delay, the kinks of the command are
+// at sample times. gamma and eta are scaled so that the state saturates at the same value for each exponent.
 TEST(ChainReferenceExponents, AgreeAtOneKilohertz) {
   for (const int exponent : {2, 3, 4}) {
     Model model = preset("bench_twin");
@@ -100,8 +100,8 @@ TEST(ChainReferenceFractionalDelay, AgreesOffTheGrid) {
   }
 }
 
-// The command rises by 44 kPa and later falls again, each time within one sample of 10 ms. The displacement
-// is computed with a step that is 100 times smaller.
+// The command rises by 44 kPa within one sample of 10 ms, and later falls within one sample. The expected
+// displacement is computed with a step that is 100 times smaller.
 constexpr double sample_s = 0.01;
 constexpr std::size_t finer = 100, samples = 60;
 
@@ -117,7 +117,7 @@ std::vector<double> displacement_mm(const Model& model) {
   return integrate(physics_of(model), command_kpa, sample_s / finer);
 }
 
-/// Solves z'' = acceleration(z, z', y) with the classical Runge-Kutta method and returns z at the samples.
+/// Solves z'' = acceleration(z, z', y) with the classical Runge-Kutta method. Returns z at the sample times.
 template <class Acceleration>
 std::vector<double> followed_mm(const std::vector<double>& y, Acceleration&& acceleration) {
   const double h = sample_s / finer;

@@ -1,5 +1,5 @@
 #pragma once
-// Functions that apply an input to single blocks and whole chains in tests.
+// Functions that apply inputs to single blocks and to whole chains in tests.
 
 #include <cmath>
 #include <span>
@@ -26,7 +26,7 @@ std::vector<Segment<double>> pass(Block& block, const Segment<double>& in, const
 }
 
 /// Applies linear segments of length dt between `values` to a pressure or displacement block. The first
-/// segment starts at `from`. Returns the output after each segment.
+/// segment starts at the value `from`. Returns the output of the block at the end of each segment.
 template <class Block>
 std::vector<double> drive(Block& block, double from, std::span<const double> values, double dt) {
   std::vector<double> out;
@@ -39,7 +39,7 @@ std::vector<double> drive(Block& block, double from, std::span<const double> val
 }
 
 /// Applies a linear segment from `from` to `to` [kPa] of duration dt [s] to an element. Sets `from` to `to`
-/// and returns the output.
+/// and returns the output of the element at the end.
 template <class Block>
 double move(Block& element, double& from, double to, double dt) {
   element.step(Segment<double>::straight(dt, from, to), {});

@@ -36,8 +36,8 @@ TEST(Catalogue, EveryDeclarationIsSound) {
   }
 }
 
-// Returns the ending of a key for a unit: _mm_per_kpa for mm/kPa, _per_mm2 for 1/mm^2, _c for degC, empty for
-// no unit.
+// Returns the suffix of a key for a unit: _mm_per_kpa for mm/kPa, _per_mm2 for 1/mm^2, _c for degC. The
+// suffix is empty if there is no unit.
 std::string ending_of(const std::string& unit) {
   std::string ending = unit.empty() ? "" : "_" + unit;
   for (const auto& [written, named] : {std::pair<std::string, std::string>{"degC", "C"},
@@ -103,7 +103,7 @@ TEST(Model, BlocksFindTheirPlace) {
   EXPECT_EQ(*position_of(model, "valve_lag"), 0u);
   EXPECT_EQ(*position_of(model, "sensor_noise"), 4u);
   EXPECT_EQ(*position_of(model, "quantisation"),
-            5u);  // the block is last in the chain, although it was first in the list
+            5u);  // quantisation is the last block of the chain, although it was added first
   EXPECT_FALSE(position_of(model, "transport_delay"));
   EXPECT_FALSE(position_of(without_block(model, *find_block("contact")), "contact"));
 }

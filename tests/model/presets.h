@@ -1,5 +1,5 @@
 #pragma once
-// Reads the preset models from their files in the same way as a user's model.
+// Reads the preset models from their files, in the same way as a model file of a user.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,8 @@ inline Model preset(const std::string& name) {
   return *model;
 }
 
-/// Returns one value of a model by its path, or 0 if the model does not have it.
+/// Returns the value of one parameter of a model by its path. Returns 0 if the model does not have the
+/// parameter.
 inline double number(const Model& model, std::string_view path) {
   const auto index = find_path(model, path);
   return index ? flat_values(model)[*index] : 0.0;

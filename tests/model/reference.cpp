@@ -12,7 +12,8 @@
 namespace softgrip::model::testing {
 namespace {
 
-// The state is p, h, x1 .. xn. Without a lag the pressure equals the command, and p is not integrated.
+// Problem with the state vector p, h, x1 .. xn. If the valve has no lag, the pressure equals the command, and
+// p is not integrated.
 struct Problem {
   const Physics& physics;
   double from_s = 0, from_kpa = 0, slope = 0;  // the delayed command on the current linear segment
@@ -47,7 +48,8 @@ std::vector<double> integrate(const Physics& physics, const std::vector<double>&
   const double dt = sample_time_s;
   const std::size_t count = command_kpa.size();
   const double end_s = dt * static_cast<double>(count - 1);
-  // The delayed command consists of linear segments; these are the times at which its slope changes.
+  // Times at which the slope of the delayed command changes. The delayed command is linear between two of
+  // these times.
   struct Corner {
     double at_s, kpa;
   };
@@ -62,7 +64,7 @@ std::vector<double> integrate(const Physics& physics, const std::vector<double>&
 
   SUNContext context = nullptr;
 #ifdef SUN_COMM_NULL
-  require(SUNContext_Create(SUN_COMM_NULL, &context));  // SUNDIALS 7 and later
+  require(SUNContext_Create(SUN_COMM_NULL, &context));  // SUNDIALS 7 and later versions need this argument
 #else
   require(SUNContext_Create(nullptr, &context));
 #endif

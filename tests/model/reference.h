@@ -1,7 +1,7 @@
 #pragma once
-// Reference solution: SUNDIALS CVODE integrates the continuous equations, with no formula from model/. It
-// includes the delay and the lag of the valve, the Bouc-Wen element and the Kelvin-Voigt element, but not the
-// other blocks of the chain.
+// Reference solution: SUNDIALS CVODE integrates the continuous equations, with no formula from model/. The
+// equations contain the delay and the lag of the valve, the Bouc-Wen element and the Kelvin-Voigt element.
+// They contain no other block of the chain.
 
 #include <functional>
 #include <vector>

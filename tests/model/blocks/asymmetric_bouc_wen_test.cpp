@@ -25,7 +25,7 @@ Model skewed(const std::vector<double>& material, double delta_per_kpa, double e
 
 const std::vector<double> turns{40, 12, 33, -15, 8, -3, 60, 0, 25, 0};
 
-// Integrates the published equation with the Runge-Kutta method in steps of 1/200 kPa.
+// Integrates the published equation with the Runge-Kutta method, with 200 steps per kPa.
 double integrated(const std::vector<double>& v, const BoucWenSkew<double>& skew,
                   const std::vector<double>& turning_points,
                   const std::function<void(double p, double y)>& at) {
@@ -57,7 +57,7 @@ TEST(AsymmetricBoucWen, SkewsTheChainsBoucWenByItsEquation) {
       const double delta = share * std::min(material[3], material[2] + material[3]);
       Chain<double> chain(skewed(material, delta));
       integrated(material, {delta, 0, 0}, turns, [&](double p, double y) {
-        // At the kink at h = 0 the integration has an error of up to 2e-5.
+        // The equation has a kink at h = 0, where the integration error reaches 2e-5.
         ASSERT_NEAR(chain.step(1.0, p), y, 2e-5) << "exponent " << material[4] << " at " << p;
       });
     }
@@ -76,8 +76,8 @@ TEST(AsymmetricBoucWen, LoadingAndUnloadingHaveNumbersOfTheirOwn) {
   }
 }
 
-// With all parameters, a state that has saturated in one direction must decrease when the pressure changes
-// its direction.
+// The state has saturated in one direction. For all parameter values, it must decrease when the pressure
+// changes its direction.
 TEST(AsymmetricBoucWen, NoSkewLetsTheStateGrowOnTheWayBack) {
   for (const std::vector<double>& material : materials) {
     for (const double epsilon : {-5.0, 5.0}) {
@@ -113,7 +113,7 @@ TEST(AsymmetricBoucWen, SkewLeavesNoTraceAtZero) {
   }
 }
 
-// The inverse uses peek(), so peek() must include the skew.
+// The inverse uses peek(), so peek() must take account of the skew.
 TEST(AsymmetricBoucWen, PeekKnowsOfTheSkew) {
   for (const std::vector<double>& material : materials) {
     Chain<double> chain(skewed(material, -0.7 * material[3], 0.2 * material[3], -0.1));

@@ -42,7 +42,8 @@ TEST(AsymmetricValveLag, IsTheValveLagWhereBothAreAlike) {
 }
 
 TEST(AsymmetricValveLag, MeetsASmallStepIntegrator) {
-  // The reference is the explicit midpoint method with steps of 10 us, which uses no exponential function.
+  // The reference solution is computed by the explicit midpoint method with steps of 10 us. It uses no
+  // exponential function.
   std::mt19937_64 random(22);
   std::uniform_real_distribution<double> pressure(0, 60), duration(0.01, 0.2);
   Block block = make<Block>({0.06, 0.3});

@@ -58,7 +58,8 @@ TEST(BoucWen, StepSizeDoesNotMatter) {
 }
 
 TEST(BoucWen, SolvesItsEquation) {
-  // Compares finite differences of the closed form with the equation for dh/dp, away from the sign changes.
+  // Compares finite differences of the closed-form solution with the equation for dh/dp. Points near a sign
+  // change of h are left out.
   for (const auto& v : materials) {
     Block block = make_material(v);
     double from = 0;
@@ -94,7 +95,8 @@ TEST(BoucWen, StateStaysBounded) {
 }
 
 TEST(BoucWen, ClosedLoopsDissipate) {
-  // The work of the pressure over a settled closed loop is never negative. It is positive if eta is positive.
+  // The work of the pressure over a settled hysteresis loop is never negative. It is positive if eta is
+  // positive.
   for (const auto& v : materials) {
     Block block = make_material(v);
     double from = 0;

@@ -15,7 +15,7 @@ TEST(ClockOffset, AStraightMotionIsReadAheadOfTime) {
   EXPECT_NEAR(block.output(), 3 + 5 * (0.02 * 50 + 0.12), 1e-12);
 }
 
-// The block uses the slope at the middle of the last step, so the error of its output is proportional to the
+// The block takes the slope of its input at the middle of the last step. So its error is proportional to the
 // step length.
 TEST(ClockOffset, AParabolaIsReadWithAnErrorInProportionToTheStep) {
   constexpr double lead_s = 0.12;

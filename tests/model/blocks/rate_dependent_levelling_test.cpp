@@ -21,8 +21,8 @@ struct Move {
 };
 const std::vector<Move> moves{{40, 1}, {40, 0.5}, {12, 0.2}, {33, 3}, {5, 0.1}, {5, 1}, {50, 0.01}, {0, 2}};
 
-// Compares the chain, which uses the rate at the beginning of each step, with an integration of the equation
-// in steps of 10 us.
+// Compares the chain with an integration of the equation in steps of 10 us. The chain uses the input rate at
+// the beginning of each of its steps.
 TEST(RateDependentLevelling, LevelsTheChainsBoucWenOffByItsEquation) {
   for (const double levelling : {1.5, -0.6}) {
     Chain<double> chain(levelled(levelling));

@@ -61,7 +61,8 @@ TEST(TransportDelay, PiecesSumToTheSampleAndJoin) {
     ASSERT_NEAR(sum, dt, 1e-12);
     mean_in += 0.5 * (corners[i - 1] + corners[i]) * dt;
   }
-  // The delay line still contains the last part of the input, so zeros are fed until it is empty.
+  // The delay line still contains the last part of the input. Zeros are fed into the block until the delay
+  // line is empty.
   for (const Segment<double>& s : pass(block, Segment<double>::straight(0, corners.back(), 0))) {
     mean_out += s.mean * s.duration_s;
   }
@@ -82,8 +83,8 @@ TEST(TransportDelay, AKinkInsideASampleMakesTwoSegments) {
 }
 
 TEST(TransportDelay, OnTheGridASampleStaysOneSegment) {
-  // The rounding error of 0.13 - 26 * 0.005 must not create a very short segment that splits every later
-  // sample.
+  // The delay 0.13 s is 26 steps of 0.005 s, except for a rounding error. This error must not create a very
+  // short segment that splits every following sample.
   for (const double delay : {0.13, 0.3, 0.07, 0.005}) {
     Block block = make<Block>({delay});
     for (int i = 0; i < 1000; ++i) {

@@ -23,7 +23,7 @@ TEST(Wear, WearsWithTheWayGoneInTheCampaign) {
     from = to;
     EXPECT_NEAR(block.output(), to * (1 - 2e-3 * way_mm), 1e-12);
   }
-  block.rest(0);  // start of the next log of the campaign; the wear remains
+  block.rest(0);  // begins the next log of the campaign; the wear remains
   pass(block, Segment<double>::straight(1.0, 0, 5), around);
   EXPECT_NEAR(block.output(), 5 * (1 - 2e-3 * (way_mm + 5)), 1e-12);
   block.reset(0);

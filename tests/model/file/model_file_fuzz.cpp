@@ -1,5 +1,5 @@
-// Fuzz target: takes arbitrary bytes as a model file. The bytes must be refused, or give a model that is
-// unchanged after it has been written and read again.
+// Fuzz target: passes arbitrary bytes to the reader of model files. The reader must refuse the bytes or
+// return a model. A model must stay the same if it is written and read back.
 //
 //   scripts/fuzz.sh model_file_fuzz 30
 

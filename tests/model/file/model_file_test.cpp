@@ -26,7 +26,7 @@ Outcome read(const std::string& text) {
   return outcome;
 }
 
-// Returns a random value of any magnitude within the bounds. The value is not rounded.
+// Returns a random value of any magnitude between the bounds, with all digits.
 double random_value(const ParameterSpec& spec, std::mt19937& generator) {
   if (spec.whole)
     return std::floor(std::uniform_real_distribution<double>(spec.lower, spec.upper + 1)(generator));
@@ -111,7 +111,8 @@ TEST(ModelFile, PresetsHoldTheNumbersOfTheirSources) {
   EXPECT_EQ(number(twin, "kelvin_voigt.c1_kpa_s_per_mm"), 299.8);
 }
 
-/// Reads a model file whose actuator has a spring and whose station `station` has the blocks in `block`.
+/// Reads a model file. Its actuator has a spring, and its station `station` has the blocks in the text
+/// `block`.
 Outcome read_with(const std::string& station, const std::string& block) {
   const std::string spring =
       "actuator:\n  - kelvin_voigt: {k0_kpa_per_mm: 5, k1_kpa_per_mm: 5, c1_kpa_s_per_mm: 5}\n";
@@ -120,14 +121,15 @@ Outcome read_with(const std::string& station, const std::string& block) {
   return read("name: old\nsource: before\n" + spring + station + ":\n" + item);
 }
 
-/// Returns the blocks of the file that read_with() reads, except the spring.
+/// Returns the blocks of the file that read_with() reads. The spring is left out.
 std::vector<BlockSpec> blocks_of(const std::string& station, const std::string& block) {
   const Outcome outcome = read_with(station, block);
   if (!outcome.model) throw std::runtime_error(block + "\n" + outcome.problems.format());
   return without_block<KelvinVoigt>(*outcome.model).blocks;
 }
 
-// Parameters that were added later are optional, so that older files keep their meaning.
+// These parameters do not exist in the first version of the file format. They are optional, so that older
+// files keep their meaning.
 TEST(ModelFile, LaterParametersMayBeLeftOut) {
   EXPECT_EQ(blocks_of("sensor", "sensor_wander: {wander_sin_mm: 0.1}"),
             (std::vector<BlockSpec>{{block_type<SensorWander>(), {0.1, 0, 300}}}));
@@ -141,8 +143,8 @@ struct Earlier {
   std::vector<BlockSpec> means;
 };
 
-// An earlier block was split into several present blocks. The present blocks must all belong to one station,
-// because a file lists the earlier block at one station.
+// Some blocks of earlier versions are now several blocks. These blocks must all belong to the same station,
+// because the older file lists the original block at one station.
 TEST(ModelFile, EarlierBlocksBecameBlocksOfOneStation) {
   EXPECT_EQ(find_earlier_block("valve_lag"), nullptr);
   for (const char* id :
@@ -155,7 +157,8 @@ TEST(ModelFile, EarlierBlocksBecameBlocksOfOneStation) {
   }
 }
 
-// Earlier blocks contained several mechanisms. A file with such a block is read into the present blocks.
+// Some blocks of earlier versions contained several mechanisms. The reader converts such a block to the
+// present blocks.
 TEST(ModelFile, EarlierBlocksAreReadIntoWhatTheyBecame) {
   const std::vector<Earlier> files{
       {"valve", "valve_deadband: {band_kpa: 2}", {{block_type<ValveDeadband>(), {2}}}},
@@ -208,8 +211,8 @@ TEST(ModelFile, EarlierBlocksAreReadIntoWhatTheyBecame) {
   for (const Earlier& file : files) EXPECT_EQ(blocks_of(file.station, file.text), file.means) << file.text;
 }
 
-// Earlier versions added the gains of these two parts of a block. The present blocks multiply the gains, so
-// such a file must be refused.
+// In earlier versions, ageing added the gains of its two mechanisms. The present blocks multiply the two
+// gains. So a file that uses both mechanisms must be refused.
 TEST(ModelFile, EarlierBlocksThatMeanSomethingElseTogetherAreRefused) {
   const Outcome outcome = read_with("actuator", "ageing: {gain_per_h: 0.1, run_in: 0.2, run_in_time_s: 40}");
   EXPECT_FALSE(outcome.model);
@@ -343,8 +346,8 @@ TEST(ModelFile, AllErrorsAtOnce) {
       "-5}\n"
       "actuator:\n  - bouc_wen: {alpha_mm_per_kpa: x, beta_mm_per_kpa: 0.1, gamma_per_kpa: 0.1, exponent: "
       "9}\n");
-  // expected problems: unknown key nam, missing name, unknown time_constant, missing time_constant_s, and
-  // errors of limit, alpha, eta and exponent
+  // the reader must report an unknown key nam, a missing name, an unknown time_constant, a missing
+  // time_constant_s, and errors of limit, alpha, eta and exponent
   EXPECT_GE(outcome.problems.size(), 6u) << outcome.problems.format();
   EXPECT_FALSE(outcome.model);
 }

@@ -2,8 +2,8 @@
 """Writes chain_golden.csv, an independent solution of the continuous equations in another language with another
 library.
 
-Signals and parameters are intentionally repeated here, so that nothing is read from model/ or config/. Needs
-python3-scipy. Usage: ./make_golden.py > chain_golden.csv
+The script intentionally contains its own copy of the signals and parameters, so that it reads nothing from model/ or
+config/. Needs python3-scipy. Usage: ./make_golden.py > chain_golden.csv
 """
 from scipy.integrate import solve_ivp
 
