@@ -1,5 +1,5 @@
 #pragma once
-// Runs the softgrip program in a folder of the test.
+// Runs the softgrip program in a temporary folder of the test.
 
 #include <sys/wait.h>
 
@@ -24,7 +24,8 @@ class CommandInFolder : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// Runs `softgrip ARGUMENTS` and returns the exit code. The output is in out.txt and err.txt.
+  /// Runs `softgrip ARGUMENTS` and returns the exit code. The outputs of the program are written to out.txt
+  /// and err.txt.
   int run(const std::string& arguments) {
     const std::string line =
         "cd '" + folder_.string() + "' && '" SOFTGRIP_PROGRAM "' " + arguments + " >out.txt 2>err.txt";

@@ -1,6 +1,6 @@
 #pragma once
-// A finger that is integrated by a program without any code of model/. It uses the equations of the
-// literature and the classical fourth-order Runge-Kutta method with 50 steps per sample.
+// A simulated finger that uses no code of model/. The equations are those of the literature. They are
+// integrated with the classical fourth-order Runge-Kutta method with 50 steps per sample.
 
 #include <cstdint>
 
@@ -11,15 +11,16 @@
 namespace softgrip::sysid {
 
 struct IntegratedFinger {
-  double alpha = 0.30, beta = 0.19, gamma = 0.022, eta = 0.041;  // mm/kPa, 1/kPa
-  double k0 = 310, k1 = 17, c1 = 215, k2 = 3.7, c2 = 1.9;        // kPa/mm, kPa s/mm
+  double alpha = 0.30, beta = 0.19, gamma = 0.022, eta = 0.041;  // alpha, beta in mm/kPa; gamma, eta in 1/kPa
+  double k0 = 310, k1 = 17, c1 = 215, k2 = 3.7, c2 = 1.9;        // k0, k1, k2 in kPa/mm; c1, c2 in kPa s/mm
 };
 
-/// Returns the response of the finger to a signal from rest, with white noise.
+/// Simulates the response of the finger to a signal. The finger starts at rest. White noise is added to the
+/// readings.
 [[nodiscard]] Log integrated(const IntegratedFinger& finger, model::SignalName signal, double rate_hz,
                              double noise_mm, std::uint64_t seed);
 
-/// Returns the pressure behind the valve of a model for the command of a log.
+/// Returns the pressure behind the valve of `model` for the commands of the log.
 [[nodiscard]] std::vector<double> pressures_behind(const model::Model& model, const Log& log);
 
 }  // namespace softgrip::sysid

@@ -20,8 +20,8 @@ Base base_of(const std::vector<Log>& healthy) {
   return fit_base(make_records(healthy, {}), Judged::displacement, Drive::command, {});
 }
 
-/// Returns the RMS [mm] of the residual of the baseline model on other logs, after removing the mean of each
-/// log.
+/// Removes the mean of each log from the residual of the baseline model. Returns the RMS [mm] of the result
+/// over all logs.
 double left_of_mm(const Base& base, const std::vector<Log>& logs) {
   const std::vector<Record> records = make_records(logs, {});
   const std::vector<std::vector<double>> left = residuals_of(base, records);
@@ -36,8 +36,8 @@ double left_of_mm(const Base& base, const std::vector<Log>& logs) {
   return std::sqrt(sum / count);
 }
 
-/// A drift of the sensor zero does not depend on the command. The filter bank must not fit the drift of a
-/// held-out block from the neighbouring blocks.
+/// A drift of the sensor zero does not depend on the command. A held-out block and its neighbouring blocks
+/// contain the same drift. The filter bank must not learn the drift from the neighbours.
 TEST(Base, LeavesOfAnotherDayWhatItLeavesOfHealthyLogsHeldOut) {
   const test::Finger wandering{.wander_mm = 0.1};
   const Base base = base_of(test::logs_of(wandering, 1));
@@ -57,7 +57,7 @@ TEST(Base, IsFittedToLogsOfAFewSeconds) {
 TEST(Base, WhatAValveDoesIsJudgedInShorterBinsThanAFinger) {
   std::vector<Log> logs = test::logs_of({}, 1, true);
   for (Log& log : logs) {
-    for (double& t : log.time_s) t /= 4;  // 200 Hz
+    for (double& t : log.time_s) t /= 4;  // changes the sample rate to 200 Hz
   }
   EXPECT_DOUBLE_EQ(fit_base(pressure_records(logs, false), Judged::pressure, Drive::command, {}).bin_s, 0.02);
   EXPECT_DOUBLE_EQ(base_of(logs).bin_s, 0.02);
@@ -65,7 +65,8 @@ TEST(Base, WhatAValveDoesIsJudgedInShorterBinsThanAFinger) {
   EXPECT_DOUBLE_EQ(fit_base(behind_it, Judged::displacement, Drive::measured, {}).bin_s, 0.05);
 }
 
-/// Returns the logs with the readings of a finger behind a regulator whose response is not a first-order lag.
+/// Returns the logs with readings of a finger behind a pressure regulator. The response of this regulator is
+/// not a first-order lag.
 std::vector<Log> behind_a_narrow_port(std::vector<Log> logs) {
   const Regulator narrow{
       .play_kpa = 0.3, .dead_kpa = 0.9, .full_kpa = 20, .port_per_s = 0.5, .tube_per_s = 2};
@@ -97,7 +98,8 @@ TEST(Base, OfAPressureThatFollowsAtOnceADelayOfHalfASampleIsTheMeanOfTwo) {
   const std::vector<Record> records = pressure_records(test::logs_of({}, 1, true), false);
   const Base base = fit_base(records, Judged::pressure, Drive::command, {});
   Extension late;
-  late.valve.push_back({model::block_type<model::TransportDelay>(), {0.01}});  // half of the sample time
+  late.valve.push_back({model::block_type<model::TransportDelay>(), {0.01}});  // a delay of half the sample
+                                                                               // time
   Record between = records[0];
   for (std::size_t i = 1; i < between.size(); ++i)
     between.drive_kpa[i] = 0.5 * (records[0].drive_kpa[i] + records[0].drive_kpa[i - 1]);

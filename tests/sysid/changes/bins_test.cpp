@@ -16,7 +16,7 @@ std::vector<Record> records() {
 }
 
 TEST(Bins, AverageWhatIsThereAndLeaveHolesWhereNothingIs) {
-  const Record record = records().front();  // 50 Hz
+  const Record record = records().front();  // sampled at 50 Hz
   std::vector<double> series(record.size(), 1.0);
   series[0] = 3;
   series[5] = series[6] = series[7] = series[8] = series[9] = std::numeric_limits<double>::quiet_NaN();
@@ -34,8 +34,8 @@ TEST(Bins, AThinnedRecordThatEndsSoonerGoesOnWithItsLastValue) {
 
 constexpr double innovation = 0.5;
 
-/// Returns two runs of a first-order autoregressive process with the mean `zero`. The standard deviation of
-/// its innovations is `innovation`.
+/// Returns two runs of a first-order autoregressive process. Its mean is `zero`, and the standard deviation
+/// of its innovations is `innovation`.
 Binned autoregression(double weight, double zero, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, innovation);

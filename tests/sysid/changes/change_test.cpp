@@ -32,7 +32,8 @@ TEST(Change, AnotherInputAndAnotherZeroAreNoChange) {
   EXPECT_NEAR(d.readings.back().zero_mm, 0.4, 0.03);
 }
 
-/// A payload changes gain and zero at the same time. If only the gain changed, a payload is no alternative.
+/// A payload changes the gain and the zero at the same time. If only the gain has changed, payload must not
+/// be an alternative.
 TEST(Change, AnotherGainBesideAnotherZeroMayBeAWeight) {
   const auto may_be_a_weight = [](const Finger& later) {
     const ChangeDiagnosis d = changed(later);
@@ -46,7 +47,8 @@ TEST(Change, AnotherGainBesideAnotherZeroMayBeAWeight) {
   EXPECT_FALSE(may_be_a_weight({.gain = 0.2 * 0.95}));
 }
 
-/// Returns the diagnosis of later logs in which the reading of sample i is that of sample `sample(i)`.
+/// Replaces the reading of sample i of the later logs by that of sample `sample(i)`. Returns the diagnosis of
+/// these logs.
 ChangeDiagnosis read_at(std::size_t (*sample)(std::size_t)) {
   std::vector<Log> later = logs_of({}, 5);
   for (Log& log : later) {
@@ -66,8 +68,8 @@ TEST(Change, AReadingThatIsUpdatedTooRarelyIsSampling) {
   EXPECT_NEAR(d.causes[0].size.value, 0.2, 1e-3);
 }
 
-/// Adds an alternating error in 3 of 5 s, and in the other 2 s single errors of twice its amplitude. These
-/// are outliers only if the noise is underestimated.
+/// Adds an alternating error during 3 of every 5 s. During the other 2 s, adds single errors of twice its
+/// amplitude. The single errors are outliers only if the noise is underestimated.
 std::vector<Log> humming(std::vector<Log> logs) {
   constexpr std::size_t per_s = 50;
   for (Log& log : logs) {
@@ -123,7 +125,7 @@ TEST(Change, AnotherGainIsAgeingInPercent) {
   EXPECT_EQ(d.causes[0].id, "ageing");
   EXPECT_EQ(d.causes[0].size.unit, "%");
   EXPECT_NEAR(d.causes[0].size.value, 3, 0.4);
-  // The JSON states the compared causes, and why the others were rejected.
+  // The result lists the causes that were compared, and the reason why each rejected cause was rejected.
   const JudgedChange& judged = d.readings.back();
   EXPECT_EQ(judged.healthy_runs, logs_of({}, 1).size());
   EXPECT_GT(judged.healthy_mm, 0);
@@ -154,7 +156,7 @@ TEST(Change, AGainThatFollowsTheTemperatureNeedNotBeWhatItWasOnTheHealthyDay) {
   ASSERT_FALSE(d->causes.empty()) << change_sentence(*d);
   EXPECT_EQ(d->causes[0].id, "thermal_gain");
   EXPECT_EQ(d->causes.size(), 1U);
-  // relative to the gain at the 24 degrees of the healthy logs
+  // the change per degree is relative to the gain at 24 degC, the mean temperature of the healthy logs
   EXPECT_NEAR(d->causes[0].size.value, 100 * 0.01 / (1 + 0.01 * (24 - 15)), 0.1);
 }
 
@@ -170,7 +172,8 @@ TEST(Change, AStopIsAContactAndItsSizeIsWhatIsMissingAtFullPressure) {
   const ChangeCause& cause = d.causes[0];
   const bool named = cause.id == "contact" || cause.id == "sensor_saturation";
   EXPECT_TRUE(named) << cause.id;
-  // Mean displacement shortfall at pressures of at least 90 % of the highest.
+  // The expected size is the mean displacement shortfall at pressures of at least 90 % of the highest
+  // pressure.
   const std::vector<Log> stopped = logs_of({.stop_mm = 7}, 5), free = logs_of({}, 5);
   double highest_kpa = 0, missing_mm = 0, count = 0;
   for (const Log& log : free)
@@ -217,8 +220,8 @@ TEST(Change, ASensorThatEndsJustBelowTheLargestReadingIsFound) {
   for (const Log& log : logs_of({}, 5))
     largest_mm =
         std::max(largest_mm, *std::max_element(log.displacement_mm.begin(), log.displacement_mm.end()));
-  // This limit is so close to the largest reading that the first start value of the search, which is
-  // estimated from the error, is above all readings.
+  // The limit of the sensor is close to the largest reading. The search estimates its first start value from
+  // the error; this value is above all readings.
   const double end_mm = largest_mm - 0.25;
   const ChangeDiagnosis d = changed({.stop_mm = end_mm});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
@@ -236,9 +239,9 @@ TEST(Change, ALeakIsSeenInThePressureAndNotInTheFinger) {
   EXPECT_EQ(d.causes.size(), 1U);
 }
 
-/// Replaces the pressure of the logs by that of a regulator with its own equations. Beyond a dead zone, the
-/// error and its integral open a port to a chamber. The chamber empties through a narrow tube into the
-/// finger, and a leak empties the finger.
+/// Replaces the pressure of the logs by the pressure behind a simulated regulator. The simulation does not
+/// use the project's equations of a regulator. Beyond a dead zone, the error and its integral open a port to
+/// a chamber. The chamber empties through a narrow tube into the finger, and a leak empties the finger.
 std::vector<Log> behind_a_regulator(std::vector<Log> logs, double tube_per_s, double leak_per_s) {
   std::mt19937 random(static_cast<unsigned>(1000 * leak_per_s + tube_per_s));
   std::normal_distribution<double> noise(0, 0.03);
@@ -266,7 +269,7 @@ std::vector<Log> behind_a_regulator(std::vector<Log> logs, double tube_per_s, do
 }
 
 ChangeDiagnosis changed_behind_a_regulator(double tube_per_s, double leak_per_s) {
-  // A small leak needs one minute of each log.
+  // Each log must last one minute, because a small leak is not found in shorter logs.
   const auto d = diagnose_change(behind_a_regulator(logs_of({}, 1, true, 3000), 40, 0),
                                  behind_a_regulator(logs_of({}, 5, true, 3000), tube_per_s, leak_per_s));
   EXPECT_TRUE(d) << d.error();
@@ -279,8 +282,8 @@ TEST(Change, ALeakThatARegulatorMakesUpForIsSeenWhereItsPortsOpen) {
   EXPECT_EQ(d.causes[0].id, "leak");
   EXPECT_EQ(d.causes[0].fitted.effect.form, "leak_past_a_regulator");
   EXPECT_EQ(d.causes.size(), 1U) << change_sentence(d);
-  // The leak loses 0.2 per second of the 58 kPa that the pressure reaches. The law of flow differs from that
-  // of the diagnosis, so only the order of magnitude can agree.
+  // The pressure reaches 58 kPa, and the leak loses 0.2 of it per second. The simulated leak and the
+  // diagnosis use different laws of flow, so only the order of magnitude can agree.
   EXPECT_GT(d.causes[0].size.value, 0.5 * 0.2 * 58);
   EXPECT_LT(d.causes[0].size.value, 2 * 0.2 * 58);
 }
@@ -291,7 +294,7 @@ TEST(Change, ATubeThatThrottlesMoreBehindARegulatorIsABlockedLine) {
   EXPECT_EQ(d.causes[0].id, "blocked_line");
 }
 
-/// Returns logs whose pressure is simulated with the program's own regulator model.
+/// Returns logs whose pressure is simulated with the regulator model of the program.
 std::vector<Log> regulated_logs(unsigned first_seed, const Regulator& regulator) {
   std::mt19937 random(first_seed);
   std::normal_distribution<double> noise(0, 0.03);
@@ -375,7 +378,7 @@ TEST(Change, ThePageSaysWhatToDoAndShowsTheMisfit) {
   EXPECT_NE(html.find(interval_text(d.causes[0])), std::string::npos) << interval_text(d.causes[0]);
   EXPECT_NE(html.find(std::string(next_steps("ageing")[1]).substr(0, 30)), std::string::npos);
   ASSERT_EQ(page.figures().size(), 3U);
-  EXPECT_EQ(page.figures()[0].charts.size(), 2U);  // one chart per log
+  EXPECT_EQ(page.figures()[0].charts.size(), 2U);  // one chart for each log
   const Chart& runs = page.figures()[1].charts[0][0];
   EXPECT_EQ(runs.x.categories.size(), d.readings.back().runs.size());
   EXPECT_EQ(runs.series.size(), 2U);
@@ -389,9 +392,9 @@ TEST(Change, TooLittleIsRefused) {
   EXPECT_FALSE(diagnose_change({}, logs_of({}, 5)));
 }
 
-/// A lag of 0.01 s causes a larger error than any of the healthy runs has, but a smaller error than a further
-/// healthy run may have. The change is found if the later run starts like the healthy runs, but not if it
-/// starts under pressure.
+/// A lag of 0.01 s causes a larger error than the healthy runs have, but the error is below the limit for a
+/// new run. The diagnosis finds the lag if the later run starts like the healthy runs. It does not find the
+/// lag if the later run starts under pressure.
 TEST(Change, AnotherStartNeedsALargerError) {
   const std::vector<Log> healthy{log_of({}, 1), log_of({}, 2), log_of({}, 3)};
   const Log at_rest = log_of({.valve_lag_s = 0.01}, 5);

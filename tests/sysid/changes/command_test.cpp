@@ -1,4 +1,4 @@
-// Runs softgrip baseline and softgrip diagnose --healthy as a user does.
+// Runs the commands softgrip baseline and softgrip diagnose --healthy as a user does.
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

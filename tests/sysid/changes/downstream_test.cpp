@@ -63,15 +63,15 @@ TEST(Downstream, IsWhatTheWholeChainShowsBitForBit) {
       whole = model::with_block(std::move(whole), blocks.back());
     }
     if (!is_downstream(blocks, base(), record)) {
-      EXPECT_STREQ(chain.back(), "ageing");  // this block precedes the contact
+      EXPECT_STREQ(chain.back(), "ageing");  // ageing is not downstream, because it acts before the contact
       continue;
     }
     EXPECT_EQ(downstream(blocks, record, plain), walked(whole, record));
   }
 }
 
-// Some blocks of the catalogue report that they can be applied to samples. For each of them, the result must
-// equal that of the whole model.
+// is_downstream() is true for blocks that can be applied directly to the samples of a prediction. For each of
+// these blocks, the result must equal that of the whole model.
 TEST(Downstream, HoldsForEveryBlockThatSaysSo) {
   const Record record = waving();
   const std::vector<double> plain = walked(base(), record);

@@ -1,6 +1,6 @@
 #pragma once
-// A simulated finger for tests of changes. Its formulas differ from those of the models: an elastic part, a
-// part with play and a creeping part, behind a valve without dynamics.
+// A simulated finger for tests of changes. It does not use the formulas of the models. It has an elastic
+// part, a part with play and a part that creeps, and its valve has no dynamics.
 
 #include <algorithm>
 #include <cmath>
@@ -14,20 +14,23 @@
 namespace softgrip::sysid::test {
 
 struct Finger {
-  double gain = 0.2;     ///< mm/kPa
+  double gain = 0.2;     ///< gain of the finger, mm/kPa
   double stop_mm = 1e9;  ///< largest displacement [mm]
   double zero_mm = 0;
-  double lost_kpa_per_s = 0;  ///< while the command is constant, up to a loss of 1.5 kPa
+  double lost_kpa_per_s = 0;  ///< rate at which the pressure falls while the command is constant, up to a
+                              ///< loss of 1.5 kPa
   double delay_s = 0;
   double valve_lag_s = 0;
-  double per_c = 0;  ///< relative change of the gain per degree, from 15 degrees on
+  double per_c = 0;  ///< relative change of the gain per degree above 15 degC
   bool with_temperature = false;
-  double bend_per_mm = 0;  ///< stiffens with the displacement; at 12 mm the displacement is unchanged
-  double crescent_mm = 0;  ///< width of a loop that rises along a parabola and falls along a line
+  double bend_per_mm = 0;  ///< stiffening with the displacement; a displacement of 12 mm stays unchanged
+  double crescent_mm = 0;  ///< width [mm] of a hysteresis loop that rises along a parabola and falls along a
+                           ///< line
   double wander_mm = 0;    ///< amplitude of a drift of the zero with a period of about 15 s
 };
 
-/// Returns a command of triangles with several heights and a hold at the top, drawn by `seed`.
+/// Returns a command of ramps to random pressures, holds, and ramps to 0. `seed` determines the pressures and
+/// the durations.
 inline std::vector<double> command_kpa(unsigned seed, std::size_t samples, double rate_hz) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> height(20, 58), time(1.5, 4);
@@ -46,16 +49,16 @@ inline std::vector<double> command_kpa(unsigned seed, std::size_t samples, doubl
   return out;
 }
 
-/// Returns a pressure behind a first-order lag. The pressure is linear between two samples, as a record
-/// states its command.
-/// @param lagged_kpa, from_kpa  values at the previous sample. @param to_kpa  value at this sample.
+/// Returns the pressure behind a first-order lag at the end of one sample. The pressure before the lag is
+/// linear between two samples, like the command of a record. @param lagged_kpa, from_kpa  pressures behind
+/// and before the lag at the previous sample. @param to_kpa  pressure before the lag at this sample.
 inline double lagged_kpa(double lagged_kpa, double from_kpa, double to_kpa, double step_s, double lag_s) {
   if (lag_s <= 0) return to_kpa;
   const double behind_kpa = lag_s * (to_kpa - from_kpa) / step_s;
   return to_kpa - behind_kpa + (lagged_kpa - from_kpa + behind_kpa) * std::exp(-step_s / lag_s);
 }
 
-/// Returns the log of a finger at 50 Hz. @param samples  number of samples.
+/// Returns the log of the finger, sampled at 50 Hz. @param samples  number of samples.
 inline Log log_of(const Finger& finger, unsigned seed, bool with_pressure = false,
                   std::size_t samples = 2000) {
   constexpr double rate_hz = 50;

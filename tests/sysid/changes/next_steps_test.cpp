@@ -15,7 +15,8 @@ TEST(NextSteps, EveryCauseHasTwoThingsToDoAndPlainWords) {
   std::vector<std::string_view> ids;
   for (const CauseWithoutBlock& cause : causes_without_block) ids.push_back(cause.id);
   for (const Cause& cause : all_causes()) {
-    // These two are no changes: one is a cause of a model error only, the other is an alternative to a leak.
+    // hysteresis_shape can only be the cause of a model error, and pressure_scale is only listed as an
+    // alternative to a leak. Neither can be reported as a change.
     if (cause.id != "hysteresis_shape" && cause.id != "pressure_scale") ids.push_back(cause.id);
   }
   for (const std::string_view id : ids) {
@@ -32,7 +33,7 @@ TEST(NextSteps, ASizeThatIsANumberIsOneOfTheCausesBlock) {
   std::size_t numbers = 0;
   for (const Cause& cause : all_causes()) {
     const SizedBy size = sized_by(cause.id);
-    // the size of a leak comes from its own search
+    // a leak has its own search, which also computes its size
     if (size.of != SizedBy::Of::number || cause.id == leak.id) continue;
     ++numbers;
     EXPECT_FALSE(size.unit.empty()) << cause.id;

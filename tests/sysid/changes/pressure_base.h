@@ -1,5 +1,6 @@
 #pragma once
-// A baseline model of the pressure that consists of a filter bank only, so that the fit is quick.
+// A baseline model of the pressure for tests. It consists of a filter bank only, so that its fit takes little
+// time.
 
 #include <gtest/gtest.h>
 

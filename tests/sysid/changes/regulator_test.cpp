@@ -37,7 +37,8 @@ TEST(Regulator, APortThatIsOpenFillsByWhatStandsBeforeIt) {
   const Regulator narrow{.port_per_s = 0.3, .tube_per_s = 30, .spool_lag_s = 0, .chamber_share = 0};
   record.supply_kpa.assign(record.size(), 500.0);
   const std::vector<double> p = regulated(narrow, record, record.drive_kpa);
-  // Choked flow, almost until the end: 0.3 per second of the absolute pressure of 601 kPa.
+  // The flow is choked almost until the end. Per second, the pressure rises by 0.3 times the absolute supply
+  // pressure of 601 kPa.
   EXPECT_NEAR(p[60] - p[55], 0.05 * 0.3 * 601.3, 0.5);
   record.supply_kpa.assign(record.size(), 300.0);
   EXPECT_NEAR(regulated(narrow, record, record.drive_kpa)[60], 401.3 / 601.3 * p[60], 0.5);
@@ -54,8 +55,8 @@ TEST(Regulator, WhilePortsAreShutALeakEmptiesTheFinger) {
   EXPECT_NEAR(regulated(shut, record, record.drive_kpa).back(), 50, 1e-9);
 }
 
-/// Each sample is simulated in 50 steps, for samples of 1 s as for samples of 0.1 s. Ten times finer steps
-/// must not change the result.
+/// The simulation divides each sample into 50 steps, whether the sample lasts 0.1 s or 1 s. With ten times as
+/// many steps, the result must stay the same.
 TEST(Regulator, SlowSamplesNeedNoFinerSteps) {
   const Record slow = record_of(test::command_kpa(3, 120, 1), 1);
   constexpr std::size_t parts = 10;
@@ -76,7 +77,8 @@ TEST(Regulator, AnswersForALeakWhereItsPortsOpen) {
   const std::vector<double> tight = regulated(regulator, record, record.drive_kpa);
   regulator.leak_per_s = 0.1;
   const std::vector<double> leaking = regulated(regulator, record, record.drive_kpa);
-  EXPECT_NEAR(leaking.back(), tight.back(), 0.3);  // although the leak loses 13 kPa/s
+  EXPECT_NEAR(leaking.back(), tight.back(), 0.3);  // the integral of the controller compensates the leak,
+                                                   // which loses 13 kPa/s
   EXPECT_LT(leaking[70], tight[70] - 0.2);
 }
 
@@ -111,8 +113,8 @@ TEST(Regulator, AChamberBeforeTheTubeIsFilledFirst) {
   EXPECT_NEAR(soon(0) / soon(1), 2, 0.1);
 }
 
-/// Returns the reference pressure: that of the valve of tests/blind/textbook, which implements the same
-/// standard, in small explicit steps.
+/// Returns the pressure of the reference solution. The valve of tests/blind/textbook implements the same
+/// standard and is integrated in small explicit steps.
 std::vector<double> textbook_pressure(const textbook::ValveNumbers& numbers, const Record& record) {
   constexpr double step_s = 0.00025;
   textbook::Valve valve(numbers);
@@ -149,7 +151,7 @@ TEST(Regulator, AnswersAsAnotherProgramsValveByTheSameStandard) {
       const double far_kpa = rms(record.drive_kpa, p);
       EXPECT_GT(far_kpa, 0.3);
       EXPECT_LT(rms(regulated(regulator, record, record.drive_kpa), p), 0.08 * far_kpa) << leak;
-      // With steps as small as those of the reference, the difference must become small.
+      // With the small steps of the reference solution, the difference must become small.
       constexpr std::size_t parts = 40;
       const Record fine = finer_record(record, parts);
       const std::vector<double> at_all = regulated(regulator, fine, fine.drive_kpa);

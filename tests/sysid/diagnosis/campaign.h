@@ -1,5 +1,5 @@
 #pragma once
-// Records with known commands, and residuals with known properties for these records.
+// Records with known commands for tests, and residuals with known properties for these records.
 
 #include <cmath>
 #include <limits>
@@ -11,7 +11,8 @@
 
 namespace softgrip::sysid {
 
-/// Returns `logs` logs of one minute at 50 Hz: triangles with several amplitudes and rates, holds and rests.
+/// Returns records of `logs` logs, each one minute long and sampled at 50 Hz. The commands are triangles with
+/// several amplitudes and rates, with holds and rests.
 inline std::vector<Record> known_campaign(std::size_t logs) {
   std::vector<Record> records;
   double largest = 0;
@@ -28,7 +29,7 @@ inline std::vector<Record> known_campaign(std::size_t logs) {
       const double peak = 20.0 + 5.0 * static_cast<double>((cycle + k) % 5);
       const double rise_s = cycle % 2 == 0 ? 1.0 : 2.5;
       const double phase = t - 10 * static_cast<double>(cycle);
-      // Rise, hold for 2 s, fall, rest.
+      // Each cycle consists of a rise, a hold of 2 s, a fall and a rest.
       double p = 0;
       if (phase < rise_s) {
         p = peak * phase / rise_s;
@@ -59,7 +60,7 @@ inline ByRecord readings_of(const std::vector<Record>& records) {
   return readings;
 }
 
-/// Returns noise with this standard deviation and with the correlation `correlation` between successive
+/// Returns noise with the given standard deviation. `correlation` is the correlation between successive
 /// samples.
 inline ByRecord noise_for(const std::vector<Record>& records, double deviation, double correlation,
                           std::uint64_t seed) {

@@ -15,7 +15,7 @@ struct Signals {
 };
 
 /// Returns the signals of a PI controller that keeps the flow behind a valve at 0.
-/// @param band  change of the command at which the valve breaks free and jumps.
+/// @param band  change of the command that the valve needs to break free and jump.
 /// @param wave  amplitude of a disturbance of the flow.
 Signals loop(double band, double wave, double proportional, double integral, unsigned seed) {
   std::mt19937 random(seed);
@@ -35,7 +35,7 @@ Signals loop(double band, double wave, double proportional, double integral, uns
   return signals;
 }
 
-/// Returns the signals of a planned command and of a finger that follows the command with a lag.
+/// Returns the signals of a finger that follows a planned command with a lag.
 Signals planned(double lag_share, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 0.01);
@@ -75,8 +75,8 @@ TEST(LoopPhase, APlannedCommandIsNoLoopHoweverLateTheFingerIs) {
   }
 }
 
-/// The cross-correlation of command and reading is one-sided, so its odd part is as large as that of a valve
-/// that sticks.
+/// The reading follows a random command, so the cross-correlation of the two signals is one-sided. Its odd
+/// part is as large as for a valve with stiction. The test expects that no loop is reported.
 TEST(LoopPhase, ARandomCommandIsNoLoop) {
   std::mt19937 random(9);
   std::normal_distribution<double> normal(0, 1);

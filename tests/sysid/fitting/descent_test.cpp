@@ -5,13 +5,14 @@
 
 #include <gtest/gtest.h>
 
-// GCC 12 takes a new std::stop_source for one that is not initialised.
+// GCC 12 incorrectly warns that a new std::stop_source is not initialised.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 
 namespace softgrip::sysid::descent_test {
 namespace {
 
-/// Rosenbrock's function as two residuals, 10 (y - x^2) and 1 - x, within bounds. Minimum 0 at (1, 1).
+/// Rosenbrock's function as the two residuals 10 (y - x^2) and 1 - x. The variables have bounds. The minimum
+/// is 0 at (1, 1).
 struct Rosenbrock {
   Eigen::Vector2d lower = Eigen::Vector2d::Constant(-1e9);
   Eigen::Vector2d upper = Eigen::Vector2d::Constant(1e9);
@@ -44,7 +45,7 @@ TEST(Descent, FindsTheMinimumOfRosenbrocksValley) {
 }
 
 TEST(Descent, StaysWithinBoundsAndMovesAlongThem) {
-  // With y <= 0.25 the minimum is where 400 x^3 - 98 x - 2 = 0, next to x = 0.5.
+  // With the bound y <= 0.25, the minimum is where 400 x^3 - 98 x - 2 = 0. This x is close to 0.5.
   Rosenbrock problem;
   problem.upper(1) = 0.25;
   const auto end = descend(problem, Eigen::Vector2d(-0.3, 0.25), {.most_steps = 200, .least_gain = 1e-16});
@@ -94,8 +95,8 @@ TEST(Descent, CountsStepsAndTrials) {
   const auto end = descend(problem, Eigen::Vector2d(-1.2, 1), {.most_steps = 3});
   EXPECT_EQ(end.steps, 3);
   EXPECT_FALSE(end.converged);
-  // At the minimum no trial reduces the loss, so the loss is computed once for the start and once for each
-  // trial.
+  // The start is the minimum, so no trial step reduces the loss. The loss is computed once for the start and
+  // once for each of the 5 trials.
   Rosenbrock again;
   const auto none = descend(again, Eigen::Vector2d(1, 1), {.most_trials = 5});
   EXPECT_EQ(none.steps, 0);

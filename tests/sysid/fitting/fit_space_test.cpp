@@ -10,7 +10,8 @@
 namespace softgrip::sysid::fit_space_test {
 namespace {
 
-/// Linear envelopes have no free parameters. Nonlinear envelopes are fitted again if a cause is added.
+/// The parameters of a nonlinear envelope are fitted again if a cause is added. Linear envelopes have no
+/// parameters to fit.
 TEST(IsMovable, OfTheEnvelopesWhereTheyAreBentAlone) {
   for (const double end_kpa : {0.0, 50.0}) {
     const model::Model plays = model::with_block(

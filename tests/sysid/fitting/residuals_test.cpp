@@ -43,7 +43,8 @@ Model three_branches() {
   kv.insert(kv.end(), {5.0, 0.5});
   return model;
 }
-/// Returns a model with a negative gamma: while the hysteretic state shrinks, its slope dh/dp exceeds beta.
+/// Returns a model with a negative gamma. While the hysteretic state shrinks, the slope of the hysteresis
+/// exceeds beta.
 Model odd_hysteresis() {
   Model model = loaded("zhang2025");
   model.blocks[0].values[2] = -0.01;
@@ -101,7 +102,7 @@ std::vector<std::size_t> all_but_the_exponent(const Model& model) {
 
 class BothWays : public ::testing::TestWithParam<World> {};
 
-/// The chain with automatic differentiation and the closed form are two implementations of the same
+/// The automatic differentiation of the chain and the closed form are two implementations of the same
 /// equations.
 TEST_P(BothWays, ValuesAndDerivativesAgree) {
   const World& world = GetParam();
@@ -125,8 +126,8 @@ TEST_P(BothWays, ValuesAndDerivativesAgree) {
   ASSERT_TRUE(separable->evaluate(z, r2, j2));
   double worst = 0;
   for (std::size_t i = 0; i < rows; ++i) worst = std::max(worst, std::abs(r1[i] - r2[i]));
-  // When a lag reverses within a sample, the chain uses two parabolas for the creep, but the closed form uses
-  // one.
+  // If the output of a lag reverses within a sample, the chain computes the creep with two parabolas. The
+  // closed form uses one parabola.
   const bool lagged = model::position_of(world.model, "valve_lag").has_value();
   EXPECT_LT(worst, lagged ? 1e-6 : 1e-9) << "largest difference [mm]";
   for (std::size_t c = 0; c < z.size(); ++c) {
@@ -155,7 +156,7 @@ TEST_P(BothWays, ValuesWithoutDerivativesAreTheSame) {
   }
 }
 
-// Records and groups of derivatives are evaluated in parallel.
+// The function evaluates records and groups of derivatives in parallel.
 TEST_P(BothWays, AreBitForBitTheSameOnMoreThreads) {
   const World& world = GetParam();
   const std::vector<Record> records = records_of(world);
@@ -178,7 +179,7 @@ TEST_P(BothWays, AreBitForBitTheSameOnMoreThreads) {
 INSTANTIATE_TEST_SUITE_P(Worlds, BothWays, testing::ValuesIn(worlds()),
                          [](const auto& world) { return world.param.name; });
 
-/// Compares the derivatives with central differences of the model.
+/// Compares the derivatives with central differences of the model's prediction.
 TEST(ChainResiduals, DerivativesAreThoseOfTheModel) {
   World world{"TwinUnknownStart", bench_twin(), true, false, true};
   const std::vector<Record> records = records_of(world);
@@ -211,8 +212,8 @@ TEST(ChainResiduals, DerivativesAreThoseOfTheModel) {
   }
 }
 
-/// A measured pressure begins slightly below zero. There, the rest position of a soft spring is far from
-/// zero.
+/// The measured pressure begins slightly below zero. At such a pressure, the rest position of a soft spring
+/// is far from zero.
 TEST(SeparableResiduals, AgreeWithTheModelWhereABranchHasNextToNoSpring) {
   for (const double stiffness : {1e-3, 1e-9, 1e-14, 0.0}) {
     Model model = loaded("zhang2025");

@@ -26,7 +26,8 @@ std::string day_text(int day) {
   return "2026-0" + std::to_string(day / 28 + 1) + "-" + (two.size() < 2 ? "0" : "") + two;
 }
 
-/// A finger with three grips of one recipe per day; `change` is added from day `from_day`.
+/// A finger with three grips of one recipe per day. From day `from_day` on, `change` is added to its
+/// indicators.
 struct Life {
   int days = 30;
   int from_day = 1000;
@@ -73,7 +74,8 @@ FingerHealth judged(const Life& life, const std::vector<Note>& notes = {}) {
   return judge_finger("left", life.runs(), notes, base, {});
 }
 
-// The stated rate is one alarm of any of the 9 charts in 3650 points: 6.6 alarms of 400 fingers in 60 days.
+// Each finger has 9 charts. The stated rate is one alarm of any chart in 3650 points. So 6.6 alarms are
+// expected for 400 fingers in 60 days.
 TEST(FingerHealth, OfAHealthyFingerAlarmsNoMoreOftenThanStated) {
   int alarms = 0;
   for (unsigned seed = 1; seed <= 400; ++seed) {
@@ -82,7 +84,7 @@ TEST(FingerHealth, OfAHealthyFingerAlarmsNoMoreOftenThanStated) {
     life.seed = seed;
     alarms += judged(life).state == FingerState::alarm ? 1 : 0;
   }
-  EXPECT_LE(alarms, 14);  // three standard errors above the stated rate
+  EXPECT_LE(alarms, 14);  // three standard errors above the expected number
   EXPECT_GE(alarms, 1);
   RecordProperty("alarms_in_400_lives", alarms);
 }
@@ -137,7 +139,7 @@ TEST(FingerHealth, WhatWasMendedBeginsTheChartsAnew) {
   ASSERT_EQ(health.notes.size(), 1U);
   EXPECT_EQ(health.notes[0].first, 20U);
   EXPECT_NEAR(health.references[0]->mean, 30, 0.2);
-  // A note about another finger has no effect.
+  // A maintenance record of a different finger must have no effect.
   EXPECT_EQ(judged(life, {{day_text(20), "right", "finger replaced"}}).state, FingerState::alarm);
   EXPECT_EQ(judged(life, {{day_text(20), "", "all fingers replaced"}}).state, FingerState::steady);
 }

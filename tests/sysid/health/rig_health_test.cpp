@@ -25,13 +25,13 @@ std::string day_text(int day) {
   return "2026-0" + std::to_string(day / 28 + 1) + "-" + (two.size() < 2 ? "0" : "") + two;
 }
 
-/// Two fingers with three grips per day. Weather that persists for days moves the gain of both fingers by
-/// `weather_mm`.
+/// Two fingers with three grips per day. The weather changes the gain of both fingers with a standard
+/// deviation of `weather_mm`, and persists for days.
 struct Rig {
   unsigned seed = 1;
   double weather_mm = 0.12;
   bool thermometer = false;
-  double uneven = 1;  ///< factor by which the last finger follows the weather
+  double uneven = 1;  ///< factor that scales the effect of the weather on the last finger
   std::vector<std::string> names{"left", "right"};
   /// Returns the change of an indicator on a day, in the unit of the indicator.
   std::function<double(const std::string& finger, HealthNumber number, int day)> becomes =
@@ -86,8 +86,8 @@ std::size_t alarms_of(const RigHealth& rig) {
   return alarms;
 }
 
-// The stated rate gives 4.4 alarms, because 200 fingers have 16,000 points. Without peer fingers, weather
-// causes more alarms.
+// The 200 fingers have 16,000 points, so 4.4 alarms are expected at the stated rate. If a finger is judged
+// without its peer fingers, the weather causes more alarms.
 TEST(RigHealth, WeatherIsNoAlarmOfAFinger) {
   std::size_t together = 0, alone = 0, warm = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
@@ -180,7 +180,7 @@ TEST(RigHealth, WhatAllFingersShareIsToldOfTheRigAndIsNoAlarm) {
   EXPECT_NE(shared_sentence(*told).find("pressure loss while holding +"), std::string::npos);
   EXPECT_NE(shared_sentence(*told).find("not recorded"), std::string::npos);
   EXPECT_EQ(json_of(*told)["number"], "pressure_loss_kpa");
-  // The shared change ends with the repair.
+  // The change that both fingers share ends with the repair.
   for (const SharedChange& shared : rig.judged({{day_text(60), "", "supply line"}}).shared)
     EXPECT_FALSE(shared.stands && shared.since == day_text(50));
 }
@@ -274,7 +274,7 @@ TEST(RigHealth, WhatTheRigSharesIsASignOfWhatCameWithIt) {
   SharedChange loss{HealthNumber::pressure_loss, 1, since, since, {"left", "right"}, false, true};
   EXPECT_EQ(suspicion_of(judged.fingers[0]).suspects.front().id, "ageing");
   EXPECT_EQ(suspicion_of(judged.fingers[0], {loss}).suspects.front().id, "leak");
-  loss.since = "2026-12-01";  // the pressure loss began after the alarm
+  loss.since = "2026-12-01";  // the pressure loss began after the date of the alarm
   EXPECT_EQ(suspicion_of(judged.fingers[0], {loss}).suspects.front().id, "ageing");
   EXPECT_TRUE(suspicion_of(judged.fingers[1], {loss}).suspects.empty());
 }
@@ -289,8 +289,8 @@ TEST(RigHealth, ThePageSaysWhatCouldNotBeAllowedFor) {
 }
 
 TEST(RigHealth, ADifferenceThatHasNoOwnerYetIsNoAlarm) {
-  // The effect of the weather is much larger than the change, so the values of one finger do not suffice to
-  // attribute the change.
+  // The effect of the weather is much larger than the change of the finger. So the values of one finger alone
+  // do not show which finger has changed.
   int unclear = 0;
   for (unsigned seed = 0; seed < 20; ++seed) {
     Rig rig;

@@ -10,8 +10,7 @@ namespace {
 
 constexpr double least = 1e-9;
 
-/// Generates values that depend on the temperature with a slope of 0.1 per °C and have a standard deviation
-/// of 0.05.
+/// Generates values with a temperature dependence of 0.1 per °C and a standard deviation of 0.05.
 class Warm {
  public:
   explicit Warm(unsigned seed) : random_(seed) {}
@@ -45,8 +44,8 @@ TEST(RunningReference, FindsHowTheNumberFollowsTheTemperature) {
   EXPECT_GT(reference.slope()->highest_c, 22);
 }
 
-// Brown, Durbin and Evans: the recursive residuals of a line through all earlier values are independent and
-// have Student's t distribution.
+// Brown, Durbin and Evans: a recursive residual is the deviation of a value from the line through all earlier
+// values. For healthy values, these residuals are independent and have Student's t distribution.
 TEST(RunningReference, HealthyValuesThatFollowTheTemperatureBecomeStandardNormalOnes) {
   double sum = 0, squares = 0, products = 0, count = 0;
   for (unsigned seed = 0; seed < 1500; ++seed) {
@@ -54,8 +53,8 @@ TEST(RunningReference, HealthyValuesThatFollowTheTemperatureBecomeStandardNormal
     RunningReference reference = learnt(warm, 12);
     double before = 0;
     for (int i = 0; i < 20; ++i) {
-      // Stay within the observed temperatures: beyond them the reference adds an uncertainty that a truly
-      // linear dependence does not need.
+      // The temperatures of the test stay within the range of the reference. Outside this range, the
+      // reference adds an uncertainty that a linear dependence does not need.
       const double temperature_c = 20 + std::sin(i);
       const double value = warm.at(temperature_c);
       if (reference.slope()) {
@@ -84,7 +83,7 @@ TEST(RunningReference, ASlopeThatMayBeChanceIsNone) {
     for (int i = 0; i < 30; ++i) reference.learn(30 + 0.05 * normal(random), 20 + 2 * normal(random));
     found += reference.slope() ? 1 : 0;
   }
-  EXPECT_LE(found, 12);  // the stated rate gives 2.7
+  EXPECT_LE(found, 12);  // 2.7 of 1000 references are expected at the stated rate
 }
 
 TEST(RunningReference, TemperaturesThatHardlyDifferTellNoSlope) {
@@ -104,14 +103,15 @@ TEST(RunningReference, BeyondTheTemperaturesSeenHalfOfWhatTheLineAddsIsDoubted) 
   const double beyond = 10 * reference.slope()->per_c;
   const double z = reference.judge(reference.expected(far_c) + beyond, least, far_c).value_or(0);
   EXPECT_NEAR(z, 2, 0.05);
-  // At an observed temperature the same deviation is more than 10 standard deviations.
+  // At a temperature within the range of the reference, the same deviation is more than 10 standard
+  // deviations.
   EXPECT_GT(reference.judge(reference.expected(20) + beyond, least, 20).value_or(0), 10);
 }
 
 TEST(RunningReference, AValueWithoutATemperatureIsComparedWithAll) {
   Warm warm(13);
   const RunningReference reference = learnt(warm, 50);
-  const double spread = 0.2;  // 2 °C with 0.1 per °C
+  const double spread = 0.2;  // a standard deviation of 2 °C times 0.1 per °C
   const double z = reference.judge(reference.mean() + 3 * spread, least).value_or(0);
   EXPECT_NEAR(z, 3, 0.6);
 }

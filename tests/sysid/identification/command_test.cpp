@@ -1,4 +1,5 @@
-// Runs softgrip identify and validate as a user does: exit codes, files, and no output file after a refusal.
+// Runs softgrip identify and softgrip validate as a user does. Checks exit codes and files, and that a
+// refused command writes no file.
 
 #include <algorithm>
 #include <filesystem>
@@ -73,7 +74,7 @@ TEST_F(Command, EveryScoreSaysWhatDrivesTheModel) {
   }
 }
 
-/// If a log is cut where the pressure is 0 between two cycles, it seems to begin at rest.
+/// A log that is cut between two cycles, where the pressure is 0, only seems to begin at rest.
 TEST_F(Command, BeginDecidesWhatIsEstimatedOfAStart) {
   const Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
   std::size_t first = log.size() / 4;
@@ -138,7 +139,7 @@ TEST_F(Command, WhatALogProbablyDoesNotMeanIsWarnedOf) {
               std::string::npos);
 }
 
-/// Returns the part of the log from the last rest before the highest pressure to this pressure.
+/// Returns the part of the log from the last rest before the highest pressure up to the highest pressure.
 Log loading() {
   const Log whole = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
   const std::vector<double>& kpa = whole.pressure_command_kpa;
@@ -148,7 +149,7 @@ Log loading() {
   return slice(whole, begin, end);
 }
 
-/// Returns the first lines of an output, up to an empty line.
+/// Returns the lines of an output before its first empty line.
 std::string first_lines(const std::string& text) {
   return text.substr(0, text.find("\n\n"));
 }
@@ -180,7 +181,7 @@ TEST_F(Command, OutliersAreNamedFirstAndNotFitted) {
   EXPECT_NE(validated["warnings"].dump().find("are outliers, removed"), std::string::npos);
 }
 
-/// The creep of this model has almost no limit. A short log does not show this, but a long one does.
+/// The creep of this model has almost no limit. A short log does not show this property, but a long log does.
 TEST_F(Command, APredictionThatDivergesIsNotAcceptable) {
   write_log("tp1.csv", model::SignalName::tp1);
   write("loading.csv", format_log(loading()));
@@ -200,7 +201,8 @@ TEST_F(Command, APredictionThatDivergesIsNotAcceptable) {
       << read("out.txt");
 }
 
-/// The reading 9999 is larger than any displacement in mm, but not because of a wrong unit.
+/// The reading 9999 is a wrong reading. It is larger than any displacement in mm, but the unit of the column
+/// is correct.
 TEST_F(Command, ALargeCodeIsNoUnit) {
   Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
   log.displacement_mm[30] = log.displacement_mm[50] = 9999;

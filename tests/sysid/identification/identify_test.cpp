@@ -25,7 +25,8 @@ const Estimate& find(const std::vector<Estimate>& list, std::string_view name) {
   throw std::runtime_error("no estimate " + std::string(name));
 }
 
-/// Expects that each combination of the true parameters is within `widths` half-widths of its interval.
+/// Compares each parameter combination of the true model with its interval. The difference must be below
+/// `widths` half-widths of the interval.
 void expect_truth(const Identification& result, const Model& truth, double widths) {
   for (const Combination& c : combinations_of(truth)) {
     const Estimate& e = find(result.combinations, c.name);
@@ -66,7 +67,8 @@ TEST(Identify, FindsLatencyWhereTheStructureHasIt) {
   expect_truth(*result, truth, 2);
 }
 
-/// The main result of the project: if the structure lacks the latency, the hysteresis block absorbs it.
+/// The central example of the project: if the model structure has no latency, the hysteresis block absorbs
+/// the latency of the rig.
 TEST(Identify, WithoutLatencyTheTwinLooksNotInvertible) {
   const auto logs = two_logs(loaded("bench_twin"));
   const auto result = identify(logs, base_model(logs, 2));
@@ -77,8 +79,8 @@ TEST(Identify, WithoutLatencyTheTwinLooksNotInvertible) {
                           [](const std::string& w) { return w.find("latency") != std::string::npos; }));
 }
 
-/// Uses data from a program with another integration method and another step, which shares no code with the
-/// models.
+/// The logs come from a program with another integration method and another step. The program shares no code
+/// with the models.
 TEST(Identify, FindsWhatAnIndependentIntegratorSimulated) {
   const IntegratedFinger finger;
   const std::vector<Log> logs{integrated(finger, SignalName::tp1, 50, 0.05, 21),
@@ -154,8 +156,8 @@ TEST(Identify, AParameterThatDoesNotExistIsRefused) {
   EXPECT_NE(result.error().find("bouc_wen.delta"), std::string::npos);
 }
 
-/// A log from the middle of a run with an offset of the sensor zero. The states of hysteresis, creep and
-/// offset at its start are unknown.
+/// The log begins in the middle of a run. The states of hysteresis and creep and the offset of the sensor
+/// zero are unknown at its start.
 TEST(Identify, EstimatesTheStateInWhichALogBegins) {
   const Model truth = loaded("zhang2025");
   std::vector<Log> logs;
@@ -222,7 +224,7 @@ TEST(Identify, TheExponentIsChosenAmongThoseAskedFor) {
 TEST(Identify, AsManyBranchesAsAskedFor) {
   Model truth = loaded("zhang2025");
   auto& kv = truth.blocks[1].values;
-  kv = {325.9, 18.0, 300.0, 6.0, 9.0, 3.0, 0.6};  // 16.7 s, 1.5 s, 0.2 s
+  kv = {325.9, 18.0, 300.0, 6.0, 9.0, 3.0, 0.6};  // time constants of 16.7 s, 1.5 s and 0.2 s
   const auto logs = two_logs(truth);
   const auto three = identify(logs, base_model(logs, 3));
   const auto one = identify(logs, base_model(logs, 1));
@@ -234,7 +236,8 @@ TEST(Identify, AsManyBranchesAsAskedFor) {
   EXPECT_NEAR(time_constants[1], 1.5, 0.1);
 }
 
-/// A chain without a closed form is fitted with automatic differentiation, and its block is found as well.
+/// A model with a contact has no closed form, so it is fitted with automatic differentiation. The fit must
+/// find the contact.
 TEST(Identify, AnyBlockCanBeFitted) {
   Model truth = loaded("zhang2025");
   model::BlockSpec contact = model::default_block(*model::find_block("contact"));
@@ -277,7 +280,7 @@ TEST(Identify, WhatIsHeldOutIsNotFitted) {
   ASSERT_TRUE(result);
   EXPECT_NEAR(result->rmse_mm, 0.05, 0.02 * 0.05);
   ASSERT_EQ(result->held_out.size(), 2U);
-  // The last 30 % of the log are held out, and the last 25 % of the log have an error of 4 mm.
+  // The last 30 % of the log are held out. The last 25 % of the log contain an error of 4 mm.
   EXPECT_NEAR(result->held_out[0].rmse_mm, 4 * std::sqrt(25.0 / 30), 0.1);
 }
 
@@ -322,8 +325,8 @@ TEST(Identify, ProfilesAgreeWithIntervalsWhereTheDataAreStrong) {
   }
 }
 
-/// A small version of bench/sysid_coverage: fits scattered true models with white and correlated noise, and
-/// counts how often the interval contains the true value.
+/// A short version of bench/sysid_coverage. Fits models with random true parameters to data with white and
+/// correlated noise. Counts how often the interval contains the true value.
 TEST(Identify, IntervalsHoldTheTruthAsOftenAsTheySay) {
   std::size_t inside = 0;
   std::size_t trials = 0;

@@ -1,4 +1,4 @@
-// Tests noise model, quantiles, bounded least squares and scores.
+// Tests the noise model, the quantiles, the bounded least squares and the scores of a model.
 
 #include <cmath>
 #include <random>
@@ -120,7 +120,7 @@ TEST(Score, AnotherUnitIsNoDivergence) {
     return score.diverges;
   };
   for (const double factor : {1.0, -1.0, 1e-3, 0.1, 1e3}) EXPECT_FALSE(diverges_at(factor, 0)) << factor;
-  EXPECT_TRUE(diverges_at(0, 0.1));  // the readings only alternate
+  EXPECT_TRUE(diverges_at(0, 0.1));  // the readings alternate and do not follow the command
 }
 
 TEST(Validate, EstimatesOnlyWhatTheLogLeavesOpen) {

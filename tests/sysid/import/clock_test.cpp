@@ -11,7 +11,8 @@
 namespace softgrip::sysid::clock_test {
 namespace {
 
-/// Returns 500 values that increase by `step` from `begin`, and decrease by `period` when they reach `limit`.
+/// Returns 500 times of a clock that starts at `begin`, advances by `step`, and jumps back by `period` when
+/// it reaches `limit`.
 std::vector<double> counter(double begin, double step, double limit, double period) {
   std::vector<double> values;
   for (int i = 0; i < 500; ++i) {

@@ -34,8 +34,7 @@ TEST(ArrayCollector, TallAndWideMatricesBecomeColumns) {
 }
 
 TEST(Gunzipped, IsBoundedAndSaysWhatIsWrong) {
-  // the output of: printf 'hello hello'
-  // gzip -n
+  // the output of `printf 'hello hello' | gzip -n`
   const std::string packed(
       "\x1f\x8b\x08\x00\x00\x00\x00\x00\x02\x03\xcb\x48\xcd\xc9\xc9\x57\xc8\x00\x91\x00\x40\xa6\x2d\x01\x0b"
       "\x00\x00\x00",
@@ -70,7 +69,7 @@ TEST(ForeignFile, BrokenBinariesAreRefusedAndMissingOnesUnreadable) {
   EXPECT_TRUE(unreadable);
 }
 
-/// If the function under test waited for a writer, this test would not end.
+/// The file is a named pipe. If the function waited for a writer of the pipe, this test would not end.
 TEST(ForeignFile, APipeIsUnreadableAndNotWaitedFor) {
   const ScratchFolder scratch;
   const std::string pipe = scratch.path() + "/log.csv";

@@ -1,6 +1,6 @@
-// Fuzz target of external text tables, workbooks, LabVIEW and MCAP files. All bytes are either refused, or
-// they are a table. The proposed mapping of a table can be written as options and as a mapping file. A
-// converted table is a valid log.
+// Fuzz target: passes arbitrary bytes to the readers of external text tables, workbooks, LabVIEW files and
+// MCAP files. A reader must refuse the bytes or return a table. The proposed column mapping of a table can be
+// written as options and as a mapping file. A converted table must be a valid log.
 //
 //   scripts/fuzz.sh import_fuzz 30
 

@@ -11,7 +11,7 @@
 
 #include "sysid/import/byte_scanner.h"
 
-// tests/system/test_import.py imports the files of `softgrip export`.
+// tests/system/test_import.py tests the import of files that `softgrip export` has written.
 namespace softgrip::sysid::mcap_table_test {
 namespace {
 
@@ -171,7 +171,7 @@ TEST(McapTable, RefusesWhatItCannotRead) {
   EXPECT_TRUE(says(refusal(whole(topic(1, "/left") + message(1, 0, keys + "}"))), "more than 10000 keys"));
 }
 
-/// Bytes that are truncated or changed are either refused, or they are a table.
+/// If bytes are truncated or changed, the reader must refuse them or return a table.
 TEST(McapTable, SurvivesDamage) {
   const std::string good = whole(two_fingers() + chunk(two_fingers()));
   std::mt19937 random(11);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-// tests/system/foreign_files.py writes whole files in the layouts of the format.
+// tests/system/foreign_files.py writes complete files of this format in its different layouts.
 namespace softgrip::sysid::tdms_table_test {
 namespace {
 
@@ -67,7 +67,7 @@ TEST(TdmsTable, ReadsNumbersByTheirTypes) {
 }
 
 TEST(TdmsTable, MetadataHoldsUntilItChanges) {
-  // The second segment has no metadata. In the third segment, only the count of one channel changes.
+  // The second segment has no metadata. The third segment only changes the number of values of one channel.
   const std::string values =
       bytes_of(3.5) + bytes_of(4.5) + bytes_of(std::int32_t{9}) + bytes_of(std::int32_t{10});
   const std::string change =
@@ -80,7 +80,8 @@ TEST(TdmsTable, MetadataHoldsUntilItChanges) {
   EXPECT_EQ(table.columns[1].values, (std::vector<double>{-7, 8, 9, 10, 11}));
 }
 
-/// Metadata without a new channel list changes the channels that it names and keeps the others.
+/// If the metadata of a segment has no new channel list, it changes the channels that it names. All other
+/// channels keep their metadata.
 TEST(TdmsTable, ChangedMetadataKeepsTheOtherChannels) {
   const auto more = [](std::uint64_t count, double first, std::int32_t second) {
     std::string values;
@@ -103,7 +104,8 @@ TEST(TdmsTable, RefusesWhatItCannotRead) {
   EXPECT_NE(refusal(segment(2 | 4, number_of_objects(5), "")).find("broken metadata"), std::string::npos);
 }
 
-/// A program that is stopped leaves an incomplete last segment; the segments before it are complete.
+/// A program that is stopped leaves an incomplete last segment. The earlier segments are complete and must be
+/// read.
 TEST(TdmsTable, KeepsTheCompleteSegmentsOfAFileThatIsCutOff) {
   const std::string good = two_channels();
   const std::string metadata =
@@ -156,7 +158,7 @@ TEST(TdmsTable, RefusesMoreValuesThanTheLimit) {
             std::string::npos);
 }
 
-/// Bytes that are truncated or changed are either refused, or they are a table.
+/// If bytes are truncated or changed, the reader must refuse them or return a table.
 TEST(TdmsTable, SurvivesDamage) {
   const std::string good = two_channels() + two_channels();
   std::mt19937 random(5);

@@ -17,7 +17,7 @@
 #include "sysid/import/workbook_sheet.h"
 #include "sysid/import/workbook_xml.h"
 
-// tests/system/foreign_files.py tests whole imports of workbooks with dates and formulas.
+// tests/system/foreign_files.py tests complete imports of workbooks with dates and formulas.
 namespace softgrip::sysid::xlsx_table_test {
 namespace {
 
@@ -54,7 +54,7 @@ Parts book(const std::map<std::string, std::string>& sheets) {
   return parts;
 }
 
-/// Writes numbers as numbers, other texts as inline strings, and "" as no cell.
+/// Writes numbers as numeric cells and other texts as inline strings. Writes no cell for "".
 std::string cells(const Rows& rows, std::size_t first_row = 1, std::size_t first_column = 0) {
   std::string xml = "<sheetData>";
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -247,7 +247,7 @@ TEST(XlsxTable, RefusesWhatIsNoWorkbook) {
   EXPECT_TRUE(has(refusal(parts), "its part 'xl/s1.xml' is missing"));
 }
 
-/// Bytes that are truncated or changed are either refused, or they are the same table.
+/// If the bytes are truncated or changed, the reader must refuse them or return the original table.
 TEST(XlsxTable, SurvivesDamage) {
   const std::string good = archive(book({{"Run", cells(three_rows)}}));
   std::mt19937 random(3);
@@ -259,7 +259,8 @@ TEST(XlsxTable, SurvivesDamage) {
     const auto table = read_xlsx_table("b.xlsx", bytes, {}, problems);
     ASSERT_EQ(table.has_value(), problems.empty()) << i;
     refused += table ? 0U : 1U;
-    // Because of the checksums, a changed workbook is either refused or read as the original table.
+    // A workbook contains checksums. So the reader must refuse a changed workbook, or return the original
+    // table.
     if (table) expect_same(*table, table_of(book({{"Run", cells(three_rows)}})));
   }
   EXPECT_GE(refused, good.size());
@@ -284,7 +285,8 @@ TEST(WorkbookXml, RefusesATreeThatNeedsTooMuchMemory) {
   EXPECT_EQ(loaded.error(), "it has too many cells");
 }
 
-/// A text after an element is a separate node and must be counted.
+/// A text behind an element is a separate XML node. The reader must include such nodes when it counts the
+/// nodes.
 TEST(WorkbookXml, CountsTheTextsBetweenElements) {
   std::string text = "<a>";
   for (int i = 0; i < 9'000'000; ++i) text += "<b/>x";
@@ -325,7 +327,7 @@ TEST(WorkbookSheet, DatesCountFrom1900Or1904) {
   WorkbookTexts texts{{}, {false, true}, false};
   EXPECT_EQ(sheet_text(document, texts)->text,
             "2024-05-31T12:00:00.000000,06:00:00.000000,1904-01-02T06:00:00.000000\n");
-  // The date in a title must not turn the times of day below it into dates.
+  // A title contains a date. The times of day below the title must not be read as dates.
   xml =
       "<worksheet><sheetData><row r='1'><c s='1'><v>45443.5</v></c></row>"
       "<row r='2'><c t='str'><v>t</v></c><c t='str'><v>p</v></c></row>"

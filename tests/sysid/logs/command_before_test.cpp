@@ -11,9 +11,9 @@ namespace {
 
 constexpr double interval_s = 0.02;
 
-/// Returns a log whose command steps from `idle_kpa` to 60 kPa two samples before the log begins. The command
-/// is held for 4 s and then follows a slow cosine. The pressure follows the command with a lag of 0.3 s, and
-/// its reading is `offset_kpa` too high.
+/// Returns a log whose command has stepped from `idle_kpa` to 60 kPa two samples before the log begins. The
+/// command stays at 60 kPa for 4 s and then follows a slow cosine. The pressure follows the command with a
+/// lag of 0.3 s, and its reading is `offset_kpa` too high.
 Log begun_at_a_step(double idle_kpa, double offset_kpa = 0) {
   Log log;
   double pressure_kpa = idle_kpa;
@@ -70,7 +70,7 @@ TEST(CommandBefore, WithoutMeasuredPressureTheDisplacementShowsFromWhichEndItCam
   const auto risen = pressure_before_kpa(unmeasured(begun_at_a_step(7)));
   ASSERT_TRUE(risen);
   EXPECT_NEAR(*risen, least, 0.1);
-  Log lowered = begun_at_a_step(60);  // from 60 to 20 kPa at the start of the log
+  Log lowered = begun_at_a_step(60);  // the command falls from 60 to 20 kPa at the start of the log
   for (std::size_t i = 0; i < lowered.size(); ++i) {
     lowered.pressure_command_kpa[i] = 80 - lowered.pressure_command_kpa[i];
     const double settling = std::exp(-interval_s * static_cast<double>(i) / 0.3);

@@ -11,7 +11,7 @@ namespace {
 
 using Missing = std::vector<Excitation>;
 
-/// Returns a log of 40 s at 50 Hz with this command.
+/// Returns a log of 40 s, sampled at 50 Hz, with the given command.
 template <class Command>
 Log commanded(Command kpa_at) {
   Log log;
@@ -43,7 +43,7 @@ TEST(MissingExcitation, OfOneAmplitude) {
             Missing{Excitation::amplitudes});
 }
 
-/// The steps of a stepped command are not counted as peaks, because the pressure does not fall after them.
+/// Between two steps of a staircase, the pressure does not fall. So the steps must not be counted as peaks.
 TEST(MissingExcitation, OfAStaircaseWithOnePeak) {
   const auto stairs = [](double t) { return 8 * std::floor(std::max(0.0, 20 - std::abs(t - 20)) / 4); };
   EXPECT_EQ(missing_excitation({commanded(stairs)}), Missing{Excitation::amplitudes});

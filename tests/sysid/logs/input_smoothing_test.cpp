@@ -12,7 +12,7 @@ struct Signal {
   std::vector<double> time_s, truth, measured;
 };
 
-/// Returns triangles with holds, like those of a regulator, at irregular sample times.
+/// Returns triangles with holds at irregular sample times, like the pressure of a regulator.
 Signal triangles(double noise, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -49,7 +49,8 @@ TEST(InputSmoothing, TakesMostOfTheNoiseAwayAndKeepsTheCorners) {
   }
 }
 
-/// Returns holds of some seconds with jumps between them. The slope before a jump does not predict the jump.
+/// Returns holds of some seconds with jumps between them. Before a jump, the slope is 0, so the slope does
+/// not predict the jump.
 Signal jumps(double noise, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;

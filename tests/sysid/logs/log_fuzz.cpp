@@ -1,5 +1,5 @@
-// Fuzz target of the log reader. All bytes are either refused, or they are a log that can be written and read
-// again.
+// Fuzz target: passes arbitrary bytes to the log reader. The reader must refuse the bytes, or return a log
+// that can be written to a file and read back.
 //
 //   scripts/fuzz.sh log_fuzz 30
 
@@ -44,7 +44,8 @@ void check(const sysid::Log& log) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   sysid::LogOptions options;
-  // The first byte selects the requirements on the log, which differ between the tools that read logs.
+  // The first byte selects which requirements a log must meet. The tools that read logs have different
+  // requirements.
   options.require_motion = size > 0 && (data[0] & 1U) != 0;
   options.need_readings = size > 0 && (data[0] & 2U) != 0;
   const std::vector<std::string> channels = sysid::channels_of(text);

@@ -18,7 +18,8 @@ namespace {
 
 using document::Problems;
 
-/// Returns a valid log: 100 samples of one slow triangle, with enough hysteresis to be a plausible finger.
+/// Returns a valid log with 100 samples of one slow triangle. Its hysteresis is large enough for a plausible
+/// finger.
 Log good_log() {
   Log log;
   for (int i = 0; i < 100; ++i) {
@@ -33,7 +34,7 @@ std::string good_text() {
   return format_log(good_log());
 }
 
-/// Returns the valid log with line `number` (from 1) replaced.
+/// Returns the valid log with a different text in line `number`. The first line is number 1.
 std::string with_line(int number, const std::string& line) {
   std::string text = good_text();
   std::size_t begin = 0;
@@ -189,7 +190,7 @@ TEST(Log, TextAndBackLosesNothing) {
   EXPECT_EQ(format_log(*back), format_log(log));
 }
 
-/// Returns a text in which the column of the readings has another name.
+/// Returns a log text in which the column of the readings has the name `name`.
 std::string with_readings_called(const std::string& name, std::string text) {
   const std::string usual = "displacement_mm";
   return text.replace(text.find(usual), usual.size(), name);
@@ -270,7 +271,8 @@ TEST(Log, AcceptsWhatSpreadsheetsWrite) {
   EXPECT_TRUE(parse_log("good.csv", text, problems)) << problems.format();
 }
 
-/// Returns a valid log with an additional column. All rows have the same cell, except the lines in `other`.
+/// Returns a valid log with an additional column. All rows of this column contain `cell`, except the lines in
+/// `other`.
 std::string with_column(const std::string& name, const std::string& cell,
                         const std::map<int, std::string>& other = {}) {
   std::istringstream in(good_text());

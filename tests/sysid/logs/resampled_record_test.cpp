@@ -11,7 +11,7 @@
 namespace softgrip::sysid::resampled_record_test {
 namespace {
 
-/// Returns a record of 4 s at 1 kHz whose readings are a parabola in time with noise.
+/// Returns a record of 4 s, sampled at 1 kHz. The readings are a parabola in time with added noise.
 Record parabola(double noise_mm) {
   std::mt19937_64 random(20261122);
   std::normal_distribution<double> noise(0, 1);
@@ -29,7 +29,7 @@ Record parabola(double noise_mm) {
   return record;
 }
 
-/// Returns a record with this command at 100 Hz and without readings.
+/// Returns a record with the given command, sampled at 100 Hz and without readings.
 Record commanded(const std::vector<double>& drive_kpa) {
   Record record;
   for (std::size_t i = 0; i < drive_kpa.size(); ++i) {
@@ -43,7 +43,7 @@ Record commanded(const std::vector<double>& drive_kpa) {
   return record;
 }
 
-/// Returns the integral of the command [kPa s].
+/// Returns the integral of the command over time [kPa s].
 double integral_kpa_s(const Record& record) {
   double sum = 0;
   for (std::size_t i = 1; i < record.size(); ++i) {
@@ -94,8 +94,8 @@ TEST(AveragedRecord, KeepsTheMotionAndItsTimes) {
     const double t_s = averaged.time_s[i];
     EXPECT_NEAR(t_s, 0.010 * static_cast<double>(i), 1e-12);
     EXPECT_NEAR(averaged.drive_kpa[i], 10 * t_s, 1e-9);
-    // The mean of nine readings at 1 ms exceeds a parabola by half its second derivative times the mean
-    // square of the time offsets.
+    // The expected value is the mean of nine readings of a parabola at intervals of 1 ms. It exceeds the
+    // parabola by half the second derivative times the mean square of the time offsets.
     EXPECT_NEAR(averaged.reading_mm[i], 2 * t_s * t_s, 2 * 6.7e-6);
   }
 }
@@ -140,7 +140,7 @@ TEST(StridedRecord, LeavesOutReadingsButTellsMotionsApartLikeTheLog) {
       << "a mean would smooth a faster signal";
 }
 
-/// Returns a record of a ramp: 4 s at 1 kHz.
+/// Returns a record of a ramp that lasts 4 s, sampled at 1 kHz.
 Record ramp() {
   Record record;
   for (int i = 0; i <= 4000; ++i) {

@@ -87,7 +87,7 @@ TEST(Thinning, KeepsEveryExtreme) {
   }
   EXPECT_EQ(highest, 50);
   EXPECT_EQ(lowest, -60);
-  // In each pixel column, the drawn curve has the same minimum and maximum as the data.
+  // In each pixel column, the drawn curve must have the same minimum and maximum as the data.
   std::vector<std::pair<double, double>> data(700, {1e9, -1e9});
   auto drawn = data;
   for (const Pixel& p : curve) {
@@ -195,7 +195,8 @@ TEST(Chart, UnitsOfAxesAreDrawnInWords) {
   EXPECT_NE(to_svg(a_chart()).find(">displacement in millimetres<"), std::string::npos);
 }
 
-// If every distinct point were drawn, 600,000 noisy readings would give a file of several megabytes.
+// The chart must not draw every distinct point. With all 600,000 noisy readings, the file would have several
+// megabytes.
 TEST(Chart, AnyLengthOfLogMakesASmallPicture) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise;
@@ -224,7 +225,7 @@ TEST(Chart, BothColourSchemesAreInTheFileAndColoursAreThereWithoutThem) {
 TEST(Chart, WhatColourTellsApartDashesTellApart) {
   Chart chart = a_chart();
   chart.series.front().dash = Dash::dotted;
-  // once in the curve and once in the legend
+  // the dotted line is drawn once in the curve and once in the legend
   EXPECT_EQ(count(to_svg(chart), "stroke-dasharray=\"1.5 2.5\""), 2U);
 }
 

@@ -10,7 +10,7 @@
 namespace softgrip::sysid::bounded_answer_test {
 namespace {
 
-/// Returns one cycle from 0 to 60 kPa and back, with the readings that `model` predicts.
+/// Returns a record of one pressure cycle from 0 to 60 kPa and back to 0. `model` predicts its readings.
 Record stroke(const model::Model& model) {
   Log log;
   log.name = "stroke";

@@ -34,8 +34,8 @@ namespace {
 
 using model::SignalName;
 
-/// Returns a finger of play operators, creep over three decades of time constants and a nonlinear gain,
-/// behind a valve that vents slowly. Its thresholds and time constants are not on the grid of the fit.
+/// Returns a finger with play operators, a nonlinear gain, and creep over three decades of time constants.
+/// Its valve vents slowly. The thresholds and time constants are not values of the grid that the fit uses.
 model::Model play_finger() {
   model::Model m;
   m.name = "play_finger";
@@ -49,7 +49,7 @@ model::Model play_finger() {
   return model::with_block(std::move(m), {model::block_type<model::Characteristic>(), {0.6, 25}});
 }
 
-/// Returns play_finger() with generalised plays.
+/// Returns play_finger() with generalised play operators.
 model::Model bent_play_finger() {
   model::Model m = play_finger();
   std::vector<double>& values = m.blocks[*model::position_of<model::PrandtlIshlinskii>(m)].values;
@@ -64,8 +64,8 @@ Log scaled(Log log, double mm) {
   return log;
 }
 
-/// Predicts the rest of a log from its start and returns the RMSE [mm] against the true displacement without
-/// noise.
+/// Predicts the rest of a log from its start. Returns the RMS [mm] of the difference between prediction and
+/// true displacement.
 double continuation_rmse_mm(const model::Model& truth, const model::Model& found, SignalName signal,
                             double share) {
   const Log log = simulated(truth, signal, 100, 0, 1);
@@ -125,7 +125,7 @@ TEST(PublishedElement, RefittedWithoutABlockItStaysWhereItWas) {
 }
 
 TEST(StructureProjection, WeightsAreNeverNegative) {
-  // The reading falls while the output of a play would rise, so the best weight of each play is 0.
+  // The reading falls while the output of a play operator rises, so the best weight of each operator is 0.
   std::vector<Record> records = make_records({simulated(play_finger(), SignalName::tp1, 50, 0.03, 3)}, {});
   for (double& y : records[0].reading_mm) y = -y;
   const BaseStructure structure{.characteristic = false};
@@ -156,8 +156,8 @@ TEST(WithoutWandering, TakesADriftAwayAndLeavesWhatTheFingerDoes) {
     return moved;
   };
   const std::vector<double> of_steady = moved_mm(steady), of_drifting = moved_mm(drifting);
-  // Slow creep and a drift are similar in part, so a small part of the creep is removed, too. Otherwise
-  // exactly the drift must be removed.
+  // The correction must remove the drift. Slow creep resembles a drift, so it may also remove a small part of
+  // the creep.
   EXPECT_LT(rms(of_steady), 0.3 * drift_mm);
   std::vector<double> missed(of_drifting.size());
   for (std::size_t i = 0; i < missed.size(); ++i) {
@@ -234,8 +234,8 @@ TEST(IdentifyStructure, FindsAFingerOfPlays) {
   }
 }
 
-/// A nonlinear gain behind the operators and creep that depends on the pressure cannot replace generalised
-/// plays.
+/// Generalised plays must be found. A nonlinear gain behind the operators or creep that depends on the
+/// pressure cannot replace them.
 TEST(IdentifyStructure, FindsTheBentEnvelopesOfGeneralisedPlays) {
   const std::vector<Log> logs{simulated(bent_play_finger(), SignalName::tp1, 100, 0.03, 5),
                               simulated(bent_play_finger(), SignalName::sp2, 100, 0.03, 6)};
@@ -264,13 +264,13 @@ TEST(IdentifyStructure, FindsThatAFingerWasLoadedBefore) {
   EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
   const auto block = model::position_of<model::PrandtlIshlinskii>(found->model);
   ASSERT_TRUE(block);
-  // A pressure above twice the largest threshold moves all operators, so a larger earlier pressure has the
+  // A pressure above twice the largest threshold moves all operators. So any larger earlier pressure has the
   // same effect.
   EXPECT_GT(found->model.blocks[*block].values.front(), 30);
 }
 
-/// Without a measured pressure, the overlap of a regulator is visible in the displacement. A lag must not be
-/// mistaken for it.
+/// The pressure is not measured, but the overlap of the regulator is visible in the displacement. The fit
+/// must not describe the overlap as a lag.
 TEST(IdentifyStructure, FindsTheRegulatorBehindTheCommand) {
   model::Model regulated =
       model::without_block(play_finger(), model::block_type<model::AsymmetricValveLag>());
@@ -291,8 +291,8 @@ TEST(IdentifyStructure, FindsTheRegulatorBehindTheCommand) {
   }
 }
 
-/// The finger has one more lag than play_finger(). The test FindsAFingerOfPlays checks that no second lag is
-/// found without this lag.
+/// The finger has one lag more than play_finger(). The test FindsAFingerOfPlays checks that the fit finds no
+/// second lag in play_finger().
 TEST(IdentifyStructure, FindsASecondLag) {
   const model::Model slower =
       model::with_block(play_finger(), {model::block_type<model::ValveLag>(), {0.12}});
@@ -342,7 +342,8 @@ TEST(IdentifyStructure, FindsAResonance) {
   EXPECT_GT(without->heldout_rmse_mm, 2 * found->rmse_mm);
 }
 
-/// The first 20 s are fitted. They contain one cycle from an idle pressure, which starts with the log.
+/// The fit uses the first 20 s of the log. They contain one cycle that begins at an idle pressure at the
+/// start of the log.
 TEST(IdentifyStructure, OneStrokeFromAnIdlePressureIsNoUnsettledCreep) {
   constexpr double idle_kpa = 7;
   const model::Model finger = play_finger();
@@ -369,7 +370,7 @@ TEST(IdentifyStructure, OneStrokeFromAnIdlePressureIsNoUnsettledCreep) {
 
 TEST(SimplestStart, WhatTheCallerStatesAndWhatRestDoesNotExplainStays) {
   const Log whole = simulated(play_finger(), SignalName::tp1, 100, 0.03, 15);
-  Log late;  // without its first 3 s: it starts during a rise, after other cycles
+  Log late;  // the log without its first 3 s, so that it starts during a rise after other cycles
   late.name = "late";
   for (std::size_t i = 300; i < whole.size(); ++i) {
     late.time_s.push_back(whole.time_s[i] - whole.time_s[300]);
@@ -401,8 +402,9 @@ TEST(IdentifyStructure, TheAnswerDoesNotDependOnTheUnit) {
 }
 
 TEST(IdentifyStructure, NeverEndsAboveItsOwnRelaxation) {
-  // With free weights and the true nonlinear numbers, the problem is linear. A fit of the same structure must
-  // reach its minimum, except for the cost of the regularisation.
+  // If the nonlinear parameters have their true values and the weights are free, the problem is linear. A fit
+  // of the same structure must reach the minimum of this linear problem, except for the cost of the
+  // regularisation.
   const std::vector<Log> logs{simulated(play_finger(), SignalName::tp1, 100, 0.03, 8)};
   const std::vector<Record> records = make_records(logs, {});
   const StructureGrid grid = grid_for(records);
@@ -417,7 +419,7 @@ TEST(IdentifyStructure, NeverEndsAboveItsOwnRelaxation) {
 }
 
 TEST(IdentifyStructure, HasTwoStagesWhereThePressureWasMeasured) {
-  // The blocks of the valve produce the measured pressure, the other blocks the displacement.
+  // The blocks of the valve predict the measured pressure. The other blocks predict the displacement.
   const model::Model whole = play_finger();
   Log log = simulated(whole, SignalName::tp1, 100, 0.03, 9);
   const model::Model valve =

@@ -1,4 +1,4 @@
-// Properties that every cause in the registry must have.
+// Tests properties that every cause in the registry must have.
 
 #include "sysid/diagnosis/causes/cause.h"
 
@@ -25,7 +25,7 @@ Scales typical_scales() {
   return s;
 }
 
-/// Returns bench_twin with this block in place of its valve.
+/// Returns bench_twin with its valve replaced by this block.
 model::Model with(const model::BlockSpec& block) {
   const model::Model twin = model::testing::preset("bench_twin");
   return model::with_block(
@@ -131,8 +131,8 @@ TEST_P(Causes, SayWhichColumnTheyNeed) {
   EXPECT_EQ(unanswerable(cause, driven).empty(), cause.station != model::Station::valve);
 }
 
-// If two causes are indistinguishable, or if a gauge distinguishes them, one is at the sensor and the other
-// before it.
+// Two causes can be indistinguishable, or only a gauge check can distinguish them. In both cases, one of the
+// two causes is at the sensor, and the other is not.
 TEST_P(Causes, HaveCounterpartsAtTheOtherEnd) {
   const auto at_sensor = [](const Cause& c) { return c.station == model::Station::sensor; };
   for (const Cause& other : sensor_counterparts(cause))
@@ -168,7 +168,7 @@ TEST(Registry, CoversTheCatalogue) {
   }));
 }
 
-// The range of a fit excludes values at which a block would describe another cause.
+// The bounds of a fit must exclude parameter values with which a block would describe a different cause.
 TEST(Ranges, KeepCausesWhatTheyAreCalled) {
   const Scales scales = typical_scales();
   const auto range = [&](std::string_view id, std::string_view parameter) {
@@ -183,7 +183,8 @@ TEST(Ranges, KeepCausesWhatTheyAreCalled) {
   EXPECT_LE(range("rate_dependent_hysteresis", "width_kpa").upper, scales.largest_kpa);
   EXPECT_LE(range("inertia", "damping_ratio").upper, std::sqrt(0.5));
   EXPECT_GE(range("contact", "position_mm").lower, 0.01 * scales.span_mm);
-  // The slowest branch of bench_twin has a time constant of 16.5 s.
+  // Slow creep must be slower than the slowest creep branch of bench_twin, which has a time constant of 16.5
+  // s.
   EXPECT_GE(range("slow_creep", "time_constant_s").lower, 16.0);
   EXPECT_GE(range("periodic_disturbance", "frequency_hz").lower, 0.2 - 1e-12);
 }

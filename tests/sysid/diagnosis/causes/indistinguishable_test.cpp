@@ -1,5 +1,5 @@
-// Two causes that no command can distinguish are listed together, regardless of which form fits the data
-// better.
+// Tests that two causes that no command can distinguish are listed together, even if the form of one of them
+// fits the data better.
 
 #include "sysid/diagnosis/causes/indistinguishable.h"
 
@@ -43,8 +43,8 @@ TEST(Indistinguishable, AreNoneWhereMemoryStandsBetweenThem) {
     EXPECT_TRUE(indistinguishable_from(cause("stiffening"), with(loaded("bench_twin"), id))) << id;
 }
 
-/// A finger that stiffens more sharply than the form of the catalogue allows, so that a nonlinear sensor fits
-/// the data better.
+/// A finger that stiffens more sharply than the stiffening model of the catalogue can describe. So the model
+/// of a nonlinear sensor fits the data better.
 class BentRig : public ::testing::Test {
  protected:
   static Selection select() {
@@ -66,7 +66,7 @@ class BentRig : public ::testing::Test {
     return select_causes(data, std::move(base), 0.03, divide(data.records, 8), one);
   }
 
-  /// Returns the selection, which is computed once for all tests.
+  /// Returns the result of select(). The function is called once for all tests.
   static const Selection& selected() {
     static const Selection selection = select();
     return selection;
@@ -83,7 +83,8 @@ TEST_F(BentRig, IsNotGivenOneNameOfTheTwo) {
       std::count_if(chosen.alternatives.begin(), chosen.alternatives.end(),
                     [&](const Cause& alternative) { return alternative == indistinguishable; });
   EXPECT_EQ(listed, 1);
-  // Without the rule for indistinguishable causes, only the form that fits better would have been named.
+  // The form of the first cause fits better. Without the rule for indistinguishable causes, only this cause
+  // would be named.
   const auto score = std::find_if(chosen.candidates.begin(), chosen.candidates.end(),
                                   [&](const CandidateScore& s) { return s.cause == indistinguishable; });
   ASSERT_NE(score, chosen.candidates.end());

@@ -8,7 +8,8 @@
 namespace softgrip::sysid::valve_deadband_test {
 namespace {
 
-// For each band of a valve that sticks and jumps, one of the start values is close enough to fit its jumps.
+// The valve has stiction: it sticks and jumps. For every width of its stick band, one of the start values
+// must be so close that a fit finds the jumps.
 TEST(ValveDeadband, NoStaircaseIsMissed) {
   Scales scales;
   scales.largest_kpa = 40;

@@ -1,5 +1,5 @@
-// The conclusions of a gauge check about a sensor, and the cases without a conclusion. The test has its own
-// formulas of the sensors.
+// Tests which conclusions a gauge check draws about a sensor, and when it draws no conclusion. The test
+// simulates the sensors with its own formulas.
 
 #include "sysid/diagnosis/gauge/gauge_check.h"
 
@@ -38,7 +38,7 @@ SensorShape end_of_logs(double at_mm) {
   return {{{*model::find_block("sensor_saturation"), {-1e4, at_mm}}}, 0};
 }
 
-/// Returns readings of a gauge whose zero and scale are unknown to the check.
+/// Returns readings of a gauge. The check does not know the zero and the scale of the gauge.
 std::vector<GaugeReading> read(const Sensor& sensor, double noise, std::vector<double> positions,
                                double gauge_zero_mm = 3, double gauge_scale = 1.01) {
   std::mt19937_64 random(5);
@@ -163,7 +163,8 @@ TEST(GaugeCheck, TellsABendFromAnEnd) {
   EXPECT_FALSE(of(check, "sensor_saturation").ruled_out);
 }
 
-/// An implausible hypothesis is ruled out, and it must not weaken the decision between the others.
+/// The check must rule out an implausible hypothesis. The presence of this hypothesis must not weaken the
+/// decision between the other hypotheses.
 TEST(GaugeCheck, AHypothesisThatIsFarOffMakesTheOthersNoBetter) {
   const std::vector<SensorShape> hypotheses{{}, bend_of_logs(0.4), end_of_logs(15)};
   const GaugeScales fine{0.01, -0.1, span_mm};
@@ -178,8 +179,8 @@ TEST(GaugeCheck, AHypothesisThatIsFarOffMakesTheOthersNoBetter) {
   EXPECT_TRUE(of(whole, "sensor_saturation").ruled_out);
 }
 
-/// With a single hypothesis, the logs show a linear sensor. A nonlinearity that is too small for the logs
-/// must not contradict this.
+/// The only hypothesis is a linear sensor, as the logs show. The check must not reject this hypothesis
+/// because of a nonlinearity that is too small to be seen in the logs.
 TEST(GaugeCheck, AStraightSensorMayBeBentByLessThanAnyLogCouldTell) {
   for (const double bow_mm : {0.02, 0.3}) {
     std::vector<GaugeReading> readings = read(bent(bow_mm), 0.001);
@@ -198,7 +199,7 @@ TEST(GaugeCheck, AGaugeThatCountsTheOtherWayOrInInchesSaysTheSame) {
   }
 }
 
-/// For random noise, the true hypothesis is almost never ruled out.
+/// With random noise, the check must almost never rule out the true hypothesis.
 TEST(GaugeCheck, RarelyRulesOutTheTruth) {
   int wrong = 0, decided = 0;
   for (int draw = 0; draw < 300; ++draw) {

@@ -1,4 +1,5 @@
-// Gauge files are checked strictly; an error names the line, the column and a correction.
+// Tests that the reader checks gauge files strictly. An error message names the line, the column and a
+// correction.
 
 #include "sysid/diagnosis/gauge/gauge_file.h"
 

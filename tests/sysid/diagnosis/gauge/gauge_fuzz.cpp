@@ -1,5 +1,5 @@
-// Fuzz target of the gauge file reader. All bytes are either refused, or they are a gauge file that can be
-// written and read again.
+// Fuzz target of the gauge file reader. The reader must either refuse the bytes, or return a gauge check that
+// can be written to a file and read back.
 //
 //   scripts/fuzz.sh gauge_fuzz 30
 

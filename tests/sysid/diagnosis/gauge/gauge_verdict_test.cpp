@@ -1,5 +1,5 @@
-// A diagnosis with logs and a gauge: the gauge rules out alternatives, and it can replace or withdraw the
-// named cause.
+// Tests a diagnosis from logs and a gauge check. The gauge check rules out alternatives. It can also replace
+// or withdraw the named cause.
 
 #include "sysid/diagnosis/gauge/gauge_verdict.h"
 
@@ -31,7 +31,7 @@ std::vector<Log> logs_of(const model::Model& truth) {
           simulated(truth, model::SignalName::sp2, 25, noise_mm, 2)};
 }
 
-/// Returns the readings of the sensor of `truth` on a gauge.
+/// Returns the readings that the sensor of the model `truth` has during a gauge check.
 GaugeFile gauge_of(const model::Model& truth, double noise = 0.01) {
   const SensorShape sensor{static_sensor_blocks(truth), 0};
   GaugeFile file{"gauge.csv", "", {}};
@@ -59,7 +59,7 @@ void expect_found(const Diagnosis& d, const std::string& id) {
   ASSERT_EQ(d.causes.size(), 1U);
   EXPECT_EQ(d.causes[0].cause.id, id);
   EXPECT_TRUE(d.causes[0].alternatives.empty());
-  // Extension, parameters and held-out figures all belong to the named cause.
+  // The extension, its parameters and the held-out errors in the result must all belong to the named cause.
   EXPECT_TRUE(model::position_of(d.extended_model, id));
   ASSERT_EQ(d.extended.causes.size(), 1U);
   EXPECT_EQ(d.extended.causes[0].id, id);
@@ -122,15 +122,15 @@ TEST(GaugeVerdict, AStraightSensorClearsItselfAndTheFingerIsNamed) {
   EXPECT_NE(verdict_sentence(d).find("not the sensor"), std::string::npos) << verdict_sentence(d);
 }
 
-/// Two causes are indistinguishable in the logs, so the gauge decides between them. Tested with logs of a
-/// nonlinear sensor and a gauge check of a linear one, and the other way round.
+/// The logs cannot distinguish the two causes, so the gauge check decides. The first case has logs of a
+/// nonlinear sensor and a gauge check of a linear sensor. The second case has the opposite.
 TEST(GaugeVerdict, TheNamedCauseGivesItsPlaceToTheOneThatIsLeft) {
   const model::Model alike = hiding("stiffening", {4 * 0.6 / (25 * 25)});
   expect_found(diagnosed(bent_scale, gauge_of(alike)), "stiffening");
   expect_found(diagnosed(alike, gauge_of(bent_scale)), "sensor_nonlinearity");
 
-  // The finger stiffens more sharply than the form of the catalogue allows, so a nonlinear sensor fits the
-  // logs better.
+  // This finger stiffens more sharply than the stiffening model of the catalogue can describe. So the model
+  // of a nonlinear sensor fits the logs better.
   std::vector<Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
     Log& log = logs.emplace_back(simulated(loaded("bench_twin"), signal, 25, 0, 1));
@@ -155,8 +155,8 @@ TEST(GaugeVerdict, TheNamedCauseGivesItsPlaceToTheOneThatIsLeft) {
   EXPECT_TRUE(warned_of(after, "leaves an unexplained error of")) << after.unexplained_error.excess_mm;
 }
 
-/// A finger that stiffens and a slightly nonlinear sensor: the finger is named, and a warning reports the
-/// sensor.
+/// The finger stiffens and the sensor is slightly nonlinear. The diagnosis must name the finger, and a
+/// warning must report the sensor.
 TEST(GaugeVerdict, AShareOfTheBendInTheSensorIsTold) {
   const model::Model a_little = hiding("sensor_nonlinearity", {0.3, 0, 25});
   const Diagnosis d = diagnosed(stiff_finger, gauge_of(a_little));
@@ -212,8 +212,8 @@ TEST(GaugeVerdict, ABendThatNoLogAsksForIsAWarningAndNoCause) {
   EXPECT_EQ(straight.verdict, d.verdict);
 }
 
-/// With play between finger and sensor, the logs alone distinguish a finger that stiffens from a nonlinear
-/// sensor. If the gauge then shows a nonlinear sensor, it contradicts the logs, and the cause must not be
+/// With backlash between finger and sensor, the logs alone show that the finger stiffens and the sensor is
+/// linear. If the gauge check shows a nonlinear sensor, it contradicts the logs. In this case no cause may be
 /// named.
 TEST(GaugeVerdict, AFingerThatWasNamedAloneDoesNotStandAgainstTheGauge) {
   const model::BlockSpec play{find_cause("backlash")->forms.front().type, {4}};

@@ -45,7 +45,7 @@ NamedCause named(const char* id, double gain_mm2) {
   return cause;
 }
 
-/// Returns a diagnosis that names a lag. @param given  model whose extension is bench_twin.
+/// Returns a diagnosis that names a lag. @param given  model that, extended by the lag, is bench_twin.
 Diagnosis a_diagnosis(const model::Model& given) {
   Diagnosis d;
   d.verdict = Verdict::ambiguous;
@@ -78,7 +78,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-/// Returns the left-aligned texts of a drawing that a line crosses.
+/// Returns the left-aligned texts of a drawing through which a line is drawn.
 std::vector<std::string> crossed_words(const std::string& markup) {
   const std::regex words(R"re(<text x="([0-9.]+)" y="([0-9.]+)" text-anchor="start"[^>]*>([^<]+))re");
   const std::regex line(R"re(<path d="M(-?[0-9.]+) ?(-?[0-9.]+)l(-?[0-9.]+) ?(-?[0-9.]+)")re");
@@ -205,7 +205,8 @@ TEST_F(ReportTest, EveryFigureHasACaptionANumberAndData) {
   }
 }
 
-// If two models had the same name, a reader could not assign the figures.
+// Each model in the report must have a different name. Otherwise a reader could not see which results belong
+// to which model.
 TEST_F(ReportTest, TheModelsHaveNamesOfTheirOwn) {
   const std::string html = page().to_html();
   for (const char* name : {">given model<", ">recalibrated model<", ">extended model<", "zhang2025_extended"})

@@ -26,7 +26,7 @@ TEST(HeldOutLosses, AreAtMostTheSpansSquare) {
     EXPECT_DOUBLE_EQ(cut[b], std::min(losses[b], 0.25 * most)) << b;
 }
 
-/// A changed zero or a start in motion must not count as an error of a left-out log.
+/// A zero that has changed and a start in motion must not increase the error of a log that is held out.
 TEST(LeftOutLosses, AreThoseOfAStartThatTheFirstReadingsTell) {
   const model::Model twin = loaded("bench_twin");
   std::vector<Log> logs{simulated(twin, model::SignalName::tp1, 25, 0.05, 3),

@@ -44,7 +44,7 @@ model::Model softening() {
   return model::with_block(finger(), model::block_of<model::StressSoftening>({{"softening_per_kpa", 0.001}}));
 }
 
-/// The reference is a refit for every block.
+/// Compares the linearised held-out losses with the losses of a new fit for every held-out block.
 TEST(LinearHoldout, SaysWhatRefittingSays) {
   const Campaign c = campaign_of(softening());
   const BlockLosses refitted = held_out_losses(c.data.records, c.division, c.base);
@@ -54,7 +54,7 @@ TEST(LinearHoldout, SaysWhatRefittingSays) {
     EXPECT_NEAR(linear[b], refitted[b], 0.1 * refitted[b]) << "block " << b;
 }
 
-/// The reference is the search that varies all parameters of the base structure.
+/// Compares the linear search with the full search, which varies all parameters of the model structure.
 TEST(LinearSelection, FindsWhatTheFullSearchFinds) {
   const std::vector<model::BlockSpec> effects{
       model::block_of<model::Backlash>({{"gap_mm", 0.4}}),
@@ -94,8 +94,8 @@ TEST(LinearSelection, FindsBothOfTwo) {
   EXPECT_TRUE(position_of(found.extended.point.model, *find_cause("sensor_lag")));
 }
 
-/// If the form of the loop differs from that of the base structure by less than the noise, the difference is
-/// no cause.
+/// The shape of the loop differs from the shape that the model structure can describe. If this difference is
+/// smaller than the noise, it must not be named as a cause.
 TEST(LinearSelection, ARestOfTheLoopsFormIsNoCause) {
   for (const bool clear : {false, true}) {
     const Campaign c = campaign_of(model::with_block(
@@ -121,8 +121,9 @@ TEST(Weigh, IsTheGainOverTheStructureWithoutTheCause) {
   EXPECT_NEAR(alone.gain_mm2.value, 1, 1e-12);
 }
 
-/// If the measured pressure is the input, the residual contains no error of the valve. A cause that explains
-/// a small error in most blocks is then found; the limits for the command as input reject this cause.
+/// With the measured pressure as the input, the residual contains no error of the valve. So the search may
+/// name a cause that explains a small error in most blocks. With the command as the input, the limits of the
+/// search reject this cause.
 TEST(LinearSelection, FromTheMeasuredPressureLessIsEnough) {
   const Campaign c =
       campaign_of(model::with_block(finger(), model::block_of<model::Backlash>({{"gap_mm", 0.1}})));

@@ -1,5 +1,5 @@
-// Tests the conditions under which a cause may be named. For each condition, a case violates only this
-// condition.
+// Tests the conditions under which a cause may be named. For each condition, there is a case that violates
+// this condition and no other.
 
 #include "sysid/diagnosis/search/named_claim.h"
 
@@ -16,15 +16,17 @@
 namespace softgrip::sysid::named_claim_test {
 namespace {
 
-/// Two runs of bench_twin, a cause that was fitted to them, and given errors of the left-out runs.
+/// A case with two runs of bench_twin, a cause that was fitted to these runs, and given errors of the
+/// held-out runs.
 struct Case {
   std::vector<Record> records = known_campaign(2);
   Cause cause;
   StructureFit without, with;
-  double error_without = 1, error_with = 0.5;  ///< the error of every block of the left-out runs
+  double error_without = 1, error_with = 0.5;  ///< errors, without and with the cause, of every block of the
+                                               ///< held-out runs
   int asked = 0;
 
-  /// @param bend  distorts the readings, as a function of reading and time of the campaign.
+  /// @param bend  returns the distorted reading for a reading [mm] and a campaign time [s].
   template <class Bend>
   Case(const char* id, Bend bend) : cause(*find_cause(id)) {
     const model::Model twin = loaded("bench_twin");
@@ -77,7 +79,8 @@ TEST(NamedClaim, FailsWhereTheDataNeverShowIt) {
   Case drift("sensor_drift", [](double y_mm, double t_s) { return y_mm + 2 * t_s / 120; });
   ASSERT_FALSE(drift.with.causes.empty());
   EXPECT_EQ(drift.veto(), Veto::none);
-  // Without a rest, a drift of the zero looks like a motion of the finger.
+  // If the pressure never rests at 0, the diagnosis cannot distinguish a drift of the zero from a motion of
+  // the finger.
   for (Record& record : drift.records) {
     for (double& p : record.drive_kpa)
       p += p < 1 ? 20 * normal_at(9, static_cast<std::uint64_t>(&p - record.drive_kpa.data())) : 0;
@@ -87,7 +90,7 @@ TEST(NamedClaim, FailsWhereTheDataNeverShowIt) {
 
 TEST(NamedClaim, FailsWhereItsEffectIsAbsent) {
   Case ageing("ageing", aged);
-  // The cause reduces the residual only where the displacement is small.
+  // In this case, the cause reduces the residual only where the displacement is small.
   for (std::size_t r = 0; r < ageing.records.size(); ++r) {
     for (std::size_t i = 0; i < ageing.records[r].size(); ++i) {
       if (ageing.records[r].reading_mm[i] > 8)

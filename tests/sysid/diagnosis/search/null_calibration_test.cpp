@@ -1,5 +1,5 @@
-// Tests the search on campaigns without a cause: false alarms are rare, and the error reductions are smaller
-// than that of a true cause.
+// Tests the search on data without a cause. False alarms must be rare, and the error reductions must be
+// smaller than that of a true cause.
 
 #include "sysid/diagnosis/search/null_calibration.h"
 
@@ -21,7 +21,8 @@ struct Searched {
   Division division;
 };
 
-/// Returns two logs of zhang2025 with a backlash of this size, prepared for the search.
+/// Simulates two logs of zhang2025 with a backlash of `backlash_mm`. Returns them with the data that the
+/// search needs.
 Searched searched(double backlash_mm) {
   const model::Model given = loaded("zhang2025");
   model::Model truth = given;

@@ -1,5 +1,6 @@
-// Start values are evaluated with one linearised step. If the base responds linearly, the result is exact.
-// Among the start values of a hidden cause, the one near the truth must come first.
+// Tests the scan of start values, which evaluates each start value with one linearised step. For a model
+// structure with a linear response, the result must be exact. For data with a hidden cause, the start value
+// near the truth must come first.
 
 #include "sysid/diagnosis/search/scan.h"
 
@@ -58,7 +59,7 @@ TEST_F(Scanned, ASizeThatIsALittleOffIsMadeUpFor) {
 }
 
 TEST_F(Scanned, WhatTheBaseAbsorbsLinearlyCountsForNothing) {
-  // A larger alpha is a change of the base structure, so the remaining error must not depend on alpha.
+  // A refit of the model structure absorbs a larger alpha. So the remaining error must not depend on alpha.
   const model::Model base = loaded("zhang2025");
   model::Model moved = base;
   moved.blocks[0].values[0] *= 1.001;
@@ -86,8 +87,8 @@ TEST(BestStarts, TheLatencyNearTheHiddenOneComesFirst) {
   EXPECT_NEAR(points.front().model.blocks[*at].values[0], 0.1, 1e-12);
 }
 
-// A form with more parameters has a lower predicted error at every start point. Nevertheless, every form and
-// every start point must be tried.
+// The form with more parameters has the lower predicted error at every start value. Even so, the search must
+// try every form and every start value.
 TEST(BestStarts, ShowEveryFormOfACauseAndEveryPlace) {
   const model::Model given = loaded("zhang2025");
   const SearchData data = make_search_data(records_of(model::with_block(given, block("ageing", {4}))), given);

@@ -1,5 +1,5 @@
-// Tests how many causes are named: the form error of a cause is not named as a further cause, but a small
-// effect of a different kind is.
+// Tests how many causes are named. The fit of the first cause leaves a small error, which must not be named
+// as a further cause. A small effect of a different kind must be named.
 
 #include "sysid/diagnosis/search/selection.h"
 
@@ -22,8 +22,8 @@ namespace {
 
 constexpr double noise_mm = 0.03;
 
-/// Returns the selection for readings of bench_twin that `bend(y, t)` distorts, where t is the time of the
-/// campaign.
+/// Distorts the readings of bench_twin with `bend(y, t)`, where t is the campaign time. Returns the causes
+/// that the search selects for these readings.
 Selection select(const std::function<double(double y_mm, double t_s)>& bend,
                  const SelectionOptions& options = {}) {
   const model::Model given = loaded("bench_twin");
@@ -49,8 +49,8 @@ std::vector<std::string> names(const Selection& selection) {
   return ids;
 }
 
-/// Returns a reading with a nonlinearity that is not a polynomial, so that the form of the cause leaves a few
-/// percent of the nonlinearity unexplained.
+/// Returns a reading with a nonlinearity that is not a polynomial. The model of a nonlinear sensor leaves a
+/// few percent of this nonlinearity unexplained.
 double bent(double y_mm) {
   return y_mm + 1.2 * std::sin(1.3 * std::numbers::pi * y_mm / 20);
 }
@@ -67,12 +67,13 @@ TEST(Selection, ASmallEffectThatExplainsTheRestIsNamed) {
     return y_mm * (1 + 0.15 * t_s / 120) + 0.09 * std::sin(2 * std::numbers::pi * 3.1 * t_s);
   });
   EXPECT_EQ(names(selection), (std::vector<std::string>{"ageing", "periodic_disturbance"}));
-  // The disturbance explains a smaller part of the error than the allowed form error of a large cause.
+  // The disturbance explains a small part of the error. This part is smaller than the error that the inexact
+  // form of a large cause may leave.
   const double excess = selection.base_unexplained.excess_mm;
   EXPECT_LT(0.09 * 0.09 / 2, 0.05 * excess * excess);
 }
 
-/// All blocks together agree on a size that is not the size of either run.
+/// A fit to all blocks gives a size of the disturbance that neither of the two runs has.
 TEST(Selection, WhatEachRunShowsInAnotherSizeIsNotNamed) {
   SelectionOptions one;
   one.most_causes = 1;

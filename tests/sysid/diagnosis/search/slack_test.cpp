@@ -23,8 +23,7 @@ TEST(Slack, TheElasticShareIsThatOfTheOperatorWithoutAThreshold) {
   EXPECT_DOUBLE_EQ(elastic_share(model::Model{}), 1);
 }
 
-/// One play operator with a threshold equals a spring followed by a backlash: their outputs are equal for
-/// every input.
+/// A play operator with a threshold and a spring followed by a backlash have the same output for every input.
 TEST(Slack, OfOneOperatorTheBacklashIsTheSame) {
   const model::Model slack = plays({0, 0, 0, 0, 3, 0.2});
   const auto with_backlash = with_slack_as_backlash(slack);

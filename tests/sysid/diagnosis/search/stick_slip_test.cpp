@@ -19,7 +19,7 @@ namespace {
 constexpr double noise_mm = 0.03;
 constexpr int substeps = 50;
 
-// Returns a gain with one Kelvin-Voigt branch, which is a sufficient model of the finger behind the valve.
+// Returns a gain with one Kelvin-Voigt branch. This model is sufficient for the finger behind the valve.
 model::Model plain_model() {
   model::Model model;
   model.name = "plain";
@@ -29,8 +29,8 @@ model::Model plain_model() {
   return model::with_block(model, branch);
 }
 
-// Integrates the same equations with Euler's method in steps of 1/50 of the sample time. It shares no code
-// with the function under test.
+// Integrates the equations of this finger with Euler's method in steps of 1/50 of the sample time. Shares no
+// code with the function under test.
 template <class Valve>
 std::vector<Record> answered(std::vector<Record> records, Valve&& valve, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -70,16 +70,17 @@ TEST(StickSlip, FindsTheBandOfAValveThatSticksAndJumps) {
     EXPECT_LT(found->band_ci95.lower, found->band_kpa);
     EXPECT_LT(found->band_ci95.upper - found->band_ci95.lower, 0.05 * band_kpa);
     EXPECT_GE(found->jumps, fewest_jumps);
-    // If the positions of the valve are known, only the noise of the readings remains.
+    // With the positions of the valve that the search has found, the residual contains only the noise of the
+    // readings.
     EXPECT_LT(std::sqrt(found->fit.mean_square_mm2), 1.2 * noise_mm);
   }
 }
 
-// The readings show whether a path jumped only after the delay, 17.5 samples later.
+// The readings show a jump of the valve only after the delay, 17.5 samples after the jump.
 TEST(StickSlip, IsFoundBehindALongDelay) {
   constexpr double band_kpa = 3.1, delay_s = 0.35;
   std::vector<Record> early = known_campaign(2);
-  for (Record& r : early) {  // the command as it arrives at the valve
+  for (Record& r : early) {  // delays the command by `delay_s`, as the valve receives it
     const std::vector<double> sent = r.drive_kpa;
     const auto samples = static_cast<std::size_t>(std::floor(delay_s / r.sample_time_s));
     const double rest = delay_s / r.sample_time_s - static_cast<double>(samples);
@@ -150,7 +151,8 @@ TEST(StickSlip, JumpsThatWereTakenForShortOnesDoNotMoveTheBand) {
   double sum_kpa = 0;
   constexpr int seeds = 200;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) sum_kpa += band_of_jumps(partly_short(seed)).value_kpa;
-  // The mean of the central 90 % of the distances would be 2.3 % too low.
+  // The 20 % short jumps must not shift the estimate. The mean of the central 90 % of the jumps would be 2.3
+  // % too low.
   EXPECT_NEAR(sum_kpa / seeds, 1.0, 0.006);
 }
 

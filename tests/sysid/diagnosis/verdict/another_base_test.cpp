@@ -9,7 +9,8 @@ namespace {
 
 constexpr double noise_mm = 0.04;
 
-/// Returns a selection whose one cause reduces the unexplained error from `before_mm` to `left_mm`.
+/// Returns a selection with one cause. This cause reduces the unexplained error from `before_mm` to
+/// `left_mm`.
 Selection left_of(double left_mm, double before_mm) {
   Selection selection;
   selection.left = {.excess_mm = left_mm, .present = true};
@@ -25,9 +26,10 @@ TEST(MayLackABase, NotWhereOneCauseLeavesNothingThatMatters) {
 }
 
 TEST(MayLackABase, NotWhereItsFormIsALittleOffWhatThereWas) {
-  // 0.9 % of the mean square remains, as for softening in simulated test cases.
+  // The cause leaves 0.9 % of the mean square error, like softening in simulated test cases.
   EXPECT_FALSE(may_lack_a_base(left_of(0.3 * noise_mm, 0.3 * noise_mm / std::sqrt(0.009)), noise_mm));
-  // 10 % of the mean square remains, as for a loop of a different shape that a wrong cause fits in part.
+  // The cause leaves 10 % of the mean square error, like a wrong cause that fits a loop of a different shape
+  // in part.
   EXPECT_TRUE(may_lack_a_base(left_of(0.3 * noise_mm, 0.3 * noise_mm / std::sqrt(0.1)), noise_mm));
 }
 

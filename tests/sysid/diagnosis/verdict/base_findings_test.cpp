@@ -27,13 +27,13 @@ using model::SignalName;
 
 constexpr double noise_mm = 0.03;
 
-/// Returns the base structure without a valve.
+/// Returns the model structure without a valve.
 model::Model published() {
   return model::only(loaded("bench_twin"),
                      [](const model::BlockInfo& info) { return info.station != model::Station::valve; });
 }
 
-/// Returns a finger of play operators, whose loops no Bouc-Wen element can fit.
+/// Returns a finger of play operators. No Bouc-Wen element can fit its loops.
 model::Model plays() {
   model::Model m = model::without_block(published(), model::block_type<model::BoucWen>());
   return model::with_block(std::move(m), {model::block_type<model::PrandtlIshlinskii>(),
@@ -43,7 +43,7 @@ model::Model plays() {
 struct Found {
   SearchData data;
   BaseQuestion question;
-  Selection plain;  ///< the result with the given base
+  Selection plain;  ///< the selection of causes with the given model structure
   std::optional<BaseFindings> base;
 };
 
@@ -80,8 +80,8 @@ TEST(BaseFindings, LoopsOfAnotherFormAreNamed) {
   EXPECT_TRUE(has_lower_loss(*found.base, found.plain, noise_mm, true));
 }
 
-/// A set of play operators without an elastic operator does not move directly after a reversal, like a
-/// backlash. A set with an elastic operator moves.
+/// After a reversal, play operators without an elastic operator do not move at first, like a backlash. With
+/// an elastic operator, they move immediately.
 TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
   const auto has_backlash = [](const Found& found) {
     const auto shape = std::find_if(found.base->named.begin(), found.base->named.end(),
@@ -99,8 +99,8 @@ TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
                                    << elastic_share(slack.base->fit.point.model);
 }
 
-/// If the given structure leaves a large unexplained error, no cause is named. A slightly smaller loss of the
-/// alternative structure then suffices.
+/// The given structure leaves a large unexplained error and names no cause. In this case, the alternative
+/// structure needs to reduce the loss only slightly.
 TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
   Found found = found_in(plays());
   ASSERT_TRUE(found.base);
@@ -114,8 +114,8 @@ TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
   EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, false));
 }
 
-/// The given structure needs two causes. The alternative structure needs only one of them, because its
-/// hysteresis loops explain the rest.
+/// With the given structure, the data need two causes. With the alternative structure, they need only one of
+/// these causes, because its hysteresis loops explain the rest.
 TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore) {
   Found found = found_in(plays());
   ASSERT_TRUE(found.base);
@@ -137,8 +137,8 @@ TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore)
       << "the unexplained error of the alternative structure is much larger";
 }
 
-/// At slow commands a delay and a lag are equivalent: if the model lacks one of them, the other replaces it.
-/// If the model lacks both, its response is too early.
+/// For slow commands, a delay and a lag are equivalent. If the model lacks one of the two, the other replaces
+/// it. If the model lacks both, it responds too early.
 TEST(BaseFindings, ALatencyIsNamedThoughNobodyCanSayOfWhichKind) {
   const model::Model late =
       model::with_block(plays(), model::block_of<model::ValveLag>({{"time_constant_s", 0.08}}));
@@ -159,7 +159,7 @@ TEST(BaseFindings, ALatencyIsNamedThoughNobodyCanSayOfWhichKind) {
   EXPECT_GE(latency->inclusion, 0.95);
 }
 
-/// Causes are still distinguished if the selected structure is not the given one.
+/// A cause must also be found if the alternative structure is selected.
 TEST(BaseFindings, ACauseUponAnotherBaseIsNamed) {
   model::Model finger = plays();
   finger =

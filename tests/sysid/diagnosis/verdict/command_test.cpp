@@ -1,5 +1,5 @@
-// Runs softgrip diagnose as a user does: the lag that the published model lacks, and logs without enough
-// information. The latter logs are written here, with formulas that differ from those of the models.
+// Runs softgrip diagnose as a user does. One test has a published model that lacks a lag. Another test has
+// logs without enough information for a diagnosis; the test computes these logs with its own formulas.
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 
 constexpr double rate_hz = 50;
 
-/// Triangles with a period of 10 s; every second one has half the height.
+/// Returns triangles with a period of 10 s. Every second triangle has half the height.
 double triangles_kpa(double t) {
   const double phase = std::fmod(t, 10) / 5;
   const double top = std::fmod(t, 20) < 10 ? 50 : 25;
@@ -41,7 +41,7 @@ class DiagnoseCommand : public CommandInFolder {
     });
   }
 
-  /// Writes a log of `seconds` with noise of 0.04 mm.
+  /// Writes a log of `seconds` seconds with noise of 0.04 mm.
   void write_log(const std::string& name, double seconds, const std::function<double(double)>& command_kpa,
                  const std::function<double(double)>& displacement_mm) {
     std::mt19937_64 random(17);
@@ -82,12 +82,12 @@ TEST_F(DiagnoseCommand, TheLatencyBehindThePublishedModelIsNamedAndTheExtensionI
   ASSERT_FALSE(json["closed_loop"].is_null());
   const double recalibrated_mm = json["closed_loop"]["recalibrated_rmse_mm"];
   const double extended_mm = json["closed_loop"]["extended_rmse_mm"];
-  // The recalibrated model has no inverse, so its feedforward is planned.
+  // The refitted model has no causal inverse, so its feedforward is planned in advance.
   EXPECT_GT(recalibrated_mm, 2 * extended_mm);
   EXPECT_EQ(run("check result/model.yaml"), 0) << read("out.txt") << read("err.txt");
 }
 
-/// The work of a technician: diagnose, enter the gauge readings, diagnose again.
+/// A technician runs a diagnosis, enters the gauge readings in the file, and runs the diagnosis again.
 TEST_F(DiagnoseCommand, FilledInPositionsTellTheFingerFromTheSensor) {
   const std::string twin = SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml";
   write("finger.yaml", read_file(twin, 100'000).value() + "  - stiffening:\n      stiffening_per_mm: 0.01\n");

@@ -29,7 +29,7 @@ model::Model without_valve() {
                      [](const model::BlockInfo& info) { return info.station != model::Station::valve; });
 }
 
-// The first cause explains nearly all of the error. Its small form error must not start the search for an
+// The first cause explains nearly all of the error. The small rest must not start the search for an
 // alternative structure.
 TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   const model::Model given = without_valve();
@@ -38,7 +38,7 @@ TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   std::vector<Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
     logs.push_back(simulated(truth, signal, 25, noise_mm, 17));
-    // A ripple that no cause of the registry describes.
+    // Adds a ripple. No cause of the registry describes this ripple.
     for (double& y : logs.back().displacement_mm)
       y += 0.9 * noise_mm * std::sin(2 * std::numbers::pi * y / 5);
   }
@@ -61,8 +61,8 @@ TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   }
 }
 
-// The model that generated a log explains it for every zero of the sensor and every state at the start of the
-// log.
+// If the model generated a log, it must explain this log for every zero of the sensor and every state at the
+// start of the log.
 TEST(Diagnosis, AsGivenEstimatesTheOffsetAndTheStart) {
   const model::Model truth = loaded("bench_twin");
   const Log log = simulated(truth, model::SignalName::tp1, 25, noise_mm, 5);
@@ -81,8 +81,8 @@ TEST(Diagnosis, AsGivenEstimatesTheOffsetAndTheStart) {
   EXPECT_LT(as_given_mm(in_motion, 5), of_30_mm);
 }
 
-// A cause that was found before an alternative structure was fitted is kept in the result with this
-// structure.
+// The diagnosis finds a cause before it fits an alternative structure. The result with the alternative
+// structure must still contain this cause.
 TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
   const model::Model given = without_valve();
   model::Model plays = model::without_block(given, model::block_type<model::BoucWen>());
@@ -107,7 +107,7 @@ TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
   EXPECT_NEAR(static_cast<double>(diagnosis->outliers.count), static_cast<double>(wrong), 2);
 }
 
-/// Returns two logs in which the reading of sample i is that of sample `sample(i)`.
+/// Returns two logs in which the reading of sample i is replaced by that of sample `sample(i)`.
 std::vector<Log> read_at(const model::Model& truth, const std::function<std::size_t(std::size_t)>& sample) {
   std::vector<Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
@@ -167,7 +167,8 @@ Log begun_unsettled(const model::Model& truth, model::SignalName signal, double 
   return slice(log, pressed + rested, log.size());
 }
 
-/// A log may begin without pressure while the finger still creeps. This creep must not be named as a cause.
+/// At the start of a log, the finger may still creep without pressure. This creep must not be named as a
+/// cause.
 TEST(Diagnosis, AStartBeforeTheFingerHasSettledIsNoCause) {
   const model::Model truth = without_valve();
   const std::vector<Log> logs{begun_unsettled(truth, model::SignalName::tp1, 45, 3),

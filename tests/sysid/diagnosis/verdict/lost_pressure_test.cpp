@@ -12,7 +12,7 @@ namespace {
 
 constexpr double sample_s = 0.01, noise_kpa = 0.05;
 
-/// Returns logs of a valve without dynamics, whose pressure is a function of the command.
+/// Returns logs of a valve without dynamics. The pressure is a function of the command.
 std::vector<Log> logs_of(const std::function<double(double)>& pressure_kpa) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
@@ -52,8 +52,8 @@ TEST(FindLostPressure, IsNothingWhereAConstantIsMissing) {
   EXPECT_FALSE(lost_of(logs_of([](double u) { return u - 3; })));
 }
 
-// A gain explains half of the error of a pressure limit. A leak, whose curve bends in the other direction,
-// explains less.
+// The pressure stops at 52 kPa. A scale error of the gauge explains half of this error. A leak explains less,
+// because its curve bends in the other direction.
 TEST(FindLostPressure, IsNothingWhereTheHighestPressuresAloneAreMissing) {
   const std::vector<Log> logs = logs_of([](double u) { return std::min(u, 52.0); });
   const MeasuredValve valve(logs, false);

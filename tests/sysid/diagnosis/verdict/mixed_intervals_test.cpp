@@ -16,11 +16,12 @@ constexpr double true_delay_s = 0.130;
 
 struct Named {
   std::vector<NamedCause> causes;
-  Interval alone;  ///< interval of the delay from its own fit
+  Interval alone;  ///< interval of the delay from a fit without the lag
   std::vector<std::string> sentences;
 };
 
-/// Returns the delay as the only named cause, although bench_twin has a delay and a lag.
+/// Returns a diagnosis that names only the delay, although the logs are those of bench_twin with a delay and
+/// a lag.
 Named delay_of(SignalName signal, const model::Model& twin) {
   const model::Model without_valve =
       model::only(twin, [](const model::BlockInfo& info) { return info.station != model::Station::valve; });

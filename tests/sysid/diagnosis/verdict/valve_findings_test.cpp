@@ -25,27 +25,28 @@ namespace {
 
 constexpr double noise_kpa = 0.05, noise_mm = 0.04, sample_s = 0.01;
 
-/// A valve with its own simulation: Euler steps of 50 us, without any block of the models.
+/// A valve that this test simulates with Euler steps of 50 us. The simulation uses no block of the models.
 struct OwnValve {
   double delay_s = 0.05;
   double band_kpa = 0;
   double filling_s = 0.06;
   double venting_s = 0.06;
-  double second_s = 0;  ///< time constant of a second lag
+  double second_s = 0;  ///< time constant [s] of a second lag in series
   double limit_kpa = 1e9;
   double coupling = 0;
-  double leak = 0;   ///< conductance of the leak divided by that of the line
+  double leak = 0;   ///< conductance of the leak, divided by the conductance of the line
   double scale = 1;  ///< scale of the pressure sensor
 };
 
-/// Returns the flow of ISO 6358-1 per unit of conductance, for absolute pressures and a critical pressure
-/// ratio of 0.3.
+/// Returns the flow of ISO 6358-1, divided by the conductance. The pressures are absolute, and the critical
+/// pressure ratio is 0.3.
 double flow(double from_kpa, double to_kpa) {
   const double ratio = std::max(to_kpa / from_kpa, 0.3);
   return from_kpa * std::sqrt(1 - std::pow((ratio - 0.3) / 0.7, 2));
 }
 
-/// Returns the pressure behind a line at which the leak equals the inflow, found by bisection.
+/// Returns the pressure behind a line at which the leak equals the inflow. The pressure is found by
+/// bisection.
 double behind_leak(double kpa, double leak) {
   if (!(leak > 0) || !(kpa > 0)) return kpa;
   constexpr double open_kpa = 101.325;
@@ -87,7 +88,7 @@ Log own_log(const OwnValve& valve, int number, std::uint32_t seed) {
     log.pressure_kpa.push_back(valve.scale * p + noise_kpa * normal(random));
     log.displacement_mm.push_back(0.5 * p + noise_mm * normal(random));
     for (int k = 0; k < parts; ++k) {
-      // Between samples the command is linear, as in a log.
+      // Between two samples, the command is linear, as in a log.
       const double share = static_cast<double>(k) / parts;
       late.push_back((1 - share) * command_kpa(t, number) + share * command_kpa(sample_s * (i + 1), number));
       const double u = late.front();
@@ -115,7 +116,7 @@ ValveFindings found_in(const std::vector<Log>& logs, const model::Model& given) 
   return found.value_or(ValveFindings{});
 }
 
-/// Returns the parameter of a named cause, or nullptr.
+/// Returns the parameter of a cause that the diagnosis names, or nullptr.
 const CauseParameter* find(const ValveFindings& found, std::string_view cause, std::string_view parameter) {
   for (const NamedCause& named : found.named) {
     if (named.cause.id != cause) continue;
@@ -131,8 +132,8 @@ void expect_holds(const ValveFindings& found, std::string_view cause, std::strin
   const CauseParameter* p = find(found, cause, parameter);
   ASSERT_NE(p, nullptr) << cause << " is not named";
   ASSERT_TRUE(p->has_interval);
-  // A 95 % interval misses the true value once in 20 cases. An interval of 1.5 times its width misses once in
-  // 300.
+  // A 95 % interval misses the true value in 1 of 20 cases. An interval that is 1.5 times as wide misses it
+  // in 1 of 300 cases.
   const double half = (p->ci95.upper - p->ci95.lower) / 2;
   EXPECT_NEAR(p->value, truth, 1.5 * half) << parameter;
   EXPECT_LT(half, 0.1 * truth) << parameter;
@@ -184,8 +185,8 @@ bool names(const ValveFindings& found, std::string_view cause) {
 
 TEST(FindInValve, NamesALeakAndThatAScaleMayPassForOne) {
   const ValveFindings found = found_in(own_logs({.leak = 0.2}, 91), without_a_valve());
-  // The share is 0.2 squared. The tolerance covers the difference between the critical pressure ratios of the
-  // simulation and of the model.
+  // The true share is 0.2 squared. The tolerance covers the different critical pressure ratios of the
+  // simulation and the model.
   const CauseParameter* const share = find(found, "leak", "share");
   ASSERT_NE(share, nullptr);
   EXPECT_NEAR(share->value, 0.04, 0.008);
@@ -235,7 +236,7 @@ TEST(FindInValve, NamesNothingInAValveThatGoesItsOwnWay) {
   OwnValve valve;
   valve.limit_kpa = 35;
   std::vector<Log> logs = own_logs(valve, 81);
-  // Adds a pressure as if a second controller changed the regulator.
+  // Adds a pressure that a second controller of the regulator would cause.
   for (Log& log : logs) {
     for (std::size_t i = 0; i < log.size(); ++i) log.pressure_kpa[i] += 6 * std::sin(1.7 * log.time_s[i]);
   }
@@ -297,8 +298,8 @@ TEST(Diagnose, AFingerThatIsExplainedFromTheMeasuredPressureStillHasAValveThatIg
   ASSERT_TRUE(diagnosis->in_valve);
   EXPECT_NE(find(*diagnosis->in_valve, "valve_deadband", "band_kpa"), nullptr);
   EXPECT_NE(verdict_sentence(*diagnosis).find("valve dead band"), std::string::npos);
-  // The daemon sets the command, so its model must begin there, even if the measured pressure drove the
-  // diagnosis.
+  // The daemon sets the command of the valve, so its model must include the valve. This also holds if the
+  // diagnosis used the measured pressure as the input of the finger.
   for (const model::Model& model : {diagnosis->recalibrated_model, diagnosis->extended_model}) {
     EXPECT_TRUE(model::position_of<model::TransportDelay>(model)) << model.name;
     EXPECT_TRUE(model::position_of<model::ValveDeadband>(model)) << model.name;
