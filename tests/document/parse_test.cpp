@@ -186,7 +186,8 @@ TEST(Parse, BoundsAreExact) {
 void parse_on_small_stack(const std::string& text) {
   pthread_attr_t attributes;
   ASSERT_EQ(pthread_attr_init(&attributes), 0);
-  // The size is 512 KiB, because sanitizers enlarge the stack frames and use the stack for their own data.
+  // The size is 512 KiB, because sanitizers enlarge the stack frames and need stack memory for their own
+  // thread data.
   ASSERT_EQ(pthread_attr_setstacksize(&attributes, 512 * 1024), 0);
   pthread_t thread{};
   auto run = [](void* argument) -> void* {

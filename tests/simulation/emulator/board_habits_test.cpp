@@ -55,9 +55,9 @@ struct Client {
   std::vector<model::Reading> readings;
 };
 
-/// The board ignores requests during the first 0.4 s of a connection. The driver must write safe outputs
-/// without waiting for the settle time. Otherwise each new connection would restart the 0.4 s, and the board
-/// would ignore every write.
+/// The board ignores requests during the first 0.4 s of a connection. A client without a settle time
+/// reconnects after each time-out, so the 0.4 s start again and the board never responds. The settle time
+/// does not delay safe outputs, because the board would ignore every write during this time.
 TEST(BoardHabits, ABoardThatIgnoresWhatComesFirstIsReachedBehindItsSettleTime) {
   RunningRig rig(rig_with(settling(0.4)));
   ModbusSettings settings = rig.board();
