@@ -1,4 +1,4 @@
-"""Checks every line of the daemon against the schema that the package installs."""
+"""Checks every line that the daemon sends against the schema that the package installs."""
 
 import functools
 import json
@@ -11,7 +11,7 @@ SCHEMA = pathlib.Path(__file__).resolve().parents[2] / "daemon/socket/socket-api
 
 @functools.cache
 def validator(name=None):
-    """Returns the validator of any line of the daemon, or of the type `name` in $defs."""
+    """Returns a validator for every line that the daemon sends, or for the type `name` in $defs of the schema."""
     schema = json.loads(SCHEMA.read_text())
     if name:
         schema.pop("oneOf")
@@ -25,7 +25,8 @@ RESULTS = {"start": "accepted", "stop": "accepted", "vent": "accepted", "release
 
 
 def check(line, command=None):
-    """Raises an AssertionError that describes the part of a line that does not match the schema."""
+    """Checks a line. If the line does not match the schema, raises an AssertionError that describes the wrong part of
+    the line."""
     result = line.get("result") if command and line.get("ok") else None
     name, value = (RESULTS.get(command, command), result) if result is not None else (None, line)
     error = jsonschema.exceptions.best_match(validator(name).iter_errors(value))

@@ -1,7 +1,7 @@
 """Manages the processes and files of the end-to-end tests. Each test has its own folder and free ports, and no process
 or file remains after the test.
 
-The programs come from the build. The environment variable SOFTGRIP_BUILD names its folder.
+The programs come from the build. The environment variable SOFTGRIP_BUILD contains the folder of the build.
 """
 
 import contextlib
@@ -28,17 +28,18 @@ SOFTGRIP = BUILD / "tools" / "softgrip"
 SOFTGRIP_RIG = BUILD / "tools" / "softgrip-rig"
 SOFTGRIPD = BUILD / "daemon" / "softgripd"
 
-# A generous limit, because the machine may be busy. No result depends on this limit.
+# Longest waiting time [s]. It is generous, because the machine may be busy. It does not affect the result of
+# a test.
 PATIENCE_S = 30
 
-# The rig of the tests runs at 100 Hz, and its bus may be silent for 0.6 s.
+# In the tests, the rig runs at 100 Hz, and its bus may be silent for up to 0.6 s.
 RATE_HZ = 100
-BUS_DOWN_CYCLES = 30  # shorter than the watchdog of the board
+BUS_DOWN_CYCLES = 30  # shorter than the time-out of the board's watchdog
 
 
 def wait_for(what, condition, patience_s=PATIENCE_S, pause_s=0.02):
-    """Calls condition() repeatedly and returns its first true result. Fails with the message `what` after the longest
-    waiting time."""
+    """Calls condition() until its result is true, and returns this result. After `patience_s`, fails with the message
+    `what`."""
     end = time.monotonic() + patience_s
     while True:
         result = condition()
@@ -50,7 +51,7 @@ def wait_for(what, condition, patience_s=PATIENCE_S, pause_s=0.02):
 
 
 class Lines:
-    """Sends and receives lines over a Unix socket."""
+    """A client that sends and receives lines over a Unix socket."""
 
     def __init__(self, path):
         self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -81,7 +82,7 @@ def resident_kib(pid):
 
 
 class Process:
-    """A child process whose output goes to files. The process ends at the end of its test at the latest."""
+    """A child process whose output goes to files. At the end of its test, the process is ended if it still runs."""
 
     def __init__(self, name, arguments, folder, environment=None):
         self.name = name
@@ -107,12 +108,12 @@ class Process:
         self.child.send_signal(number)
 
     def kill(self):
-        """Kills the process with SIGKILL, like kill -9."""
+        """Kills the process with SIGKILL, like the command kill -9."""
         self.child.kill()
         self.child.wait(PATIENCE_S)
 
     def end(self, number=signal.SIGTERM):
-        """Requests the end of the process and returns its exit code."""
+        """Asks the process to end and returns its exit code."""
         if self.running():
             self.send(number)
         return self.wait()
@@ -126,7 +127,7 @@ class Process:
 
 
 class Emulator(Process):
-    """softgrip-rig on a free port, with a control socket."""
+    """A process of softgrip-rig that listens on a free port and has a control socket."""
 
     def __init__(self, folder, *arguments, port=0, board="adam-6024", name="softgrip-rig"):
         self.control_path = folder / f"{name}.sock"
@@ -159,7 +160,7 @@ class Emulator(Process):
 
 
 class Daemon(Process):
-    """softgripd on a rig file of the test's folder."""
+    """A process of softgripd that uses a rig file in the folder of the test."""
 
     def __init__(self, folder, rig, name="softgripd", environment=None):
         self.socket_path = folder / "softgripd.sock"
@@ -210,7 +211,8 @@ class Daemon(Process):
             raise AssertionError(f"{error}\n{self.errors()}") from None
 
     def start(self, sequence):
-        """Starts a sequence. Repeats the start if a delay of the busy machine caused a refusal."""
+        """Starts a sequence. If the daemon refuses the start because a busy machine has delayed the readings, repeats
+        the start."""
         def accepted():
             reply = self.ask("start", sequence=sequence)
             if reply["ok"]:
@@ -225,8 +227,8 @@ class Daemon(Process):
 
 
 class BenchTest(unittest.TestCase):
-    """A test with its own folder, which contains the shipped configuration. The processes of the test end with the
-    test."""
+    """A test with its own folder, which contains the shipped configuration. When the test ends, its processes are
+    ended."""
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="softgrip_system_"))
@@ -263,11 +265,10 @@ class BenchTest(unittest.TestCase):
         return path
 
     def rig(self, port, changes=(), name="rig_tcp.yaml"):
-        """Writes the shipped TCP rig with this port, the folder of the test, and further changes (pattern,
-        replacement).
+        """Writes the shipped TCP rig file with this port, paths in the folder of the test, and the given changes
+        (pattern, replacement).
 
-        The rate of the loop and the time limits are set for a busy machine, so that a stall of the host is not judged
-        as a fault."""
+        The control rate is low and the time limits are long, so that a pause of a busy machine causes no fault."""
         text = (self.folder / "config" / name).read_text()
         for pattern, replacement in (
                 (r"port: \d+", f"port: {port}"),
@@ -291,7 +292,7 @@ class BenchTest(unittest.TestCase):
         return path
 
     def creep_faster(self):
-        """Changes the finger of the shipped rigs and its model so that the creep of the finger ends after a few
+        """Changes the finger of the shipped rigs, and its model, so that the creep of the finger decays within a few
         seconds."""
         path = self.folder / "config/models/bench_twin.yaml"
         text, count = re.subn(r"c1_kpa_s_per_mm: [\d.]+", "c1_kpa_s_per_mm: 20", path.read_text())
@@ -311,7 +312,7 @@ class BenchTest(unittest.TestCase):
         return process
 
     def softgrip(self, *arguments, expect=0, timeout_s=PATIENCE_S):
-        """Runs softgrip and returns the finished process. The exit code must equal `expect`."""
+        """Runs softgrip, checks that the exit code is `expect`, and returns the finished process."""
         done = subprocess.run([str(a) for a in (SOFTGRIP, *arguments)], capture_output=True, text=True,
                               timeout=timeout_s, cwd=self.folder, stdin=subprocess.DEVNULL,
                               env={**os.environ, "SOFTGRIP_SOCKET": str(self.folder / "softgripd.sock")})
@@ -320,7 +321,7 @@ class BenchTest(unittest.TestCase):
         return done
 
     def recordings(self):
-        """Returns the folders of the recordings, the oldest first."""
+        """Returns the folders of the recordings, beginning with the oldest."""
         return sorted(path.parent for path in (self.folder / "runs").glob("*/run.csv"))
 
     @staticmethod

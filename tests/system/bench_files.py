@@ -8,7 +8,8 @@ import bench
 import exit_codes
 
 TWIN = "config/models/bench_twin.yaml"
-MEMORY_BYTES = 5 << 30  # the address space that a process may use; a sanitizer needs terabytes
+# Address space that a process may use; the limit is not set in a build with a sanitizer, which needs terabytes.
+MEMORY_BYTES = 5 << 30
 
 
 class Files(bench.BenchTest):

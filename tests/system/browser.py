@@ -1,4 +1,4 @@
-"""Runs a real browser that shows the operator's page."""
+"""Runs a browser that shows the operator's page."""
 
 import base64
 
@@ -11,11 +11,11 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
 
-# The browser has no sandbox if it runs as root. Its own network requests are switched off, because they cost processor
-# time and cause delays.
+# A browser that runs as root has no sandbox. The options switch off the network requests that the browser
+# itself makes, because they use processor time and delay the tests.
 QUIET = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
          "--disable-background-networking", "--disable-component-update")
-# The colours of each visible element that has its own text, and of its background.
+# Returns the text colour and the background colour of each visible element with text.
 TEXTS = """
 const seen = (element) => element.checkVisibility() && element.getClientRects().length > 0;
 const ground = (element) => {
@@ -49,7 +49,7 @@ class Browser:
     def __init__(self, width=1280, height=900):
         options = Options()
         options.binary_location = "/usr/bin/chromium"
-        # A container has little shared memory.
+        # In a container, the shared memory is too small for the browser.
         for argument in (*QUIET, "--disable-dev-shm-usage", f"--window-size={width},{height}"):
             options.add_argument(argument)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
@@ -101,14 +101,14 @@ class Browser:
         return [b.text for b in self.driver.find_elements(By.TAG_NAME, "button") if b.is_displayed()]
 
     def results(self):
-        """Returns the large texts on the cards of the fingers."""
+        """Returns the texts in large print on the cards of the fingers."""
         return [e.text for e in self.driver.find_elements(By.CSS_SELECTOR, ".finger .big")]
 
     def wait(self, what, condition, patience_s=bench.PATIENCE_S):
         def on_this_page():
             try:
                 return condition()
-            except StaleElementReferenceException:  # the page was loaded again in between
+            except StaleElementReferenceException:  # the page was reloaded while condition() read it
                 return False
         return bench.wait_for(what, on_this_page, patience_s, pause_s=0.1)
 
@@ -116,12 +116,12 @@ class Browser:
         return self.wait(f"the page to say {states}", lambda: self.text("state") in states)
 
     def complaints(self):
-        """Returns the messages of the browser's console: refused scripts, failed loads and exceptions."""
+        """Returns the messages in the console of the browser: refused scripts, failed loads and exceptions."""
         return [entry["message"] for entry in self.driver.get_log("browser")
                 if entry["level"] in ("SEVERE", "WARNING") and entry["source"] != "rendering"]
 
     def nameless(self):
-        """Returns the roles of the controls and pictures that have no name for a screen reader."""
+        """Returns the roles of the controls and pictures that a screen reader cannot name."""
         nodes = self.driver.execute_cdp_cmd("Accessibility.getFullAXTree", {})["nodes"]
         controls = {"button", "textbox", "combobox", "spinbutton", "link", "image", "img", "list", "form", "region"}
         wanted = controls - {"list", "form"}
@@ -130,7 +130,7 @@ class Browser:
                 and not n.get("name", {}).get("value")]
 
     def faint(self, least=4.5):
-        """Returns the texts whose contrast is lower than WCAG 2.1 AA requires."""
+        """Returns the texts whose contrast is below the contrast that WCAG 2.1 AA requires."""
         return [t for t in self.run(TEXTS) if contrast(t["ink"], t["ground"]) < least]
 
     def picture(self, path, width):

@@ -1,4 +1,4 @@
-"""Simulates the buttons and lamps of a rig by a GPIO chip in user space that is preloaded into softgripd
+"""Simulates the buttons and lamps of a rig. A GPIO chip in user space is preloaded into softgripd
 (gpio_chips.cpp)."""
 
 import time
@@ -20,7 +20,7 @@ gpio:
 
 
 def environment(folder):
-    """Returns the environment of the softgripd that uses the chip."""
+    """Returns the environment variables with which softgripd uses the simulated chip."""
     (folder / "gpio").mkdir()
     return {"GPIO_CHIPS": str(folder / "gpio"), "LD_PRELOAD": str(PRELOADED)}
 
@@ -38,7 +38,8 @@ class Lines:
         self.wire.ask(f"low {name} {time.monotonic_ns()}")
 
     def press_for(self, for_s, name="ESTOP"):
-        """Presses a button without waiting for an answer, because a stopped process does not answer."""
+        """Presses a button for `for_s` seconds. The function does not wait for answers, because a paused softgripd
+        does not answer."""
         self.wire.file.write(f"high {name} {time.monotonic_ns()}\n")
         self.wire.file.flush()
         time.sleep(for_s)
@@ -54,7 +55,7 @@ class Lines:
         self.wire.ask("gone")
 
     def on(self):
-        """Returns the names of the lines that are high."""
+        """Returns the names of the lines whose level is high."""
         return set(self.wire.ask("levels").split())
 
     def close(self):

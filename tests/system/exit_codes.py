@@ -1,4 +1,4 @@
-"""Reads the table of docs/reference/exit-codes.md and brings a program to each of the endings in the table."""
+"""Reads the table of docs/reference/exit-codes.md and provokes each ending of a program in the table."""
 
 import contextlib
 import dataclasses
@@ -19,13 +19,13 @@ ENDINGS = ("done", "refused", "signal", "fault", "full disk", "closed pipe")
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 IMPOSSIBLE = "-"
 ELSEWHERE = ()
-# Files that a command may create under their final name, without base/files.h.
+# Files that a command may create with their final name and without the functions of base/files.h.
 GROWING = re.compile(r"/run\.csv$|^/dev/|^/proc/self/fd/\d+$")
 TEMPORARY = re.compile(r"/\.softgrip-[0-9a-f]{16}\.part$|^\.softgrip-[0-9a-f]{16}\.part$")
 
 
 def table():
-    """Returns {command: {ending: cell}} of the page."""
+    """Returns {command: {ending: cell}} of the table on the page."""
     rows = {}
     for line in PAGE.read_text().splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")]
@@ -41,7 +41,7 @@ def motion_faults():
 
 
 def each(test, commands, ending, check):
-    """Calls check(name, command, cell) as a subtest for every command that can have this ending."""
+    """Runs check(name, command, cell) as a subtest for every command that can have this ending."""
     cells = table()
     for name, command in commands.items():
         if cells[name][ending] != IMPOSSIBLE:
@@ -51,20 +51,21 @@ def each(test, commands, ending, check):
 
 @dataclasses.dataclass
 class Command:
-    """The command of one row of the table and the conditions of its endings. `{out}` in the words is the folder of the
-    outputs."""
+    """The command of one row of the table, and what the test needs to provoke its endings. `{out}` in a command line
+    is the folder of the outputs."""
 
     done: str
     refused: str = ""
-    hangs_at: str = ""  # end of the path of an input that the command opens while it works
-    writes: str = ""  # file within {out} that the command replaces; "": the command only writes to the standard output
-    new: bool = False  # the command never replaces a file
-    more: tuple = ()  # other forms of the command that write, for the test with a full disk
+    hangs_at: str = ""  # end of the path of an input that the command opens while it runs
+    # File within {out} that the command replaces; empty if the command only writes to standard output.
+    writes: str = ""
+    new: bool = False  # true: the command never replaces an existing file
+    more: tuple = ()  # further command lines that write a file, for the test with a full disk
 
 
 class FullDisk:
-    """A folder on a disk that fill() fills. If mounting is not permitted, the kernel's limit of the file size is
-    used."""
+    """A folder on a disk that fill() fills. If this user may not mount a disk, the kernel's limit of the file size
+    replaces the full disk."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -80,7 +81,7 @@ class FullDisk:
                 filler.write(bytes(4096))
 
     def limit(self):
-        """Called in the child process before it runs the program."""
+        """Prepares the child process before it runs the program."""
         if not self.mounted:
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (1, resource.RLIM_INFINITY))
@@ -91,12 +92,12 @@ class FullDisk:
 
 
 def code_of(cell, number=None):
-    """Returns the return code of subprocess that corresponds to a cell of the table."""
+    """Returns the return code of subprocess for a cell of the table. A signal has the return code -`number`."""
     return -number if cell == "signal" else int(cell)
 
 
 class Runner:
-    """Runs softgrip in a folder."""
+    """Runs softgrip with one folder as the working directory."""
 
     def __init__(self, folder, environment=None):
         self.folder = pathlib.Path(folder)
@@ -113,13 +114,13 @@ class Runner:
                               timeout=expect_s, **keys)
 
     def created(self, line, out="out"):
-        """Returns the finished process and the paths of the files that it created."""
+        """Runs a command. Returns the finished process and the paths of the files that it has created."""
         with tempfile.NamedTemporaryFile(prefix="softgrip_created_") as noted:
             done = self.run(line, out, env={"LD_PRELOAD": str(fail_nth.SHIM), "FAIL_CREATED": noted.name})
             return done, pathlib.Path(noted.name).read_text().splitlines()
 
     def stopped(self, line, number, hangs_at, out="out"):
-        """Returns the return code after a signal that arrives while the command opens an input."""
+        """Sends a signal while the command opens an input. Returns the return code of the command."""
         told = self.folder / "told"
         told.unlink(missing_ok=True)
         child = subprocess.Popen(self.words(line, out), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -128,16 +129,16 @@ class Runner:
         return self.end_of(child, number, lambda: told.exists() or child.poll() is not None)
 
     def waiting(self, line, number, out="out", pause_s=0.3):
-        """Returns the return code after a signal that arrives while the command waits for a daemon or for the reader of
-        its output."""
+        """Sends a signal while the command waits for a daemon or for the reader of its output. Returns the return
+        code of the command."""
         child = subprocess.Popen(self.words(line, out), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                  stderr=subprocess.PIPE, env=self.environment)
         time.sleep(pause_s)
         return self.end_of(child, number, lambda: True)
 
     def blocked(self, line, number, out="out"):
-        """Returns the return code after a signal that arrives while the command waits for the reader of its standard
-        output."""
+        """Sends a signal while the command waits for the reader of its standard output. Returns the return code of
+        the command."""
         reader, writer = os.pipe()
         os.set_blocking(writer, False)
         with contextlib.suppress(BlockingIOError):
@@ -148,7 +149,7 @@ class Runner:
                                  stderr=subprocess.PIPE, env=self.environment)
         os.close(writer)
         try:
-            # The command waits in the kernel for the pipe when it sleeps and uses no more processor time.
+            # A command that sleeps and uses no more processor time waits in the kernel for the pipe.
             def waits():
                 state, used = self.state_and_ticks(child.pid)
                 time.sleep(0.1)
@@ -173,7 +174,8 @@ class Runner:
                 child.kill()
 
     def unread(self, line, ignored, out="out"):
-        """Returns the finished process whose standard output was closed by its reader, with SIGPIPE ignored or not."""
+        """Runs a command whose standard output the reader has closed. SIGPIPE is ignored if `ignored` is true.
+        Returns the finished process."""
         reader, writer = os.pipe()
         os.close(reader)
         try:

@@ -1,11 +1,11 @@
-// Lets the Nth call of one function fail in every program into which this library is preloaded (LD_PRELOAD):
+// Makes the Nth call of one function fail. The library is preloaded into the program (LD_PRELOAD):
 //
 //   FAIL_CALL=open FAIL_NTH=3 FAIL_TOLD=/tmp/failed LD_PRELOAD=.../libfail_nth.so softgripd ...
 //
-// FAIL_CALL is a name of the table below. The calls of several functions with the same purpose (open, openat,
-// fopen) are counted together. With FAIL_FROM=1 every call from the Nth on fails, as on a full disk. When a
-// call fails, the file FAIL_TOLD is created. A test increments N until this file is no longer created, as the
-// tests of SQLite do.
+// FAIL_CALL is a name in the table of functions in this file. Calls of functions with the same purpose, such
+// as open, openat and fopen, are counted together. With FAIL_FROM=1 every call from the Nth on fails, as on a
+// full disk. When a call fails, the file FAIL_TOLD is created. A test increments N until this file is no
+// longer created, as the tests of SQLite do.
 //
 // With FAIL_CREATED=FILE the path of every file that a call may create is appended to FILE, one path per
 // line.
@@ -13,7 +13,7 @@
 // With FAIL_HANG=NAME a call that opens a file whose path ends in NAME never returns, as on a mount without
 // its server. FAIL_TOLD is created in this case, too.
 
-#undef _FORTIFY_SOURCE  // its wrappers of recv and other functions would be defined a second time here
+#undef _FORTIFY_SOURCE  // its wrappers of recv and of other functions would define these functions twice
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -36,7 +36,7 @@
 
 namespace {
 
-/// The settings from the environment, which are read once.
+/// The settings, which are read once from the environment.
 struct Order {
   const char* call = std::getenv("FAIL_CALL");
   const char* told = std::getenv("FAIL_TOLD");
@@ -69,7 +69,7 @@ Function real(const char* name) noexcept {
   return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
 }
 
-/// Creates the file FAIL_TOLD. The calls for this are not counted.
+/// Creates the file FAIL_TOLD. The calls that this function makes are not counted.
 void tell() noexcept {
   if (order().told == nullptr) return;
   using Open = int (*)(const char*, int, ...);
@@ -78,7 +78,8 @@ void tell() noexcept {
   if (descriptor >= 0) ::close(descriptor);
 }
 
-/// Returns true if this call of a function of the group `call` must fail with `error`.
+/// Counts a call of a function of the group `call`. Returns true if this call must fail with the error number
+/// `error`.
 bool fails(const char* call, int error) noexcept {
   if (order().call == nullptr || std::strcmp(order().call, call) != 0) return false;
   const long number = ++calls;
@@ -88,7 +89,8 @@ bool fails(const char* call, int error) noexcept {
   return true;
 }
 
-/// Records the path if this call may create a file. The calls of this function are not counted.
+/// Writes the path to the file FAIL_CREATED if this call may create a file. The calls that this function
+/// makes are not counted.
 void note_created(const char* path, bool creates) noexcept {
   if (!creates || order().created == nullptr) return;
   using Open = int (*)(const char*, int, ...);
@@ -102,7 +104,7 @@ void note_created(const char* path, bool creates) noexcept {
   if (noted <= 0) std::abort();
 }
 
-/// Does not return if the opening of this path must hang.
+/// Never returns if FAIL_HANG names this path.
 void hang_at(const char* path) noexcept {
   if (order().hang == nullptr) return;
   const std::size_t end = std::strlen(order().hang);
@@ -114,9 +116,9 @@ void hang_at(const char* path) noexcept {
 
 }  // namespace
 
-// Counts the allocations of C++ code in all threads from main() on. Earlier allocations are not counted,
-// because before main() the program cannot report an error and has commanded no output. Allocations with a
-// special alignment are not counted.
+// Counts the allocations of C++ code in all threads from main() on. Allocations before main() are not
+// counted. At this time the program cannot report an error, and it has commanded no output. Allocations with
+// a special alignment are not counted.
 void* operator new(std::size_t size) {
   void* const memory = in_main && fails("allocation", ENOMEM) ? nullptr : std::malloc(size > 0 ? size : 1);
   if (memory == nullptr) throw std::bad_alloc();
@@ -185,7 +187,8 @@ int openat(int folder, const char* path, int flags, ...) {
   return next(folder, path, flags, mode);
 }
 
-// A hardened program calls these functions instead of open() and openat() if the flags are not constant.
+// With the hardening options, a program calls these functions instead of open() and openat() if the flags are
+// not constant.
 int __open_2(const char* path, int flags) {
   hang_at(path);
   if (fails("open", EMFILE)) return -1;
@@ -219,7 +222,8 @@ FILE* fopen64(const char* path, const char* mode) {
 ssize_t write(int descriptor, const void* data, size_t size) {
   if (fails("write", ENOSPC)) return -1;
   static const auto next = real<ssize_t (*)(int, const void*, size_t)>("write");
-  // This call writes one half of the data, and the next call fails, as on a disk that becomes full.
+  // On a disk that becomes full, a call writes a part of the data and the next call fails. So this call
+  // writes one half of the data.
   if (size > 1 && fails("short_write", ENOSPC)) return next(descriptor, data, size / 2);
   return next(descriptor, data, size);
 }
@@ -227,7 +231,7 @@ ssize_t write(int descriptor, const void* data, size_t size) {
 ssize_t writev(int descriptor, const iovec* parts, int count) {
   if (fails("write", ENOSPC)) return -1;
   static const auto next = real<ssize_t (*)(int, const iovec*, int)>("writev");
-  // A short write: this call writes half of the first part that is not empty.
+  // A short write: this call writes only half of the first part that is not empty.
   int first = 0;
   while (first < count && parts[first].iov_len == 0) ++first;
   if (first < count && parts[first].iov_len > 1 && fails("short_write", ENOSPC)) {

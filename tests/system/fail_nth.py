@@ -1,4 +1,5 @@
-"""Fails the Nth call of one kind (libfail_nth.so), for N from 1 until a run has fewer than N such calls.
+"""Makes the Nth call of one group of functions fail (libfail_nth.so). N increases from 1 until a run has fewer than N
+calls.
 
 scripts/fail_nth.sh runs all scenarios; test_fail_nth.py runs the part that takes less than a minute.
 """
@@ -19,12 +20,13 @@ import bench
 
 SHIM = bench.BUILD / "tests" / "system" / "libfail_nth.so"
 PATIENCE_S = 60
-# Calls that are made in loops are so frequent that N grows by a quarter each time.
+# Groups of functions that are called in loops. Their calls are so frequent that N increases in steps of 25 %.
 SPARSE = ("clock", "sleep", "send", "recv", "write", "open", "allocation")
 FILES = ("open", "write", "short_write", "fsync", "rename", "mkdir")
 PROCESS = ("mmap", "mlockall", "scheduler", "thread")
 WIRE = ("socket", "connect", "bind", "listen", "send", "recv", "sleep", "clock")
-# The exit codes: done, failed, refused, I/O, the state does not allow it, ended but not acceptable.
+# Accepted exit codes. 0: done, 1: failed, 3: refused, 4: input or output error, 5: not possible in this
+# state, 6: finished with a bad result.
 GOT_OVER_IT, VIRTUAL, REAL = (0,), (0, 1, 3, 4), (0, 1, 3, 4, 5, 6)
 SEQUENCE = """name: short
 steps:
@@ -34,17 +36,17 @@ steps:
 
 
 class Failure(AssertionError):
-    """A failed call had a forbidden consequence."""
+    """Raised if a failed call had a forbidden consequence."""
 
 
 def ends_in_a_destructor(done, call):
-    """The JSON library allocates in its destructors, which must not throw. So an allocation that fails there ends the
-    process."""
+    """Returns True if an allocation has failed in a destructor of the JSON library. A destructor must not throw, so
+    such a failure ends the process."""
     return call == "allocation" and done.returncode == -signal.SIGABRT and "std::bad_alloc" in done.stderr
 
 
 def run(arguments, folder, call, nth, from_then_on=False):
-    """Runs the command. Returns the finished process, and True if it reached the Nth call."""
+    """Runs the command. Returns the finished process, and True if the run reached the Nth call."""
     told = folder / "told"
     told.unlink(missing_ok=True)
     environment = {**os.environ, "LD_PRELOAD": str(SHIM), "FAIL_CALL": call, "FAIL_NTH": str(nth), "FAIL_TOLD": str(told)}
@@ -59,7 +61,8 @@ def run(arguments, folder, call, nth, from_then_on=False):
 
 
 def check_end(done, what, codes, silenced=False):
-    """Checks that the program neither crashes nor ends without a message, unless it cannot write the message."""
+    """Checks that the program does not crash. Also checks that it prints a message before it ends, if it can write
+    the message."""
     if done.returncode not in codes:
         raise Failure(f"{what}: exit code {done.returncode}\n{done.stderr[-1500:]}")
     if done.returncode != 0 and not silenced and len((done.stdout + done.stderr).strip()) < 20:
@@ -67,8 +70,8 @@ def check_end(done, what, codes, silenced=False):
 
 
 def check_recording(folder, what):
-    """Checks that the existing part of a recording is complete: all rows except the last, and run.json if it exists. No
-    temporary file may remain."""
+    """Checks a recording after a failed call. All rows except the last must be complete, and run.json must be valid
+    if it exists. No temporary file may remain."""
     csv = folder / "run.csv"
     if csv.exists():
         rows = csv.read_text().split("\n")
@@ -91,8 +94,7 @@ def check_complete(folder, done, what):
 
 
 def numbers(call, highest):
-    """Generates 1, 2, 3 ... For frequent calls it generates every number up to 10 and then increases the number by a
-    quarter each time."""
+    """Generates N = 1, 2, 3, ... For groups with frequent calls, N increases in steps of 25 % above 10."""
     nth = 1
     while nth <= highest:
         yield nth
@@ -137,8 +139,8 @@ class Scenario:
         return happened
 
     def writer(self, arguments, name, call, nth, from_then_on=False):
-        """Runs a command that writes a file or a folder. After the run, the old or the complete new version must
-        exist."""
+        """Runs a command that writes a file or a folder. After the run, either the old version or the complete new
+        version must exist."""
         out = self.folder / name
         before = "what was there before\n"
         if out.suffix:
@@ -207,8 +209,8 @@ class Scenario:
 
 
 def until_success(scenario, call, highest=2000, from_then_on=False):
-    """Lets one call after the other fail, until a run has no failed call and succeeds. Returns the number of failed
-    calls."""
+    """Makes the first call fail, then the second, and so on, until a run has no failed call and succeeds. Returns the
+    number of failed calls."""
     failed = 0
     for nth in numbers(call, highest):
         if not scenario(call, nth, from_then_on):

@@ -1,5 +1,5 @@
-"""Runs the cells of fault_matrix.yaml with a real softgripd, a real softgrip-rig, real sockets, and a connection with
-faults between them.
+"""Runs the cells of fault_matrix.yaml; a cell is one fault in one phase of a grip. The cells use a real softgripd, a
+real softgrip-rig and real sockets. A proxy between the two programs adds the faults.
 
 scripts/fault_matrix.sh runs all cells and publishes docs/results/fault-matrix.md; test_fault_matrix.py runs a few
 cells. With --vacuum the same faults act on the rig of config/vacuum, whose outputs are below their rest pressure.
@@ -30,9 +30,10 @@ import wire_proxy
 
 TABLE = pathlib.Path(__file__).with_name("fault_matrix.yaml")
 PAGE = bench.SOURCE / "docs" / "results" / "fault-matrix.md"
-# The phases by their names in safe_action of the rig file, which does not contain `connect`.
+# Maps a phase of the matrix to its name in safe_action of the rig file. safe_action has no name for the phase
+# `connect`.
 PHASE_OF = {"idle": "idle", "closing": "closing", "holding": "holding", "venting": "releasing"}
-# How long a fault without any visible effect is observed, in cycles.
+# Number of cycles for which a fault without a visible effect is observed.
 OBSERVED_CYCLES = 80
 SETTLED_KPA = 0.1
 SEQUENCE = """name: matrix
@@ -48,7 +49,7 @@ steps:
   - release: {{duration_s: 3, purge_s: 0.5, timeout_s: 8, on_fail: vent}}
 """
 
-# This sequence is below the rest pressure and as slow as the other sequence.
+# The pressures of this sequence are below the rest pressure. The sequence takes as long as SEQUENCE.
 VACUUM_SEQUENCE = """name: matrix
 steps:
   - grip:
@@ -61,18 +62,19 @@ steps:
   - hold: {{hold_s: {hold_s}, reverify_every_s: 0.25, on_fail: release}}
   - release: {{duration_s: 3, purge_s: 0.5, timeout_s: 8, on_fail: vent}}
 """
-# The 12-bit value of an output at its rest pressure: 0 kPa is 0 V on the shipped rig and 5 V on the vacuum rig.
+# Raw 12-bit value of an output at its rest pressure of 0 kPa. This pressure is 0 V on the shipped rig and 5 V
+# on the vacuum rig.
 REST_RAW = {False: 0, True: 2047.5}
-# A vacuum is held by a constant command, so old contents are correct until the release.
+# A constant command holds a vacuum. So a repeated old reply has the correct contents until the release.
 NOT_BELOW_REST = {("repetition_of_contents", "holding")}
 
 
 class Wrong(AssertionError):
-    """The result of a cell differs from the result that the table requires."""
+    """Raised if the result of a cell differs from the result in the table."""
 
 
 class Skipped(Exception):
-    """A resource that a cell needs is not permitted or does not exist."""
+    """Raised if a cell needs a permission that this user does not have, or a resource that does not exist."""
 
 
 def require(holds, sentence):
@@ -96,7 +98,7 @@ class Table:
         return cells.get(phase, cells.get("all"))
 
     def names(self):
-        """Returns the names that an expression of `within` may use, with their values in cycles."""
+        """Returns the names that an expression in the key `within` may use, each with its value in cycles."""
         rig, shipped = self.rig, shipped_rig()
         rate = rig["rate_hz"]
         slowest_kpa_per_s = self.sequence["slowest_kpa_per_s"]
@@ -114,7 +116,7 @@ class Table:
         text = str(expression)
         if not re.fullmatch(r"[a-z_0-9 +*]+", text):
             raise ValueError(f"not an expression of cycles: {text}")
-        return eval(text, {"__builtins__": {}}, names)  # only letters, digits, + and *
+        return eval(text, {"__builtins__": {}}, names)  # the expression contains only letters, digits, + and *
 
 
 def shipped_rig():
@@ -136,10 +138,10 @@ class Cell:
         self.processes = []
         self.proxy = None
         self.lines = None
-        self.seen = 0  # events up to this id occurred before the fault
+        self.seen = 0  # the largest id of an event before the fault
         self.measured = {}
 
-    # --- the processes
+    # --- Starting the processes
 
     def rig_file(self, port):
         text = self.vacuum_rig() if self.vacuum else (self.folder / "config" / "rig_tcp.yaml").read_text()
@@ -158,8 +160,8 @@ class Cell:
         return path
 
     def vacuum_rig(self):
-        """Writes the vacuum rig for the board that the proxy supports, with the middle of the output range as the safe
-        value."""
+        """Writes the vacuum rig for the board that the proxy supports. The safe value of an output is the middle of
+        its range."""
         boards = self.folder / "config" / "boards"
         board, count = re.subn(r"safe_v: \[0, 0\]", "safe_v: [5, 5]", (boards / "adam-6024.yaml").read_text())
         require(count == 1, "adam-6024.yaml has no safe_v")
@@ -207,15 +209,15 @@ class Cell:
             self.lines = digital_lines.Lines(self.folder)
 
     def clear_emergency_stop(self):
-        """Resets the emergency stop, which counts as pressed after the start of the daemon."""
+        """Resets the emergency stop. The daemon treats it as pressed after each start of the daemon."""
         self.daemon.wait_for_state("faulted")
         bench.wait_for("an acknowledged start", lambda: self.daemon.ask("acknowledge")["ok"], pause_s=0.05)
         bench.wait_for("the enable output", lambda: "ENABLE" in self.lines.on())
         self.seen = self.daemon.events()[-1]["id"]
 
     def find_origin(self):
-        """Returns time.monotonic() at the daemon's time 0. A status is as old as the last tick, so the newest of
-        several statuses is used."""
+        """Computes time.monotonic() at the daemon's time 0. A status can be as old as one tick, so the result is the
+        smallest value of 20 statuses."""
         self.origin = math.inf
         for n in range(20):
             now_s = self.daemon.status()["time_s"]
@@ -249,7 +251,7 @@ class Cell:
             self.lines.release()
             return
         if "pause" in self.fault["do"] or "hand" in self.fault["do"]:
-            return  # the fault is over
+            return  # the fault has ended
         if "plant" in self.fault["do"]:
             self.emulator.ask("clear it")
             if self.fault["do"]["plant"] == "ignored_write":
@@ -260,8 +262,8 @@ class Cell:
             self.proxy.clear()
 
     def first_other_write(self):
-        """Returns the time of the first write whose values differ from the outputs at the time when the board began to
-        ignore writes."""
+        """Returns the time of the first write with changed values after the fault began. From this time on, the board
+        ignores the writes."""
         before = [words for at, words in self.proxy.writes if at <= self.began][-1:]
         return next((at for at, words in self.proxy.writes
                      if at > self.began and before and wire_proxy.noticeable(words, before[0])), self.began)
@@ -287,13 +289,13 @@ class Cell:
         if self.phase == "holding":
             require(self.daemon.results() == ["HOLDING", "HOLDING"], f"before the fault: {self.daemon.results()}")
 
-    # --- the required results
+    # --- Checking the required results
 
     def latched(self):
         return next((e for e in self.daemon.events() if e["kind"] == "fault_latched" and e["id"] > self.seen), None)
 
     def observe(self, cycles=OBSERVED_CYCLES):
-        """Waits for this number of ticks."""
+        """Waits for this number of control cycles."""
         ticks = self.daemon.status()["loop"]["ticks"]
         bench.wait_for("ticks", lambda: self.daemon.status()["loop"]["ticks"] >= ticks + cycles)
 
@@ -301,7 +303,7 @@ class Cell:
         return self.emulator.commands_kpa()
 
     def away_kpa(self):
-        """Returns the distance of the outputs from their rest pressure, which is 0 kPa."""
+        """Returns the difference between the outputs and their rest pressure of 0 kPa."""
         return [abs(kpa) for kpa in self.outputs_kpa()]
 
     def check_waits(self):
@@ -324,11 +326,11 @@ class Cell:
         if self.expected.get("outputs") != "spoiled":
             self.check_outputs(fault["code"])
             self.check_no_motion(writes_before)
-        if self.has_lines() and not self.expected.get("for_good"):  # a removed chip drives no output
+        if self.has_lines() and not self.expected.get("for_good"):  # a chip that was removed drives no output
             bench.wait_for("an enable output that has dropped", lambda: "ENABLE" not in self.lines.on(), 2)
             bench.wait_for("the fault lamp", lambda: "FAULT" in self.lines.on(), 2)
         self.find_origin()
-        self.observe(60)  # wait for the end of the recording
+        self.observe(60)  # waits until the recording has ended
         self.clear_fault()
         if self.expected.get("for_good"):
             require(not self.daemon.ask("acknowledge")["ok"], "the fault was acknowledged although its cause remains")
@@ -338,16 +340,17 @@ class Cell:
 
     def action(self, code):
         safety = shipped_rig()["safety"]
-        # If the board has no watchdog, a hold continues without the bus, so only the phase determines the action.
+        # Without a watchdog, the board keeps its outputs when the bus fails. In this case, only the phase
+        # determines the safe action.
         watched = self.fault.get("rig") != "serial"
         if watched and code.startswith("F1") or code in ("F303", "F304") or self.phase == "connect":
-            return "vent"  # the ADAM's watchdog vents
+            return "vent"  # the watchdog of the ADAM vents the outputs
         if code in ("F501", "F502"):
             return safety["on_emergency_stop"]
         return safety["safe_action"][PHASE_OF[self.phase]]
 
     def check_outputs(self, code):
-        """Checks the outputs of the emulator, which are the values that a valve would receive."""
+        """Checks the outputs of the emulator, which are the values that real valves would receive."""
         action = self.action(code)
         self.measured["outputs"] = action
         if action == "vent":
@@ -367,8 +370,8 @@ class Cell:
                     f"an output moved away from rest after the fault: {before} to {after}")
 
     def acknowledge(self):
-        """Checks the behaviour after the fault is removed: the acknowledgement is accepted, the rig becomes idle, and
-        no finger moves."""
+        """Checks the behaviour after the fault has ended. The daemon must accept the acknowledgement, the rig must
+        become idle, and no finger may move."""
         since = len(self.proxy.writes)
         bench.wait_for("an acknowledged fault", lambda: self.daemon.ask("acknowledge")["ok"], 15, 0.1)
         self.daemon.wait_for_state("idle")
@@ -395,8 +398,8 @@ class Cell:
         require(not self.latched(), "there is still a fault at the end")
 
     def check_unseen(self):
-        """Checks that the daemon reports no fault in a case that it cannot detect. The grip result is measured, but not
-        judged."""
+        """Checks that the daemon reports no fault in a case that it cannot detect. The grip result is recorded
+        without a requirement."""
         self.observe()
         fault = self.latched()
         require(not fault, f"a fault was detected: {fault and fault['code']}: {fault and fault['text']}")
@@ -405,7 +408,7 @@ class Cell:
         self.measured["result"] = "/".join(self.daemon.results())
         self.clear_fault()
 
-    # --- the recording
+    # --- Checking the recording
 
     def recordings(self):
         return sorted(path.parent for path in (self.folder / "runs").glob("*/run.csv"))
@@ -423,9 +426,10 @@ class Cell:
             require(missing <= slips, f"{recording.name}: {missing} ticks missing, {slips} slipped")
 
     def reaction(self, fault):
-        """Returns the number of ticks between the first effect of the fault and the latched fault, counted in the rows
-        of the recording."""
-        for recording in reversed(self.recordings()):  # the emergency stop at the start also has a recording
+        """Counts rows of the recording. Returns the number of ticks from the first effect of the fault to the latched
+        fault."""
+        # The emergency stop at the start of the daemon also creates a recording.
+        for recording in reversed(self.recordings()):
             about = json.loads((recording / "run.json").read_text())
             same = next((e for e in reversed(about["faults"]) if e["code"] == fault["code"]), None)
             if same is None:
@@ -444,7 +448,7 @@ class Cell:
             self.begin_fault()
             self.start_daemon()
             hurry(True)
-            # Short faults end before they can be observed.
+            # Some faults are so short that the test cannot observe them before they end.
             if self.expected["ends"] in ("ridden", "unseen"):
                 self.daemon.wait_for_state("idle")
         else:
@@ -482,9 +486,9 @@ class Cell:
 
 
 def hurry(yes):
-    """Raises the priority of this process where this is permitted, because this process simulates a wire, and a wire
-    does not wait for other work of the machine. The process mostly sleeps. Child processes start with the normal
-    priority, because the test checks the priorities that they set."""
+    """Raises the priority of this process, if this user has the permission. The process simulates a wire, and a wire
+    does not wait for other work of the machine. The process sleeps most of the time. Child processes start with the
+    normal priority, because the test checks the priorities that they set."""
     with contextlib.suppress(PermissionError):
         os.sched_setscheduler(0, os.SCHED_FIFO if yes else os.SCHED_OTHER, os.sched_param(30 if yes else 0))
 
@@ -500,7 +504,7 @@ def run_once(name, phase, vacuum=False):
         skipped = str(error)
     except Wrong as error:
         wrong = str(error)
-    except Exception as error:  # a broken cell must not stop the others
+    except Exception as error:  # an error in one cell must not stop the other cells
         wrong = f"{type(error).__name__}: {error}\n{traceback.format_exc(limit=4)}"
     if wrong:
         log = "\n".join(p.errors()[-1800:] for p in cell.processes if p.name == "softgripd")
@@ -510,8 +514,8 @@ def run_once(name, phase, vacuum=False):
 
 
 def run_cell(name, phase, attempts=2, vacuum=False):
-    """Runs a cell, and repeats it once if it fails, because the machine may have paused. The number of repetitions is
-    printed and published."""
+    """Runs a cell. If the cell fails, runs it a second time, because the machine may have paused. The page of results
+    states the number of repetitions."""
     for attempt in range(1, attempts + 1):
         result = run_once(name, phase, vacuum)
         result["attempts"] = attempt

@@ -2,8 +2,9 @@
 
     tests/system/foreign_files.py [--page] [--keep FOLDER]
 
-Prints the result of every file; --page writes docs/reference/foreign-files.md. Exit code 6 if a result differs from the
-required one: values equal to the original, or a refusal with the reason. Needs a built tree and python3-h5py.
+Prints the result of every file; --page writes docs/reference/foreign-files.md. The exit code is 6 if a result is not
+the required one. The required result is a log with the original values, or a refusal with the reason. Needs a built
+tree and python3-h5py.
 """
 
 import argparse
@@ -29,8 +30,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("SOFTGRIP_BUILD", ROOT / "build" / "release"))
 PAGE = ROOT / "docs/reference/foreign-files.md"
 
-# The original signals: three seconds at 100 Hz up to 60 kPa and back, a measured pressure with a lag, and a finger that
-# follows it.
+# The original signals, sampled at 100 Hz for three seconds. The command rises to 60 kPa and falls to 0. The
+# measured pressure follows the command with a lag, and a finger follows the pressure.
 COUNT = 300
 PSI, BAR = 6.894757293168361, 100.0
 
@@ -53,7 +54,7 @@ T, COMMAND, PRESSURE, TIP, WARM = TRUTH.values()
 
 
 def table(names, columns, separator=",", decimal=".", above="", units=None, quote=False, end="\n"):
-    """Returns rows of text, in which a value of None becomes an empty cell."""
+    """Returns lines of text for the rows. A value of None becomes an empty cell."""
     def cell(value):
         text = "" if value is None else value if isinstance(value, str) else repr(value)
         text = text if isinstance(value, str) else text.replace(".", decimal)
@@ -93,7 +94,8 @@ def without(rows):
     return kept | {"time_s": [round(t - first, 9) for t in kept["time_s"]]}
 
 
-# MATLAB 5 files, written here and not by the library that reads them (MAT-File Format, The MathWorks).
+# MATLAB 5 files. This code writes them by the specification (MAT-File Format, The MathWorks), without the
+# library with which softgrip reads them.
 
 def element(kind, data):
     return struct.pack("<II", kind, len(data)) + data + b"\0" * (-len(data) % 8)
@@ -121,7 +123,7 @@ def text_matrix(text):
 
 
 def structures(name, elements):
-    """Returns an array of structures. The values of the fields are already encoded."""
+    """Returns an array of MATLAB structures. The caller has already encoded the values of the fields."""
     names = b"".join(field.encode().ljust(32, b"\0") for field in elements[0])
     return headed(2, (1, len(elements)), name, struct.pack("<HHi", 5, 4, 32) + element(1, names)
                   + b"".join(value for fields in elements for value in fields.values()))
@@ -145,8 +147,8 @@ def trials():
 
 
 def lvm(x_columns, sections):
-    """Returns the text format of LabVIEW with sections of equal length. Without X columns the times follow from the row
-    numbers."""
+    """Returns a file in the text format of LabVIEW, with sections of equal length. Without X columns, the row number
+    determines the time."""
     text = "".join(f"{key}\t{value}\n" for key, value in (
         ("LabVIEW Measurement", ""), ("Writer_Version", "2"), ("Separator", "Tab"), ("Decimal_Separator", ","),
         ("Multi_Headings", "Yes"), ("X_Columns", x_columns), ("Time_Pref", "Relative"), ("***End_of_Header***", "")))
@@ -221,7 +223,7 @@ def exported(file):
 
 
 def mcap(messages):
-    """Returns an MCAP file of the messages (topic, time [s], object), in the order of the times."""
+    """Returns an MCAP file with the messages (topic, time [s], object), sorted by time."""
     def text(value):
         return struct.pack("<I", len(value)) + value.encode()
 
@@ -238,7 +240,7 @@ def mcap(messages):
 
 
 class File:
-    """One external file: the function that makes it, the import options, and the required result."""
+    """One external file, with the function that makes it, the import options, and the required result."""
 
     def __init__(self, name, about, content, options="", *, columns=None, refused="", says="", left_out=None, joined=0,
                  tolerance=1e-9):
@@ -257,7 +259,7 @@ class File:
 
 
 def spreadsheets():
-    """Returns workbooks, and files that look like workbooks."""
+    """Returns workbooks, and files that look like workbooks but are not."""
     names = ["Time (s)", "P set (kPa)", "Tip (mm)"]
     rows = [list(row) for row in zip(T, COMMAND, TIP)]
     days = [["Time", *names[1:]]] + [[workbooks.date(45443.999 + t / 86400), *row] for t, *row in rows]
@@ -338,7 +340,7 @@ EPOCH = 1717156800
 
 
 def reports():
-    """Returns more files of the kinds in public field reports, each with the text of its rows."""
+    """Returns files like those in public field reports. Each file is given by the text of its rows."""
     names = ["time_s", "set_kpa", "tip_mm"]
     ms = [round(1000 * t) for t in T]
     thirds = {"pressure_command_kpa": [COMMAND[3 * (i // 3)] for i in range(COUNT)]}
@@ -447,7 +449,8 @@ def reports():
 
 
 def other_fingers_and_clocks():
-    """Returns files with fingers in rows, and files whose channels have different intervals or start times."""
+    """Returns files that have a row for each finger, and files whose channels have different intervals or start
+    times."""
     rows = [(round(t + delay, 3), finger, *values) for t, *both in zip(T, COMMAND, TIP) for delay, finger, values in
             ((0, 1, both), (0.002, 2, [60 - both[0], 12 - both[1]]))]
     of_first = {"left_out": {"other_channel": COUNT}}
@@ -457,7 +460,7 @@ def other_fingers_and_clocks():
     names = ("time_s", "finger", "set_kPa", "tip_mm")
     readings = table(["time_s", "set_kpa", "finger"], [T, COMMAND, TIP])
     one_x = lvm("No", 1)
-    # The second channel begins 20 ms later, has half the rate, and ends early.
+    # The second channel starts 20 ms later than the first, has half its sample rate, and ends earlier.
     own_x = lvm("Multi", 1).replace("kPa\tmm", "kPa\t\tmm").replace(
         "12:59:50,938\t12:59:50,938", "12:59:50,938\t\t12:59:50,958").replace("2024/06/13\t2024", "2024/06/13\t\t2024").replace(
         "X_Value\tSet\tTip", "X_Value\tSet\tX_Value\tTip")
@@ -513,7 +516,7 @@ def signals(stamp):
         return [(name, t + late_s, {"data": value}) for t, value in list(zip(T, values))[::every]]
 
     def stamped(name, key, values, late_s=0.0, begin=0):
-        # The log time of a message is later than its stamp.
+        # The time at which a message was logged is later than the stamp in the message.
         return [(name, t + late_s, {"header": {"stamp": {"sec": sec - begin, "nanosec": rest}}, key: value})
                 for t, sec, rest, value in zip(T, *stamp, values)]
     half = {"time_s": sorted([*T, *(round(t + 0.002, 6) for t in T[::2])])}
@@ -823,8 +826,8 @@ def read_csv(path):
 
 
 def furthest(got, wanted):
-    """Returns the largest difference, relative to the size of the column, or the reason why no difference can be
-    computed."""
+    """Returns the largest relative difference between a log and the original signals, or the reason why there is no
+    difference to compute."""
     if set(got) != set(wanted):
         return math.inf, f"columns {sorted(got)} instead of {sorted(wanted)}"
     worst = 0.0
@@ -841,7 +844,7 @@ def furthest(got, wanted):
 
 
 def outcome(file, folder):
-    """Returns the result of one file as (wrong, what, rest). `wrong` is empty if the result is as required."""
+    """Imports one file. Returns (wrong, what, rest); `wrong` is empty if the result is the required one."""
     path = file.make(folder)
     out = folder / "out" / (file.name + ".csv")
     done = subprocess.run([BUILD / "tools/softgrip", "import", path, *shlex.split(file.options), "--yes", "--json",

@@ -1,4 +1,4 @@
-// Simulates a GPIO chip for a complete softgripd (LD_PRELOAD). A test outside the process sets and reads the
+// Simulates a GPIO chip in a softgripd process (LD_PRELOAD). A test in another process sets and reads the
 // lines of the chip:
 //
 //   GPIO_CHIPS=/tmp/folder LD_PRELOAD=.../libgpio_chips.so softgripd ...
@@ -101,7 +101,7 @@ void serve(int listening) {
     std::perror("gpio_chips");
     std::abort();
   }
-  // All signals are blocked in this thread, because softgripd must receive them.
+  // Blocks all signals in this thread, so that the threads of softgripd receive them.
   sigset_t all;
   sigset_t before;
   sigfillset(&all);
@@ -112,7 +112,7 @@ void serve(int listening) {
 
 }  // namespace
 
-/// Opens the folder GPIO_CHIPS in place of /dev. std::filesystem calls openat() to list a folder.
+/// Opens the folder GPIO_CHIPS instead of /dev. std::filesystem lists a folder with openat().
 extern "C" int openat(int at, const char* path, int flags, ...) {
   using Openat = int (*)(int, const char*, int, ...);
   static const auto real = reinterpret_cast<Openat>(dlsym(RTLD_NEXT, "openat"));

@@ -1,6 +1,6 @@
-"""Grips simulated parts with the shipped recipe, in virtual time or over a real connection. The judgement does not use
-the controller's values: the force on the part is calculated from the plant's own numbers and a curve of `softgrip
-simulate`."""
+"""Grips simulated parts with the shipped recipe, in virtual time or over a real connection. The judgement does not
+use values of the controller. It computes the gripping pressure from the values of the simulated plant and from a
+curve of `softgrip simulate`."""
 
 import csv
 import dataclasses
@@ -17,9 +17,10 @@ import bench
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MODEL = ROOT / "config/models/bench_twin.yaml"
-REACH_MM = 10  # distance [mm] behind the expected place up to which a part is searched
-APPROACH_MM = 4  # distance [mm] in front of the expected place at which the approach ends
-# The tolerance of a bound for sensor noise, the resolution of the board and the filter of the readings.
+REACH_MM = 10  # the fingers search for a part up to this distance [mm] behind its expected position
+APPROACH_MM = 4  # the approach ends at this distance [mm] in front of the expected position
+# Tolerance of a pressure limit [kPa]. It covers the sensor noise, the resolution of the board and the filter
+# of the readings.
 TOLERANCE_KPA = 0.5
 
 
@@ -27,7 +28,8 @@ TOLERANCE_KPA = 0.5
 class Part:
     name: str
     expected_mm: float
-    yielding: float  # the share of the free motion that remains beyond its surface
+    # Motion of the finger against the part, as a share of its free motion beyond the surface of the part.
+    yielding: float
 
 
 PARTS = (Part("stone", 12, 0.1), Part("spring", 10, 0.5), Part("screw", 17, 0.05), Part("nut", 14, 0.02),
@@ -38,13 +40,13 @@ PARTS = (Part("stone", 12, 0.1), Part("spring", 10, 0.5), Part("screw", 17, 0.05
 class Trial:
     part: Part | None  # None: there is no part
     fingers: int
-    offset_mm: float  # position relative to the place at which the recipe expects the part
-    tilt_mm: float  # additional distance of the part for the second finger
+    offset_mm: float  # position of the part relative to the position that the recipe expects
+    tilt_mm: float  # additional distance of the part from the second finger
     seed: int
 
     @property
     def slips(self):
-        """Returns True if the part slips away while it is held, which is the case in every fifth trial over the real
+        """True if the part slips away while the fingers hold it. This happens in one of five trials over the real
         connection."""
         return self.part is not None and random.Random(f"slips {self.seed}").random() < 0.2
 
@@ -55,15 +57,16 @@ class Trial:
 @dataclasses.dataclass
 class Judged:
     answers: list
-    peak_kpa: float  # the largest squeeze; 0 if no part was touched
-    answered_s: float | None  # from the start of motion to the first answer
+    peak_kpa: float  # largest gripping pressure; 0 if no finger touched a part
+    answered_s: float | None  # time from the start of the motion to the first grip result
     end: str
-    slipped: bool = False  # the part was removed while it was held
+    slipped: bool = False  # true: the part was removed while the fingers held it
 
 
 class Finger:
-    """The true behaviour of the simulated fingers, which is that of the model or of a model that moves farther by a
-    given percentage. Also computes the pressure at which the free finger rests at a displacement 3 s after a jump."""
+    """The true behaviour of the simulated fingers. A finger behaves like the model, or moves farther than the model
+    by a given percentage. Also computes the pressure for which the free finger has a given displacement 3 s after a
+    jump."""
 
     def __init__(self, softgrip, folder, farther_percent=0):
         self.softgrip, self.model = softgrip, folder / f"finger_{farther_percent:g}.yaml"
@@ -76,7 +79,8 @@ class Finger:
         self.points = self.rests(folder)
 
     def answer(self, rows, folder):
-        """Returns the displacement of the free finger for rows of (time, pressure)."""
+        """Returns the displacement of the free finger for rows of (time, pressure), as `softgrip simulate` computes
+        it."""
         log, answer = folder / "commands.csv", folder / "free.csv"
         log.write_text("time_s,pressure_command_kpa\n" + "".join(f"{time_s},{kpa}\n" for time_s, kpa in rows))
         subprocess.run([self.softgrip, "simulate", "--model", self.model, "--input", log, "--out", answer], check=True,
@@ -99,14 +103,16 @@ class Finger:
 
 
 def drawn(seed):
-    """Draws a trial with or without a part, for one or two fingers. The part is up to 8 mm from the expected place."""
+    """Draws a trial with or without a part, for one or two fingers. The part is up to 8 mm away from its expected
+    position."""
     random_ = random.Random(seed)
     part = None if random_.random() < 0.1 else random_.choice(PARTS)
     return Trial(part, random_.choice((1, 2)), random_.uniform(-8, 8), random_.uniform(-1, 1), seed)
 
 
 def recipe(trial):
-    """Returns the shipped recipe with another expected place of the part. An empty grip expects a stone."""
+    """Returns the shipped recipe, in which the expected position is that of the part. Without a part, the recipe
+    expects a stone."""
     expected_mm = (trial.part or PARTS[0]).expected_mm
     text = (ROOT / "config/sequences/pick_stone.yaml").read_text()
     text = text.replace("displacement_mm: 8", f"displacement_mm: {expected_mm - APPROACH_MM}", 1)
@@ -121,7 +127,8 @@ def rig(trial, finger_model, folder):
     text = text.replace("models/", f"{ROOT}/config/models/").replace("seed: 1", f"seed: {trial.seed}", 1)
     plants, channels = text.split("\nchannel_defaults:", 1)
     text = re.sub(r"model: \S+", f"model: {finger_model}", plants) + "\nchannel_defaults:" + channels
-    text = text.replace("pressure_noise_kpa: 0.1", "pressure_noise_kpa: 0")  # the reading of the judge
+    # The judgement reads the pressure without noise.
+    text = text.replace("pressure_noise_kpa: 0.1", "pressure_noise_kpa: 0")
     text = re.sub(r"directory: \S+}", f"directory: {folder}/runs}}", text)
     text = re.sub(r"path: /\S+,", f"path: {folder}/softgrip.sock,", text)
     objects = iter(range(2))
@@ -136,7 +143,7 @@ def rig(trial, finger_model, folder):
 
 
 def bound_kpa(text):
-    """Returns the largest gripping pressure that a recipe allows in any step."""
+    """Returns the largest gripping pressure that any step of a recipe allows."""
     return max(float(value) for value in re.findall(r"squeeze_max_kpa: ([\d.]+)", text))
 
 
@@ -153,8 +160,8 @@ def play(trial, finger, folder):
 
 
 def play_on_the_wire(trial, finger, folder):
-    """Runs a trial with softgripd and softgrip-rig in real time. The part is at the same place for both fingers, the
-    place of the first finger."""
+    """Runs a trial with softgripd and softgrip-rig in real time. For both fingers, the part is at the position that
+    the trial has for the first finger."""
     shutil.copytree(ROOT / "config", folder / "config")
     (folder / "config/sequences/recipe.yaml").write_text(recipe(trial))
     there = () if trial.part is None else ("--object", f"{trial.place_mm(0)}:{trial.part.yielding}")
@@ -181,7 +188,7 @@ def play_on_the_wire(trial, finger, folder):
 
 
 def judged(trial, finger, folder, recording, end):
-    """Computes the result of a trial from its recording."""
+    """Computes the result of a trial from the recording of the trial."""
     story = json.loads((recording / "run.json").read_text())
     with open(recording / "run.csv", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -195,8 +202,8 @@ def judged(trial, finger, folder, recording, end):
 
 
 def peak_squeeze(rows, trial, number, finger, folder):
-    """Returns the largest gripping pressure, computed from the true position of the finger. This position follows from
-    the motion of the free finger under the sent commands and from the position of the part."""
+    """Returns the largest gripping pressure. It is computed from the true position of the finger, which depends on
+    the sent commands and on the position of the part."""
     if trial.part is None:
         return 0
     free = finger.answer([(row["time_s"], row["pressure_command_kpa"]) for row in rows], folder)
@@ -209,7 +216,7 @@ def peak_squeeze(rows, trial, number, finger, folder):
 
 
 def broken(trial, judged, allowed_kpa):
-    """Returns the guarantees of a grip that this trial violated; empty if it violated none."""
+    """Returns the guarantees of a grip that this trial has violated. The list is empty if there is no violation."""
     told = [answer for answers in judged.answers for answer in answers]
     problems = []
     if judged.peak_kpa > allowed_kpa + TOLERANCE_KPA:

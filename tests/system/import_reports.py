@@ -3,9 +3,9 @@
 
     tests/system/import_reports.py [FOLDER] [--softgrip PROGRAM]...
 
-FOLDER has a folder for each report. Without FOLDER the reports of foreign_files.py are made and imported. The table has
-a row for each file. With two programs it has a column for each program, to compare two versions. Exit code 1 if a run
-crashed."""
+FOLDER has a folder for each report. Without FOLDER the reports of foreign_files.py are made and imported. The table
+has a row for each file. With two programs it has a column for each program, to compare two versions. The exit code is
+1 if a run has crashed."""
 
 import argparse
 import json
@@ -21,7 +21,7 @@ import foreign_files
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("SOFTGRIP_BUILD", ROOT / "build" / "release"))
 SUFFIXES = {".csv", ".gz", ".h5", ".lvm", ".mat", ".mcap", ".tdms", ".tsv", ".txt", ".xlsx"}
-# A report about an option needs the option.
+# If a report is about an import option, its file is imported with this option.
 OPTIONS = {"channel-ignored": ["--channel right", "--channel nonsense", ""]}
 
 
@@ -37,7 +37,7 @@ def own_cases(folder):
 
 
 def outcome(program, path, options):
-    """Returns (exit code, sentence) of one import."""
+    """Imports one file. Returns (exit code, sentence about the result)."""
     with tempfile.TemporaryDirectory() as out:
         done = subprocess.run([program, "import", path, *shlex.split(options), "--yes", "--json", "--out",
                                pathlib.Path(out) / "log.csv"], capture_output=True, text=True, timeout=120,

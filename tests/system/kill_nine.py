@@ -1,5 +1,5 @@
-"""Kills the daemon with kill -9 at random times during a recording. Every recording can be opened, at most the last
-second is lost, and the board vents.
+"""Kills the daemon with kill -9 at random times during a recording. Then every recording must be readable, with at
+most the last second missing, and the board must vent.
 
 scripts/kill_nine.sh runs this test a hundred times; test_kill.py runs it a few times.
 """
@@ -50,8 +50,8 @@ def opens(folder, recording, *arguments):
 
 
 def once(number, seed):
-    """Runs one daemon and kills it after a random time. Returns the lost duration of the recording [s] and the time
-    until the board vented [s]."""
+    """Starts one daemon and kills it after a random time. Returns the duration [s] that the recording has lost, and
+    the time [s] until the board vented."""
     chance = random.Random(f"{seed}/{number}")
     folder = pathlib.Path(tempfile.mkdtemp(prefix="softgrip_killed_"))
     processes = []
@@ -63,7 +63,7 @@ def once(number, seed):
         processes.append(daemon)
         daemon.wait_for_state("idle")
         bench.wait_for("a start", lambda: daemon.ask("start", sequence="killed", sequence_text=SEQUENCE)["ok"])
-        # Time 0 of the recording is the tick in which the sequence was accepted.
+        # Time 0 of the recording is the tick in which the daemon accepted the sequence.
         began = daemon.wait_for_event("sequence_started")["time_s"]
         time.sleep(chance.uniform(0.1, 5))
         killed_at = daemon.status()["time_s"] - began
@@ -84,11 +84,11 @@ def once(number, seed):
             json.loads((recording / "run.json").read_text())
         if len(whole) > 3:
             opens(folder, recording, "plot", recording, "--out", folder / "run.svg")
-        if killed_at > 2: # the fingers have moved
+        if killed_at > 2: # after 2 s, the fingers have moved
             opens(folder, recording, "validate", "--model", "config/models/bench_twin.yaml", "--data", recording,
                   "--channel", "left")
         return {"number": number, "killed_at_s": killed_at, "lost_s": lost_s, "vented_s": vented_s, "wrong": None}
-    except Exception as error:  # the error is printed and counted, and the other runs continue
+    except Exception as error:  # the error is printed and counted, and the next run starts
         return {"number": number, "wrong": f"{type(error).__name__}: {error}"}
     finally:
         for process in reversed(processes):

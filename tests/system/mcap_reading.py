@@ -1,4 +1,5 @@
-"""Reads MCAP by the specification (https://mcap.dev/spec), not with the code that wrote it; checks every checksum."""
+"""Reads MCAP files by the specification (https://mcap.dev/spec) and checks every checksum. It shares no code with the
+program that writes the files."""
 
 import json
 import struct
@@ -39,7 +40,7 @@ class Content:
 
 
 def records(data, begin, end):
-    """Returns (opcode, content, offset) of the records between two offsets."""
+    """Returns (opcode, content, offset) of the records between two offsets in the file."""
     at = begin
     while at < end:
         opcode, length = struct.unpack_from("<BQ", data, at)
@@ -49,7 +50,7 @@ def records(data, begin, end):
 
 
 def read(path):
-    """Returns {topic: [(log_time_ns, message)]}. Fails at any difference from the specification."""
+    """Returns {topic: [(log_time_ns, message)]} of a file. Fails if the file deviates from the specification."""
     data = path.read_bytes()
     assert data.startswith(MAGIC) and data.endswith(MAGIC), "no magic"
     footer_at = len(data) - len(MAGIC) - 29

@@ -1,4 +1,4 @@
-"""Runs a process of a user without any permission for the rig, to test what every local user can do."""
+"""Runs a process of another user, who has no permission for the rig, to test what every local user can do."""
 
 import hashlib
 import os
@@ -15,19 +15,20 @@ NEEDS_ROOT = "only root can become another user"
 
 
 def board_name(port):
-    """Returns the abstract socket name of the lock of the emulated board."""
+    """Returns the abstract socket name that a program occupies to lock the emulated board."""
     return "\0softgrip-board-" + hashlib.sha256(f"modbus 127.0.0.1 port {port} unit 1".encode()).hexdigest()
 
 
 def lock_folders():
-    """Returns the folders in which the daemon of this user may have its lock file."""
+    """Returns the folders in which a daemon of this user can have its lock file."""
     user = os.geteuid()
     places = ("/run/softgrip", f"/run/user/{user}/softgrip", f"/tmp/softgrip-{user}")
     return [place for place in map(pathlib.Path, places) if place.is_dir()]
 
 
 class OtherUser:
-    """Occupies a name or a path from its start to its end. `backlog`: None does not listen, 0 accepts no connection."""
+    """A process of another user that occupies a socket name or a path while it runs. `backlog`: with None the socket
+    does not listen, with 0 it accepts no connection."""
 
     def __init__(self, test, address, backlog=5):
         ready, told = os.pipe()
@@ -60,7 +61,7 @@ class OtherUser:
                     raise
         if backlog is not None:
             held.listen(backlog)
-        if backlog == 0:  # fills the queue of the socket, so that a new connection has to wait
+        if backlog == 0:  # fills the queue of the socket, so that every further connection has to wait
             full = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
             full.connect(address)
         os.write(told, b"1")

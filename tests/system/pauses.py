@@ -1,4 +1,4 @@
-"""Pauses a daemon: the whole process (SIGSTOP), or one of its threads (ptrace)."""
+"""Pauses a daemon, either the whole process (SIGSTOP) or one of its threads (ptrace)."""
 
 import contextlib
 import pathlib
@@ -28,7 +28,8 @@ def whole_process(daemon):
 
 
 def pause(daemon, what, for_s):
-    """`what`: "process" or the name of a thread. PermissionError where this user may not trace another process."""
+    """Pauses the daemon for `for_s` seconds. `what` is "process" or the name of a thread. Raises PermissionError if
+    this user may not trace another process."""
     if what == "process":
         with whole_process(daemon):
             time.sleep(for_s)
@@ -38,4 +39,4 @@ def pause(daemon, what, for_s):
         if hang.stdout.readline() != "hangs\n":
             raise PermissionError("this user may not trace another process")
         time.sleep(for_s)
-        hang.kill()  # resumes the thread
+        hang.kill()  # the thread continues when its tracer ends

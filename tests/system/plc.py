@@ -1,4 +1,5 @@
-"""Runs softgrip-plc with the other processes of a test, and a Modbus master that commands it like a PLC."""
+"""Runs softgrip-plc with the other processes of a test, and a Modbus client (master) that commands the gateway like a
+PLC."""
 
 import re
 import struct
@@ -18,7 +19,7 @@ NOT_GIVEN = 0x8000
 
 
 class Map:
-    """The register addresses by name, from the file that the gateway reads."""
+    """The register addresses by name. They are read from the map file that the gateway uses."""
 
     def __init__(self, path):
         registers = yaml.safe_load(path.read_text())["registers"]
@@ -48,13 +49,13 @@ class Plc(bench.Process):
 
 
 def block(counter, command, recipe=0):
-    """Returns the request that a PLC writes in every cycle, with counter, command and recipe in one frame."""
+    """Returns the Modbus request with which a PLC writes counter, command and recipe in every cycle."""
     pdu = struct.pack(">BHHB3H", 16, 0, 3, 6, counter, command, recipe)
     return struct.pack(">HHHB", 7, 0, len(pdu) + 1, 1) + pdu
 
 
 class Master:
-    """A Modbus master that counts its commands and reads the result of each command."""
+    """A Modbus client that counts its commands and reads the result of each command, like a PLC."""
 
     def __init__(self, plc, synchronise=True):
         self.map = plc.map
@@ -90,19 +91,20 @@ class Master:
         self.write("master_heartbeat", self.beats)
 
     def synchronise(self):
-        """Writes the counter value of the gateway without a command, as soon as no command is in progress."""
+        """Waits until no command is in progress, and then takes over the counter value of the gateway without giving
+        a command."""
         bench.wait_for("the end of what is under way", lambda: self.read("outcome") != 1)
         self.counter = self.read("done_counter")
         self.write("command_counter", self.counter, 0)
 
     def put(self, command, recipe=0, squeeze=NOT_GIVEN):
-        """Writes counter and command in one block, like a PLC."""
+        """Writes the next counter value and a command with one request, like a PLC."""
         self.counter = (self.counter + 1) % 65536
         self.write("command_counter", self.counter, command, recipe, squeeze)
         return self.counter
 
     def done(self, counter, patience_s=bench.PATIENCE_S):
-        """Returns (outcome, reason) of the command with that counter."""
+        """Returns (outcome, reason) of the command with this counter value."""
         first = self.map.address["done_counter"]
 
         def look():
@@ -124,6 +126,6 @@ class Master:
 
 
 def started(daemon, since=0):
-    """Returns the ids of the requests by which the gateway has started sequences in this daemon."""
+    """Returns the request ids of the sequences that the gateway has started in this daemon."""
     return [event["request"] for event in daemon.events(since)
             if event["kind"] == "sequence_started" and event.get("client") == "softgrip-plc"]

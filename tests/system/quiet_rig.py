@@ -1,4 +1,5 @@
-"""A daemon on a simulated rig in which pauses of the machine cause no fault: for tests in which only clients fail."""
+"""Runs a daemon on a simulated rig in which a pause of the machine causes no fault. It is for tests in which clients
+fail, but the rig does not."""
 
 import re
 
@@ -27,12 +28,12 @@ class QuietRigTest(bench.BenchTest):
         self.path = str(self.softgripd.socket_path)
 
     def running(self):
-        """Returns the request of the running sequence, or None if no sequence runs."""
+        """Returns the request id of the running sequence, or None if no sequence runs."""
         sequence = self.softgripd.status()["sequence"]
         return sequence["request"] if sequence and sequence["ended"] is None else None
 
     def ended(self, request):
-        """Returns the end of the sequence of that start, or None if the sequence still runs."""
+        """Returns how the sequence with this request id ended, or None if it still runs."""
         for event in self.softgripd.events():
             if event["kind"] == "sequence_finished" and event["request"] == request:
                 return event["code"]

@@ -14,9 +14,9 @@ import sys
 
 import yaml
 
-# The states in which a command may move away from the rest pressure: control/tick/tick.h, may_rise().
+# States in which a command may move away from the rest pressure, as in may_rise() of control/tick/tick.h.
 MAY_RISE = ("resynchronising", "running")
-# state -> the states that may follow it: control/tick/supervisor.h
+# Maps a state to the states that may follow it, as in control/tick/supervisor.h.
 NEXT = {
     "starting": ("idle", "faulted"),
     "idle": ("resynchronising", "running", "stopping", "faulted"),
@@ -25,7 +25,7 @@ NEXT = {
     "stopping": ("idle", "faulted"),
     "faulted": ("starting", "idle"),
 }
-# A cell has six decimals.
+# Tolerance of a value, because the cells of run.csv have six decimals.
 CELL = 2e-6
 
 
@@ -41,11 +41,12 @@ class Recording:
         self.limits = self.rig_limits()
 
     def channel_names(self):
-        """Returns the names of the channels in the order of their rows."""
+        """Returns the names of the channels in the order of their rows in run.csv."""
         return list(dict.fromkeys(row["channel"] for row in self.rows))
 
     def rig_limits(self):
-        """Returns the limits by channel; empty if the rig file was removed or changed after the recording."""
+        """Returns the limits of each channel. The result is empty if the rig file was removed or changed after the
+        recording."""
         for file in self.about["files"]:
             path = pathlib.Path(file["path"])
             if file["role"] != "rig" or not path.exists():
@@ -59,7 +60,8 @@ class Recording:
         return {}
 
     def rest(self, name):
-        """Returns the rest pressure of a channel, which is rest_kpa limited to the pressure limits of the channel."""
+        """Returns the rest pressure of a channel: rest_kpa of the rig file, limited to the pressure limits of the
+        channel."""
         limits = self.limits.get(name)
         rest = self.rest_kpa.get(name, 0)
         return rest if limits is None else max(limits["pressure_min_kpa"], min(rest, limits["pressure_max_kpa"]))
@@ -79,7 +81,7 @@ class Recording:
         self.check_events()
         return self.wrong
 
-    # --- the recording is complete
+    # --- Checks that the recording is complete
 
     def check_whole(self):
         """Checks that every tick has a row of every channel in the same order, that the times increase, and that the
@@ -96,7 +98,7 @@ class Recording:
         if self.about["state"] == "complete" and self.about["rows"] != len(self.rows):
             self.wrong.append(f"{self.folder.name}: {len(self.rows)} rows, run.json says {self.about['rows']}")
 
-    # --- outputs
+    # --- Checks of the outputs
 
     def check_range(self, name, rows):
         limits = self.limits.get(name)
@@ -108,8 +110,8 @@ class Recording:
                 self.says(row, f"{command} kPa is out of the range of its limits")
 
     def check_step(self, name, before, row):
-        """Checks two successive ticks: the state changes only as permitted, and commands move away from rest only in a
-        sequence and within the slew limit."""
+        """Checks two successive ticks. The state may change only as NEXT permits. A command may move away from rest
+        only during a sequence and within the slew limit."""
         if row["state"] != before["state"] and row["state"] not in NEXT[before["state"]]:
             self.says(row, f"{before['state']} is followed by {row['state']}")
         for side, slew in ((1, "slew_up_kpa_per_s"), (-1, "slew_down_kpa_per_s")):
@@ -134,17 +136,20 @@ class Recording:
                                f"{self.allowed(name, slew):.6f} are its slew")
 
     def away(self, name, row, side):
-        """Returns the distance of a command above the rest pressure, or below the rest pressure if side is -1."""
+        """Returns the distance of a command from the rest pressure. Commands above the rest pressure count as
+        positive if side is 1, and commands below it if side is -1."""
         return max(0.0, side * (float(row["pressure_command_kpa"]) - self.rest(name)))
 
     def allowed(self, name, slew):
-        """Returns the largest permitted change in a tick. Missed ticks of the loop do not increase this change."""
+        """Returns the largest permitted change of a command in a tick. A missed tick of the loop does not permit a
+        larger change."""
         return self.limits[name][slew] * self.about["decimation"] / self.about["rate_hz"]
 
-    # --- answers
+    # --- Checks of results and events
 
     def check_results(self, rows):
-        """Checks that the result HOLDING begins with evidence: a valid displacement or a measured pressure."""
+        """Checks that the result HOLDING begins with evidence. The evidence is a valid displacement or a measured
+        pressure."""
         for before, row in zip(rows, rows[1:]):
             if row["result"] != "holding" or before["result"] == "holding":
                 continue

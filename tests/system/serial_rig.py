@@ -1,5 +1,5 @@
-"""Provides the shipped rig on a serial line, which is a pseudo-terminal of the emulator on which bytes take as long as
-on a real line. The board has no watchdog and no read-back."""
+"""Provides the shipped rig on a serial line. The line is a pseudo-terminal of the emulator, and the bytes take as
+long as on a real line. The board has no watchdog and no read-back."""
 
 import os
 import re
@@ -13,14 +13,14 @@ RATE_HZ = 20
 
 
 def board_priority():
-    """Gives the emulator a higher priority, because a real module has its own processor and answers in time even if
-    this computer is busy."""
+    """Gives the emulator a higher priority. A real module has its own processor and answers in time even if this
+    computer is busy."""
     return ["chrt", "-f", "40"] if resource.getrlimit(resource.RLIMIT_RTPRIO)[0] >= 40 or os.geteuid() == 0 else []
 
 
 def rig_file(folder, rate_hz, *changes):
-    """Writes a rig file with half of the highest possible rate, because the kernel transfers the bytes of a
-    pseudo-terminal in a thread that has to wait on a busy machine."""
+    """Writes a rig file with half of the highest possible control rate. A kernel thread transfers the bytes of a
+    pseudo-terminal, and on a busy machine this thread has to wait."""
     text = (folder / "config" / "rig_rtu.yaml").read_text()
     for pattern, replacement in (
             (r"device: .*", f"device: {folder}/line"), (r"rate_hz: \d+", f"rate_hz: {rate_hz}"),
@@ -40,7 +40,8 @@ def rig_file(folder, rate_hz, *changes):
 
 
 class Shared(bench.Emulator):
-    """The control socket of the emulator accepts one client at a time, so a watcher uses this connection."""
+    """An emulator whose control connection is shared by the test and a watcher. The emulator accepts one control
+    client at a time, so a lock protects the connection."""
 
     def __init__(self, folder, *arguments):
         self.one_at_a_time = threading.Lock()
@@ -52,7 +53,7 @@ class Shared(bench.Emulator):
 
 
 class Emulator(Shared):
-    """softgrip-rig at the device that the rig file names."""
+    """A process of softgrip-rig on the serial device that the rig file names."""
 
     def __init__(self, folder, rig, *arguments):
         self.control_path = folder / "softgrip-rig.sock"
@@ -65,7 +66,7 @@ class Emulator(Shared):
 
 
 class Watcher:
-    """Takes the place of the proxy. It changes no message and reads the outputs every few milliseconds."""
+    """Replaces the proxy of the TCP tests. It changes no message and records the outputs every 5 ms."""
 
     def __init__(self, emulator):
         self.writes = []

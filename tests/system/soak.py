@@ -1,8 +1,10 @@
-"""Runs softgripd for hours at 1 kHz over TCP with softgrip-rig, one sequence after the other, with other work on the
-machine. Clients that connect and leave, pauses and a full disk disturb the run (soak_disturbances.py).
+"""Runs softgripd for hours at 1 kHz over TCP with softgrip-rig. It runs one sequence after the other while the
+machine does other work. The run is disturbed by clients that connect and leave, pauses and a full disk
+(soak_disturbances.py).
 
 scripts/soak.sh runs it. Once a minute it writes a line into soak.csv: memory, descriptors, overruns, dropped rows,
-faults. At the end it prints a verdict: exit code 0, or 6 if a number grew, something was lost, or a fault occurred.
+faults. At the end it prints a verdict. The exit code is 0, or 6 if one of these values has grown, data were lost, or
+a fault occurred.
 """
 
 import argparse
@@ -23,16 +25,19 @@ import bench
 import soak_disturbances
 
 RATE_HZ = 1000
-# A pause of less than 100 ms on a shared machine is caused by the machine and is not a fault of a bus.
+# Number of cycles without a bus exchange before a fault. On a shared machine, pauses below 100 ms are caused
+# by the machine, not by the bus.
 PATIENCE_CYCLES = 100
-# The part between the fingers, the sequence, its required end, and the required result of both fingers.
+# Each entry: the part between the fingers, the sequence, how the sequence must end, and the required result
+# of both fingers.
 ROUND = (
     ("stone", "pick_stone", "done", "RELEASED"),
     ("out", "empty_grip", "failed", "NO PART"),
     ("13:0.05", "pick_screw", "done", "RELEASED"),
     ("out", "track_sine", "done", "RELEASED"),
 )
-# The newest 10,000 events are kept in memory. No other data may grow.
+# Permitted growth of the memory [KiB]. The daemon keeps its newest 10,000 events in memory; no other data may
+# grow.
 ALLOWED_GROWTH_KIB = 4096
 COLUMNS = ("minute", "rss_kib", "descriptors", "threads", "ticks", "slips_woken_late", "slips_took_long",
            "bus_exchanges", "bus_failures", "bus_slips", "sessions", "dropped_rows", "faults", "sequences", "unexpected",
@@ -40,7 +45,7 @@ COLUMNS = ("minute", "rss_kib", "descriptors", "threads", "ticks", "slips_woken_
 
 
 def load(folder):
-    """Runs other work, which uses a quarter of one processor and writes a few megabytes to the disk every second."""
+    """Loads the machine. Uses a quarter of one processor and writes a few megabytes to the disk every second."""
     os.nice(19)
     block = random.Random(1).randbytes(1 << 20)
     path = folder / "load.bin"
@@ -105,7 +110,7 @@ class Soak:
         print(f"  {sentence}", flush=True)
 
     def take_events(self, awaited=()):
-        """Reads new events. Counts and prints the faults among these events, except the expected kinds."""
+        """Reads new events. Counts and prints the faults among them, without the expected faults."""
         events = self.daemon.events(self.newest)
         for event in events:
             self.newest = event["id"]
@@ -119,7 +124,7 @@ class Soak:
         self.emulator.ask(f"object {item}" if item == "out" else "object back")
         if item != "out":
             self.emulator.ask(f"object {item}")
-        # Each sequence has its own client, so that connections are opened and closed.
+        # Each sequence uses a new client, so that connections are opened and closed all the time.
         client = bench.Lines(self.folder / "softgripd.sock")
         reply = json.loads(client.ask(json.dumps({"command": "start", "sequence": sequence})))
         client.close()
@@ -136,7 +141,7 @@ class Soak:
                                                             for e in events) or sequence == "track_sine"):
             self.note(f"{sequence}: ended {came[0]}, {sorted(came[1])}")
         self.recover()
-        time.sleep(1.2)  # the end of the recording
+        time.sleep(1.2)  # waits until the recording has ended
         self.read_recordings()
 
     def recover(self):
@@ -146,8 +151,8 @@ class Soak:
         self.daemon.wait_for_state("idle")
 
     def read_recordings(self):
-        """Reads every recording to its end and deletes it. The recording must have rows of both channels at intervals
-        of one tick, and no row may be missing."""
+        """Reads every recording to its end and deletes it. The rows of both channels must have intervals of one tick,
+        and no row may be missing."""
         for recording in sorted((self.folder / "runs").iterdir()):
             about = json.loads((recording / "run.json").read_text())
             if about["state"] == "recording":
@@ -159,7 +164,8 @@ class Soak:
             with open(recording / "run.csv", newline="") as file:
                 for row in csv.reader(file):
                     rows += 1
-            # Two channels and a header. The time of a row is that of its wake-up, so only the total time has no jitter.
+            # The file has one header row and two rows per tick. The time of a row has the jitter of the
+            # wake-up, so missing ticks are computed from the total time.
             self.missing += max(0, round(float(row[0]) * RATE_HZ) + 1 - (rows - 1) // 2)
             if rows - 1 != about["rows"]:
                 self.note(f"{recording.name}: {rows - 1} rows, run.json says {about['rows']}")
@@ -167,7 +173,7 @@ class Soak:
             shutil.rmtree(recording)
 
     def remove_recordings(self):
-        """Removes recordings that are incomplete because of a full disk, without reading them."""
+        """Deletes recordings that are incomplete because the disk was full. Their rows are not checked."""
         for recording in self.runs.path.iterdir():
             shutil.rmtree(recording)
 
@@ -186,7 +192,7 @@ class Soak:
         writer.writerow(row)
 
     def pauses(self, count):
-        """Runs only long pauses, one after the other."""
+        """Runs a number of long pauses and no other disturbance."""
         for _ in range(count):
             self.disturbances.long_pause()
             self.recover()
@@ -213,8 +219,8 @@ class Soak:
             self.sample((time.monotonic() - began) / 60, writer)
 
     def verdict(self, exit_code):
-        """Returns a sentence for each requirement that is not fulfilled; empty if all requirements are fulfilled."""
-        # The first round fills buffers that are filled only once.
+        """Returns a sentence for each requirement that is not met. The list is empty if all requirements are met."""
+        # The first round fills buffers once. So the memory is compared with its value after the first round.
         settled = self.samples[min(2, len(self.samples) - 1)]
         last = self.samples[-1]
         wrong = list(self.unexpected)

@@ -1,6 +1,6 @@
-"""Runs the disturbances of the soak test, between and during its sequences: clients that connect and leave, pauses of
-the process that are shorter or longer than the time-out of the board's watchdog, and a full disk. Each disturbance has
-a required result, and any other result counts as unexpected.
+"""Disturbs the soak test between and during its sequences. The disturbances are clients that connect and leave, a
+full disk, and pauses of the process. Some pauses are shorter and some are longer than the time-out of the board's
+watchdog. Each disturbance has a required result, and any other result counts as unexpected.
 """
 
 import os
@@ -11,14 +11,14 @@ import time
 
 import bench
 
-SHORT_PAUSE_S = 0.03  # the rig of the soak test tolerates this
-LONG_PAUSE_S = 0.8    # longer than the board's watchdog
+SHORT_PAUSE_S = 0.03  # the rig of the soak test must tolerate this pause
+LONG_PAUSE_S = 0.8    # longer than the time-out of the board's watchdog
 SETTLED_KPA = 0.1
-RUNS_MIB = 64         # the disk of the recordings, if it is a separate one
+RUNS_MIB = 64         # size of the disk for the recordings, if a separate disk can be mounted
 
 
 class Runs:
-    """The folder of the recordings, which is a separate file system if mounting is permitted."""
+    """The folder of the recordings. It is a separate file system if this user may mount one."""
 
     def __init__(self, folder):
         self.path = folder / "runs"
@@ -44,8 +44,8 @@ class Runs:
 
 
 class Disturbances:
-    """The disturbances one after the other, each with its own sequence. `soak` provides daemon and emulator, and
-    records each unexpected result."""
+    """Runs one disturbance after the other, each during its own sequence. `soak` provides the daemon and the
+    emulator, and records each unexpected result."""
 
     def __init__(self, soak, runs, seed):
         self.soak, self.runs, self.chance = soak, runs, random.Random(seed)
@@ -55,10 +55,10 @@ class Disturbances:
         self.soak.emulator.ask("object back")
         self.soak.emulator.ask("object stone")
         self.soak.daemon.start(sequence)
-        time.sleep(self.chance.uniform(0.5, 6))  # approach, closing, holding
+        time.sleep(self.chance.uniform(0.5, 6))  # the sequence is then in its approach, its closing or its hold
 
     def finish(self, what):
-        """Waits for the normal end of the sequence."""
+        """Waits until the sequence has ended normally."""
         bench.wait_for(f"the end beside {what}", lambda: self.soak.daemon.status()["state"] in ("idle", "faulted"), 60, 0.25)
         self.soak.take_events()
         ended = self.soak.daemon.status()["sequence"]["ended"]
@@ -117,7 +117,7 @@ class Disturbances:
         self.start()
         self.runs.fill()
         bench.wait_for("the end on a full disk", lambda: self.soak.daemon.status()["state"] in ("idle", "faulted"), 60, 0.25)
-        time.sleep(1.2)  # the end of the recording
+        time.sleep(1.2)  # waits until the recording has ended
         events = self.soak.take_events(awaited=("recording_failed",))
         self.done["full disks"] += 1
         if self.soak.daemon.status()["sequence"]["ended"] != "done":
@@ -131,5 +131,5 @@ class Disturbances:
         for one in (self.clients, self.short_pause, self.long_pause, self.full_disk):
             one()
             self.soak.recover()
-            time.sleep(1.2)  # the end of the recording
+            time.sleep(1.2)  # waits until the recording has ended
             self.soak.read_recordings()

@@ -1,4 +1,4 @@
-"""A Unix socket between a client and softgripd. Tests can disturb the connection while it is in use."""
+"""A proxy on a Unix socket between a client and softgripd. Tests can disturb the connection while it is in use."""
 
 import contextlib
 import os
@@ -12,8 +12,9 @@ TO_DAEMON, TO_CLIENT = "to_daemon", "to_client"
 class SocketProxy:
     """Listens at `path`, passes the bytes of clients to the daemon at `daemon_path`, and passes the answers back.
 
-    `held`: the directions whose bytes wait. `refuses`: new connections are closed. let_go() passes on the bytes that
-    wait, even if the client has left in the meantime, as the kernel does for a daemon that is paused.
+    `held` contains the directions in which the proxy keeps the bytes back. If `refuses` is true, the proxy closes new
+    connections. let_go() passes the kept bytes on, even if the client has left. The kernel does the same for a daemon
+    that is paused.
     """
 
     def __init__(self, path, daemon_path):
@@ -49,19 +50,19 @@ class SocketProxy:
         self._wake()
 
     def waiting(self, direction):
-        """Returns the bytes that wait, by connection."""
+        """Returns the bytes that the proxy keeps back, by connection."""
         with self._lock:
             return [pair[2 if direction == TO_DAEMON else 3] for pair in self._pairs]
 
     def inject(self, data):
-        """Sends something to all clients, as if it came from the daemon."""
+        """Sends `data` to all clients, as if the daemon had sent it."""
         with self._lock:
             for pair in self._pairs:
                 pair[3] += data
         self._wake()
 
     def cut(self):
-        """Closes all connections on both sides and drops the bytes that wait in them."""
+        """Closes all connections on both sides and drops the bytes that the proxy keeps back."""
         with self._lock:
             for pair in self._pairs:
                 for end in pair[:2]:
@@ -80,7 +81,7 @@ class SocketProxy:
                 reads = [end for pair in self._pairs for end in pair[:2] if end]
             try:
                 ready, _, _ = select.select([self._listener, self._wakes, *reads], [], [], 0.1)
-            except (OSError, ValueError):  # closed in the meantime
+            except (OSError, ValueError):  # the connection was closed since the call of select()
                 continue
             if self._wakes in ready:
                 os.read(self._wakes, 4096)
@@ -122,7 +123,8 @@ class SocketProxy:
                     with contextlib.suppress(OSError):
                         pair[other].sendall(pair[waits])
                 pair[waits] = b""
-        # When one side closes, the other is closed as well, after the bytes of the first have been passed on.
+        # If one side closes its connection, the proxy first passes the remaining bytes of this side on. It
+        # then closes the other side, too.
         if (pair[0] is None and not pair[2]) or (pair[1] is None and not pair[3]):
             for end in pair[:2]:
                 if end:

@@ -1,12 +1,12 @@
-// Simulates a disk that does not respond, in every program into which this library is preloaded (LD_PRELOAD):
+// Simulates a disk that does not respond. The library is preloaded into the program (LD_PRELOAD):
 //
 //   STUCK_FOLDER=/tmp/runs STUCK_WHILE=/tmp/stuck LD_PRELOAD=.../libstuck_disk.so softgrip-web ...
 //
 // While the file STUCK_WHILE exists, a call that reads a folder or a regular file below STUCK_FOLDER waits.
-// The first such call creates STUCK_WHILE.waits, so that a test knows that the program is waiting for the
-// disk.
+// The first call that waits creates the file STUCK_WHILE.waits. A test then knows that the program waits for
+// the disk.
 
-#undef _FORTIFY_SOURCE  // its wrapper of read would be defined a second time here
+#undef _FORTIFY_SOURCE  // its wrapper of read() would define this function twice
 
 #include <dirent.h>
 #include <dlfcn.h>

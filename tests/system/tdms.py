@@ -30,7 +30,8 @@ def property_bytes(name, value):
 
 
 def segment(group, channels, pieces=1, interleaved=False, rows=None, repeat=False):
-    """Returns a segment of the given rows. `repeat`: True if the metadata of the previous segment stays valid."""
+    """Returns a segment with the given rows. `repeat` is True if the metadata of the previous segment remains
+    valid."""
     begin, end = rows or (0, max(len(channel.values) for channel in channels.values()))
     metadata = struct.pack("<I", len(channels))
     for name, channel in channels.items():

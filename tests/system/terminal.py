@@ -14,7 +14,7 @@ import pyte
 
 
 class Terminal:
-    """Runs a program on its own terminal; its output is kept as a screen and as bytes."""
+    """Runs a program on its own terminal. Keeps the output both as the text on the screen and as bytes."""
 
     def __init__(self, arguments, folder, columns=80, rows=24, environment=None):
         self.master, self.slave = pty.openpty()
@@ -29,7 +29,7 @@ class Terminal:
             env={**os.environ, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8", "TZ": "UTC", **(environment or {})})
 
     def _own_terminal(self):
-        """Makes the pseudo-terminal the controlling terminal of the program, so that Ctrl-C, Ctrl-Z and a hang-up have
+        """Makes the pseudo-terminal the controlling terminal of the program. Ctrl-C, Ctrl-Z and a hang-up then have
         the same effect as on a real terminal."""
         os.setsid()
         fcntl.ioctl(self.slave, termios.TIOCSCTTY, 0)
@@ -44,7 +44,7 @@ class Terminal:
         os.write(self.master, keys.encode())
 
     def read(self, seconds=0.05):
-        """Reads the output of the program for this time."""
+        """Reads the output of the program for `seconds`."""
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:
             ready, _, _ = select.select([self.master], [], [], left)
@@ -80,8 +80,8 @@ class Terminal:
         return self.child.returncode
 
     def restored(self):
-        """Returns True if the cursor is visible, the first screen is shown again, and the keyboard has its initial
-        settings."""
+        """Returns True if the program has restored the terminal. The cursor must be visible, the original screen must
+        be shown, and the keyboard must have its initial settings."""
         self.read()
         shown = self.raw.rfind(b"\x1b[?25h") > self.raw.rfind(b"\x1b[?25l")
         back = self.raw.rfind(b"\x1b[?1049l") > self.raw.rfind(b"\x1b[?1049h")

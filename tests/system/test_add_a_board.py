@@ -1,4 +1,5 @@
-"""Carries out docs/how-to/add-a-board.md. The map is checked and used for exchanges, and the driver is compiled."""
+"""Carries out docs/how-to/add-a-board.md. The test checks the board map of the page, uses it for exchanges, and
+compiles the driver."""
 
 import pathlib
 import re
@@ -11,7 +12,7 @@ PAGE = bench.SOURCE / "docs" / "how-to" / "add-a-board.md"
 
 
 def block_of(path):
-    """Returns the code that the page gives for this file."""
+    """Returns the code on the page for this file."""
     found = re.search(rf"`{re.escape(path)}`:\n\n```\w+\n(.*?)```\n", PAGE.read_text(), re.DOTALL)
     if found is None:
         raise AssertionError(f"{PAGE} gives no content of {path}")

@@ -14,8 +14,8 @@ TWIN, GIVEN = "config/models/bench_twin.yaml", "config/models/zhang2025.yaml"
 
 
 def without_times(value):
-    """Returns the JSON version of a report without the values that depend on the clock, the unit, the hashes and the
-    texts."""
+    """Returns the JSON of a report without the values that differ between mm and degrees or between two runs: times,
+    units, hashes and texts."""
     if isinstance(value, dict):
         return {key: without_times(inner) for key, inner in value.items()
                 if key not in ("wall_s", "stages_s", "hash", "sha256", "output_unit", "unit")}
@@ -25,7 +25,7 @@ def without_times(value):
 
 
 def words_of(page):
-    """Returns the text of a page that a reader sees, without markup and drawing instructions."""
+    """Returns the text that a reader sees on a page, without markup and drawing instructions."""
     return html.unescape(re.sub(r"<[^>]*>", " ", re.sub(r"(?s)<style.*?</style>", "", page)))
 
 

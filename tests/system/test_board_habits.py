@@ -1,4 +1,5 @@
-"""Tests boards with peculiarities that users report. Status, events and doctor must describe these peculiarities."""
+"""Tests boards with unusual behaviour that users have reported. The status, the events and softgrip doctor must
+describe this behaviour."""
 
 import datetime
 import json
@@ -10,8 +11,8 @@ import bench
 
 
 class OneTable(socketserver.ThreadingTCPServer):
-    """A proxy for an emulator, which answers both read functions. Here only one function reads the inputs, registers 0
-    to 15."""
+    """A proxy for an emulator that answers both read functions. With the proxy, only one of these functions can read
+    the inputs, registers 0 to 15."""
     daemon_threads = allow_reuse_address = True
 
     def __init__(self, behind, function, code):
@@ -31,7 +32,7 @@ class OneTable(socketserver.ThreadingTCPServer):
 
 class BoardHabits(bench.BenchTest):
     def habit(self, kind, *arguments):
-        """Starts an emulator that has this peculiarity from the start."""
+        """Starts an emulator that has this unusual behaviour from the start."""
         emulator = self.emulator("--faults", self.write("habit.yaml", f"faults:\n  - {{name: it, kind: {kind}}}\n"),
                                  *arguments)
         emulator.ask("fault it")
@@ -90,7 +91,7 @@ class BoardHabits(bench.BenchTest):
         self.assertLess(took_s, 0.5)
 
     def board(self, name, *changes):
-        """Writes the board map of the emulator with changes as config/boards/NAME.yaml."""
+        """Writes a changed copy of the emulator's board map as config/boards/NAME.yaml."""
         text = (self.folder / "config/boards/softgrip-sim.yaml").read_text().replace("timeout_s: 0.2", "timeout_s: 2")
         for old, new in changes:
             self.assertIn(old, text)
@@ -99,11 +100,11 @@ class BoardHabits(bench.BenchTest):
         return name
 
     def described(self, port, board, session=""):
-        """Writes a rig file with this board map and these keys of the session."""
+        """Writes a rig file that uses this board map and has these additional keys for the session."""
         return self.rig(port, [(r"map: boards/adam-6024.yaml", f"map: boards/{board}.yaml"), (r"unit: 1", "unit: 1" + session)])
 
     def examined(self, described, emulated, *arguments, fault="", session="", in_front=None):
-        """Returns the report of softgrip doctor on a board that differs from its map."""
+        """Returns the report of softgrip doctor on a board that does not match its board map."""
         if fault:
             arguments += ("--faults", self.write("fault.yaml", f"faults:\n  - {{name: it, kind: {fault}}}\n"))
         emulator = self.emulator(*arguments, board=emulated)

@@ -47,7 +47,8 @@ class Offline(bench.BenchTest):
 
     def test_check_finds_everything_at_once(self):
         files = sorted((self.folder / "config").rglob("*.yaml"))
-        vacuum = [path for path in files if "vacuum" in path.parts]  # its sequence does not fit any other rig
+        # The sequence of the vacuum rig does not fit any other rig.
+        vacuum = [path for path in files if "vacuum" in path.parts]
         good = self.softgrip("check", *(path for path in files if path not in vacuum))
         self.assertIn("rig 'bench': ok", good.stdout)
         self.assertIn("rig 'vacuum_bench': ok", self.softgrip("check", *vacuum).stdout)
@@ -151,7 +152,7 @@ class Online(bench.BenchTest):
                 try:
                     written += os.read(terminal, 65536)
                 except OSError:
-                    break  # the child has closed its end
+                    break  # the program has closed the terminal
             if written.count(b"\x1b[H") >= 3 and keys:
                 os.write(terminal, keys)
                 keys = b""
@@ -161,7 +162,7 @@ class Online(bench.BenchTest):
         return written
 
     def test_the_live_view_gives_the_terminal_back(self):
-        for keys in (b"q", b"\x03"):  # the key, and Ctrl-C
+        for keys in (b"q", b"\x03"):  # the key q, and Ctrl-C
             written = self.live({}, keys)
             self.assertIn(b"displacement", written)
             self.assertTrue(written.startswith(b"\x1b[?1049h\x1b[?25l"), written[:40])
@@ -173,7 +174,7 @@ class Online(bench.BenchTest):
 
     @staticmethod
     def escapes(written):
-        """Returns the last character of every escape sequence."""
+        """Returns the last character of every escape sequence in an output."""
         for part in written.split(b"\x1b[")[1:]:
             for byte in part:
                 if 0x40 <= byte <= 0x7e:

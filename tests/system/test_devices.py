@@ -1,5 +1,5 @@
-"""Tests rig files in which the name of a device matches two devices of the computer. Every program must refuse such a
-file with exit code 3, and no finger may move."""
+"""Tests rig files in which a device name is ambiguous, because two devices of the computer match it. Every program
+must refuse such a file with exit code 3, and no finger may move."""
 
 import os
 import pathlib
@@ -30,7 +30,7 @@ class Devices(unittest.TestCase):
         return path
 
     def refused(self, command, environment=None):
-        """Returns the message of a program that refuses the rig file."""
+        """Returns the message with which a program refuses the rig file."""
         done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=bench.PATIENCE_S,
                               env={**os.environ, **(environment or {})})
         self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
@@ -54,7 +54,7 @@ class Devices(unittest.TestCase):
             self.assertEqual((self.folder / f"iio/iio:device{number}/out_voltage0_raw").read_text(), "1234\n")
 
     def plug(self, number, address, name):
-        """Adds a converter to a bus, with its link among all converters."""
+        """Adds a converter to a bus in the simulated /sys, with a link in the list of all converters."""
         node = self.folder / "hardware" / address / f"iio:device{number}"
         node.mkdir(parents=True)
         for attribute, text in (("name", name), ("out_voltage0_raw", "1234"), ("out_voltage0_scale", "0.8"),
@@ -82,7 +82,8 @@ class Devices(unittest.TestCase):
         self.assertEqual((valve / "out_voltage0_raw").read_text().split()[0], "0")
         (self.folder / "iio/iio:device0").unlink()
         other = self.plug(0, "1-0062", "mcp4725")
-        (sensors / "in_voltage0_raw").write_text("gone\n")  # the session ends
+        # This text is no number, so the session with the board ends.
+        (sensors / "in_voltage0_raw").write_text("gone\n")
         bench.wait_for("the end of the session", lambda: "no number" in log.read_text())
         (sensors / "in_voltage0_raw").write_text("8000\n")
         bench.wait_for("the refusal", lambda: re.search(
@@ -91,7 +92,8 @@ class Devices(unittest.TestCase):
         self.assertEqual((other / "out_voltage0_raw").read_text(), "1234\n")
         self.assertEqual((other / "out_voltage0_powerdown").read_text(), "1\n")
         (self.folder / "iio/iio:device0").unlink()
-        (self.folder / "iio/iio:device3").symlink_to(valve)  # the rig's converter returns with another number
+        # The converter of the rig returns with another device number.
+        (self.folder / "iio/iio:device3").symlink_to(valve)
         bench.wait_for("the next session", lambda: "Communication with the board restored" in log.read_text())
 
     @unittest.skipUnless(digital_lines.PRELOADED.exists(), "not built: a sanitizer's runtime must be loaded first")

@@ -19,7 +19,7 @@ class Doctor(bench.BenchTest):
     def test_a_healthy_rig_is_fit_and_left_vented(self):
         emulator = self.emulator()
         report, findings = self.doctor(self.rig(emulator.port), "--move", expect=None)
-        # The punctuality of a busy machine is no property of the rig.
+        # The tests may fail the punctuality checks of the doctor, because the machine may be busy.
         failed = {name for name, finding in findings.items() if finding["verdict"] == "fail"}
         self.assertLessEqual(failed, {"timer", "bus time"}, report)
         for name in ("board", "sensor left", "valve left", "finger right", "model right", "safe state"):
@@ -39,13 +39,14 @@ class Doctor(bench.BenchTest):
         self.assertIn("cable", findings["board"]["advice"])
 
     def failures(self, report):
-        """Returns the names of the failed checks, except punctuality, because the machine may be busy."""
+        """Returns the names of the failed checks. The punctuality checks are left out, because the machine may be
+        busy."""
         return [finding["name"] for finding in report["findings"]
                 if finding["verdict"] == "fail" and finding["name"] not in ("timer", "bus time", "loop")]
 
     @staticmethod
     def swapped(key, one, other):
-        """Returns changes of the rig file that swap two terminals."""
+        """Returns the changes of the rig file that swap two terminals of the board."""
         kind = "output" if key == "valve" else "input"
         return [(rf"{key}: \{{{kind}: {a}\b", f"{key}: {{{kind}: {b}")
                 for a, b in ((one, 99), (other, one), (99, other))]
@@ -106,7 +107,7 @@ class Doctor(bench.BenchTest):
         self.assertEqual(findings["sensor left"]["verdict"], "not_judged")
 
     def test_without_a_daemon_the_rig_is_named(self):
-        """The folder contains the shipped config/rig.yaml, which is the simulated rig."""
+        """The working directory contains the shipped config/rig.yaml, which describes the simulated rig."""
         self.rig(1)
         asked = self.softgrip("doctor", expect=2)
         self.assertIn("--rig RIG", asked.stderr)
@@ -153,10 +154,10 @@ class Doctor(bench.BenchTest):
 
 
 class Calibrate(bench.BenchTest):
-    """Tests softgrip calibrate. The emulator is wired like the shipped rig, and the rig file to be calibrated has other
-    values."""
+    """Tests softgrip calibrate. The emulator has the values of the shipped rig, and the rig file to be calibrated has
+    different values."""
 
-    # The real sensor and valve, from config/rig_tcp.yaml.
+    # The true values of sensor and valve, from config/rig_tcp.yaml.
     def true_mm(self, volts):
         return -5 + 5 * volts
 
@@ -211,7 +212,8 @@ class Calibrate(bench.BenchTest):
         self.assertEqual(child.returncode, 0, said)
         error = float(re.search(r"sensor: error between the points ([\d.]+) mm", out).group(1))
         sensor = self.line_in(out, "sensor")
-        # The gauge is read a moment before the averaging begins, and the finger creeps in this time.
+        # The test reads the gauge shortly before softgrip averages the sensor. The finger creeps between
+        # these two times.
         for volts in (2, 4):
             self.assertAlmostEqual(sensor(volts), self.true_mm(volts), delta=error + 0.3, msg=out)
         self.assertEqual(max(emulator.commands_kpa()), 0)
@@ -239,7 +241,7 @@ class Calibrate(bench.BenchTest):
         close = self.softgrip("calibrate", "--rig", rig, *quick, "--gauge-mm", "5", "5.1", expect=6)
         self.assertIn("too close", close.stderr)
         self.softgrip("calibrate", "--rig", rig, *quick, "--gauge-mm", "five", "6", expect=3)
-        self.softgrip("calibrate", "--rig", rig, *quick, expect=3)  # no answer
+        self.softgrip("calibrate", "--rig", rig, *quick, expect=3)  # standard input gives no answer to the question
         self.softgrip("calibrate", "--rig", rig, "--channel", "left", "--valve", expect=2)
         self.softgrip("calibrate", "--rig", rig, expect=2)  # --channel is missing
         self.assertEqual(max(emulator.commands_kpa()), 0)
@@ -297,7 +299,8 @@ class Calibrate(bench.BenchTest):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         before = rig.read_bytes()
-        # No file may grow beyond this size; restore_signals would restore the signal that ends the process.
+        # The limit of the file size makes the write fail. restore_signals=False keeps SIGXFSZ ignored,
+        # because this signal would end the process.
         done = subprocess.run([bench.SOFTGRIP, "calibrate", "--rig", rig, *self.QUICK, "--gauge-mm", "3.6", "19", "--write",
                                "--out", "-"], cwd=self.folder, capture_output=True, text=True, restore_signals=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))

@@ -1,5 +1,5 @@
-"""Tests every command with every ending. The exit code must equal the code in docs/reference/exit-codes.md, which this
-test reads."""
+"""Provokes every ending of every command. The exit code must be the one in the table of docs/reference/exit-codes.md,
+which this test reads."""
 
 import os
 import re
@@ -48,8 +48,8 @@ DESK = {
                            f"investigate --model {TWIN} --data bad.csv --rig config/rig.yaml --rig-channel left --yes "
                            "--out {out}/found", "log.csv", "found/investigation.json"),
 }
-# The commands that send requests to the daemon, each with the state that it needs. In this order, one daemon can answer
-# all commands.
+# Commands that send requests to the daemon, each with the state of the daemon that it needs. The commands are
+# in an order in which one daemon can answer all of them.
 CLIENTS = {
     "status": Command("status"),
     "sequences": Command("sequences"),
@@ -62,7 +62,8 @@ CLIENTS = {
     "acknowledge": Command("acknowledge", "acknowledge"),
     "start --wait": Command("start short.yaml --wait", "start short.yaml --wait"),
 }
-# Commands that move a rig. `{rig}` is the rig file of an emulated board, `{out}` the folder of the outputs.
+# Commands that move a rig. `{rig}` is replaced by the rig file of an emulated board, and `{out}` by the
+# folder of the outputs.
 MOTION = {
     "run": Command("run short.yaml --rig {rig} --no-socket --record {out}/rec", "run bad.yaml --rig {rig} --no-socket",
                    writes="rec"),
@@ -171,7 +172,7 @@ class Desk(bench.BenchTest):
             path = disk.folder / (command.writes or "output")
             path.parent.mkdir(exist_ok=True)
             if not command.new:
-                # an old file with content would have space for more output in its last page
+                # an empty file occupies no block of the disk, so the full disk has no space for the output
                 path.write_text("old\n" if command.writes else "")
 
         self.each("full disk", put_an_old_file)
@@ -215,7 +216,7 @@ class Clients(bench.BenchTest):
         self.write("short.yaml", SHORT)
 
     def ready_for(self, name):
-        """Brings the daemon to the state in which the command has an effect."""
+        """Brings the daemon into a state in which the command has an effect."""
         if name in ("stop", "release", "vent"):
             self.softgripd.start("pick_stone")
             if name != "stop":
@@ -272,7 +273,7 @@ class Clients(bench.BenchTest):
 
     def test_fault(self):
         self.settle()
-        # The board stops responding during a sequence for which a command waits.
+        # The board stops responding while a command waits for the end of a sequence.
         child = subprocess.Popen(Runner.words("start pick_stone --wait", ""), cwd=self.folder, stdin=subprocess.DEVNULL,
                                  stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=self.runner.environment)
         with child:
@@ -312,15 +313,15 @@ class Clients(bench.BenchTest):
         self.each("closed pipe", check)
 
     def carried_out(self, name):
-        """Checks that the motion was carried out. The sentence that reports the motion may be on either output
-        stream."""
+        """Checks that the command has moved the finger. The sentence that reports the motion may be on standard
+        output or standard error."""
         if name in ("stop", "vent", "release"):
             self.softgripd.wait_for_state("idle", "stopping", "holding")
             self.softgripd.wait_for_event("sequence_finished", since=self.since)
 
 
 class Motion(bench.BenchTest):
-    """Tests the commands that move a rig. After every ending the outputs must be safe."""
+    """Tests the commands that move a rig. Whatever the ending of a command, the outputs must be safe afterwards."""
 
     def setUp(self):
         super().setUp()
@@ -334,8 +335,8 @@ class Motion(bench.BenchTest):
         self.count = 0
 
     def use_rested_fingers(self):
-        """Uses another rig with rested fingers, because a finger creeps for a minute after a pressure, and doctor
-        compares its motion with the model."""
+        """Starts a new rig with rested fingers. A finger creeps for a minute after a pressure, and doctor compares
+        the motion of the finger with the model."""
         self.board = self.emulator("--faults", self.faults)
         self.rig_path = self.rig(self.board.port)
 
@@ -343,7 +344,7 @@ class Motion(bench.BenchTest):
         exit_codes.each(self, MOTION, ending, check)
 
     def line(self, command, out="out"):
-        """Returns the words of the command, with its own rig and folders."""
+        """Returns the words of the command line, with the rig file and the folders of this test."""
         self.use_rested_fingers()
         self.count += 1
         (self.folder / out / str(self.count)).mkdir()
@@ -356,7 +357,7 @@ class Motion(bench.BenchTest):
         self.assertLess(max(self.board.commands_kpa()), 0.1, f"{name} has ended, and a finger is under pressure")
 
     def working(self, line, **keys):
-        """Starts the command and returns it after it has raised a pressure."""
+        """Starts the command and returns its process as soon as it has raised a pressure."""
         child = subprocess.Popen(Runner.words(line, ""), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                  stderr=subprocess.PIPE, env=self.runner.environment, **keys)
         self.addCleanup(child.kill)
@@ -395,7 +396,7 @@ class Motion(bench.BenchTest):
         self.each("fault", check)
 
     def test_fault_with_safe_outputs(self):
-        """The sensor of a finger under pressure fails, and the board still responds."""
+        """While a finger is pressurised, its sensor fails. The board still responds."""
         for name, (_, cell) in exit_codes.motion_faults().items():
             with self.subTest(name):
                 child = self.working(self.line(MOTION[name]))
@@ -438,7 +439,8 @@ class Motion(bench.BenchTest):
 
     def test_closed_pipe(self):
         def check(name, command, cell):
-            for ignored in (False, True) if name != "baseline --rig" else (False,):  # its experiments take 2 minutes
+            # The experiments of baseline --rig take 2 minutes, so it runs only once.
+            for ignored in (False, True) if name != "baseline --rig" else (False,):
                 done = self.runner.unread(self.line(command), ignored)
                 self.ended(done, "4" if ignored else cell, signal.SIGPIPE)
                 self.check_safe(name)

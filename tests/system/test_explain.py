@@ -1,5 +1,5 @@
-"""Tests softgrip diagnose --explain: the comparisons for every reported cause, by run and by cause, on the screen and
-in the files."""
+"""Tests softgrip diagnose --explain, which prints the comparisons behind every reported cause, by run and by cause.
+Checks the screen and the files."""
 
 import json
 

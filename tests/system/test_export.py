@@ -1,5 +1,5 @@
-"""Tests softgrip export with readers from other projects, and the files that identify, validate and diagnose write for
-each log."""
+"""Tests softgrip export with readers of other projects. Also tests the files that identify, validate and diagnose
+write for each log."""
 
 import csv
 import json
@@ -18,7 +18,7 @@ import mcap_reading
 MODEL = "config/models/bench_twin.yaml"
 
 HERE = pathlib.Path(__file__).resolve().parent
-# The folder into which scripts/mcap_reader.sh installs what HERE/mcap pins.
+# The folder into which scripts/mcap_reader.sh installs the packages that HERE/mcap pins.
 READER = bench.BUILD.parent / "mcap"
 
 
@@ -35,7 +35,7 @@ def same(test, got, wanted):
 
 
 class Signals(bench.BenchTest):
-    """A recording of two fingers. One finger has a missing reading and a text."""
+    """A recording of two fingers. One finger has a missing reading, and a state whose text contains a comma."""
 
     def setUp(self):
         super().setUp()
@@ -116,7 +116,8 @@ class Signals(bench.BenchTest):
                 mcap_reading.read(path)
 
     def read_by_its_own_reader(self, path):
-        """If npm cannot reach a registry, the script has left the reason in a file."""
+        """Reads a file with the MCAP reader of its authors. If npm could not reach a registry when the reader was
+        installed, scripts/mcap_reader.sh has written the reason to the file `unreachable`."""
         if (READER / "unreachable").exists():
             self.skipTest((READER / "unreachable").read_text().strip())
         self.assertTrue((READER / "node_modules/@mcap/core").is_dir(), "bash scripts/mcap_reader.sh installs @mcap/core")
@@ -259,7 +260,7 @@ int main(void) {
   return 0;
 }
 """
-# Every block that has C code, with parameters that have an effect.
+# A model with every block that has C code. The parameters are chosen so that each block has an effect.
 EVERYTHING = """name: every thing
 source: "a test"
 valve:
@@ -279,7 +280,7 @@ RATE_HZ, SECONDS = 1000, 60
 
 
 def wave_kpa(t):
-    """Returns a command of sines of two frequencies, ramps, a jump and holds."""
+    """Returns a command that consists of sines of two frequencies, ramps, a jump and holds."""
     if t < 10:
         return 20 * (1 - math.cos(2 * math.pi * 0.4 * t))
     if t < 25:
@@ -292,10 +293,10 @@ def wave_kpa(t):
 
 
 class ExportedC(bench.BenchTest):
-    """How an exported model is compiled and run, and what `softgrip simulate` gives for the same commands."""
+    """Compiles and runs exported models, and gets the result of `softgrip simulate` for the same commands."""
 
     def compiled(self, driver, model, *arguments):
-        """Compiles the program of an exported model. The compiler must give no warning with any option."""
+        """Compiles the program of an exported model. The compiler must print no warning."""
         done = self.softgrip("export", model, "--out", "model.c", "--rate-hz", RATE_HZ, "--json", *arguments)
         told = json.loads(done.stdout)
         self.write("driver.c", driver.replace("NAME", told["function"].removesuffix("_step")))
@@ -321,7 +322,8 @@ class ExportedC(bench.BenchTest):
 
     @staticmethod
     def wanted():
-        """Out in two seconds, then to and fro within what creep lets be reached above 0 kPa."""
+        """Returns a displacement that rises to 5 mm in two seconds and then oscillates. Despite the creep of the
+        finger, pressures above 0 kPa can reach it."""
         return [min(2.5 * t, 5.0) + (2 * (1 - math.cos(2 * math.pi * 0.3 * (t - 2))) if t > 2 else 0.0)
                 for t in (i / RATE_HZ for i in range(1, 20 * RATE_HZ))]
 
@@ -423,10 +425,10 @@ end
 
 @unittest.skipUnless(shutil.which("mkoctfile"), "mkoctfile is missing: Debian's octave-dev")
 class CModelInOctave(ExportedC):
-    """examples/matlab/softgrip_mex.c, compiled as docs/how-to/export.md states."""
+    """Compiles examples/matlab/softgrip_mex.c as docs/how-to/export.md states."""
 
     def octave(self, model):
-        """Exports, compiles and calls a model; returns True if it has an inverse."""
+        """Exports, compiles and calls a model. Returns True if the exported model has an inverse."""
         page = (bench.SOURCE / "docs/how-to/export.md").read_text(encoding="utf-8")
         command = next(line.partition("#")[0] for line in page.splitlines() if line.startswith("mkoctfile"))
         shutil.copy(bench.SOURCE / "examples/matlab/softgrip_mex.c", self.folder)

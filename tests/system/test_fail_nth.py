@@ -1,5 +1,5 @@
-"""Lets the Nth call of a function fail, for every N until a run succeeds. This test runs the part that takes less than
-a minute; scripts/fail_nth.sh runs all scenarios."""
+"""Makes the Nth call of a function fail, for N = 1, 2, 3 and so on until a run succeeds. This test runs the part that
+takes less than a minute; scripts/fail_nth.sh runs all scenarios."""
 
 import unittest
 

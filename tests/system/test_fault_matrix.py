@@ -1,4 +1,5 @@
-"""Runs the part of the fault matrix that belongs to every test run: one cell of every group in every relevant phase.
+"""Runs a part of the fault matrix in every test run: one fault of every group of faults, in every phase in which it
+can have an effect.
 
 scripts/fault_matrix.sh runs all cells.
 """

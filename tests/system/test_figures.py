@@ -1,4 +1,4 @@
-"""Tests the figures of reports and of softgrip plot."""
+"""Tests the figures in reports and the figures of softgrip plot."""
 
 import csv
 import pathlib

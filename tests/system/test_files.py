@@ -1,5 +1,5 @@
-"""Tests the files that a command reads and writes. A command must not overwrite its own input, wait for a pipe, fill
-the memory because of a small file, or open another file to which its input file refers."""
+"""Tests the files that a command reads and writes. A command must not overwrite its own input or wait for a pipe. It
+must not fill the memory because of a small file. It must not open another file to which its input file refers."""
 
 import gzip
 import json
@@ -18,8 +18,8 @@ from bench_files import TWIN
 
 class Overwriting(bench_files.Files):
     def refused(self, line, input_path, program=bench.SOFTGRIP):
-        """Checks that the command refuses the output and that its input is unchanged, also through a symbolic link and
-        a hard link."""
+        """Checks that the command refuses an output path that is its input, a symbolic link to its input or a hard
+        link to its input. The input must stay unchanged."""
         path = self.folder / input_path
         before = path.read_bytes()
         with self.subTest(line):
@@ -74,7 +74,8 @@ class Overwriting(bench_files.Files):
                      "--out found", "found/step_1/log.csv")
 
     def test_what_is_continued_is_no_input(self):
-        """A command may overwrite the column mapping of the same log and append to stored scores."""
+        """import may overwrite the column mapping that it has read, and health may append to the scores that it has
+        read."""
         self.softgrip("import", "log.csv", "--yes", "--out", "again.csv")
         self.write("raw.csv", (self.folder / "log.csv").read_text().replace("time_s,pressure_command_kpa,displacement_mm",
                                                                            "t [s],set [kPa],tip [mm]"))
@@ -92,7 +93,8 @@ class Overwriting(bench_files.Files):
 
 
 class Pipes(bench_files.Files):
-    """A pipe without a writer replaces an input file. A command that waits for the pipe would never end."""
+    """A pipe replaces an input file. No process writes to the pipe, so a command that waits for the pipe would never
+    end."""
 
     def test_inputs(self):
         self.record()
@@ -132,19 +134,20 @@ class Pipes(bench_files.Files):
         self.assertNotIn("health", json.loads(self.softgrip("status", "--json").stdout))
         page = web.Web(self.folder)
         self.processes.append(page)
-        for _ in range(20):  # more requests than threads
+        for _ in range(20):  # the number of requests exceeds the number of threads
             self.assertEqual(page.ask("/metrics", token=web.LOOK)[0], 200)
             self.assertEqual(page.ask("/recordings/0/run.csv", token=web.LOOK)[0], 404)
         self.assertEqual(page.command("vent")[0], 200)
-        shutil.rmtree(self.folder / "runs/0")  # it was no recording
+        # The folder runs/0 is no valid recording, so it is removed before the check of the recordings.
+        shutil.rmtree(self.folder / "runs/0")
 
 
 def compressed_matrix(name, rows, data):
-    """Returns an element of a .mat file of version 5, which is a compressed column of doubles whose header states
-    `rows`."""
+    """Returns a compressed element of a .mat file of version 5. The element is a column of doubles, and its header
+    states `rows` rows."""
     def element(kind, content):
         return struct.pack("<II", kind, len(content)) + content + bytes(-len(content) % 8)
-    flags = element(6, struct.pack("<II", 6, 0))  # class double
+    flags = element(6, struct.pack("<II", 6, 0))  # class number of a double matrix
     size = element(5, struct.pack("<ii", rows, 1))
     body = flags + size + element(1, name.encode()) + struct.pack("<II", 9, 8 * rows)
     packer = zlib.compressobj(9)
@@ -154,7 +157,7 @@ def compressed_matrix(name, rows, data):
 
 
 class Bombs(bench_files.Files):
-    """Tests small files whose uncompressed content is larger than any memory."""
+    """Tests small compressed files. Their uncompressed content is larger than the memory of any machine."""
 
     def packed(self, rows, times):
         with open(self.folder / "bomb.csv.gz", "wb") as file, gzip.GzipFile("", "wb", 9, file, 0) as text:
@@ -181,7 +184,8 @@ class Bombs(bench_files.Files):
                       self.limited("import", "bomb.csv.gz", "--yes", "--out", "x.csv", code=3))
 
     def test_workbooks(self):
-        """A sheet of 600 MB, a sheet with more cells than memory, and strings that many cells repeat."""
+        """Tests a sheet of 600 MB, a sheet with more cells than the memory can hold, and long strings that many cells
+        repeat."""
         cells = "<c><v>1</v></c>" * 4
         huge = f"<worksheet><sheetData><row>{cells}{' ' * (600 << 20)}</row></sheetData></worksheet>"
         many = f"<worksheet><sheetData>{'<row/>' * 20_000_000}</sheetData></worksheet>"
@@ -199,7 +203,7 @@ class Bombs(bench_files.Files):
         header = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x0100, 0x4D49)
         small = b"".join(compressed_matrix(name, 50, [struct.pack("<50d", *(i * scale for i in range(50)))])
                          for name, scale in (("time_s", 0.1), ("pressure_command_kpa", 1), ("displacement_mm", 0.5)))
-        # Samples that the file contains, and samples that only its header announces.
+        # In the first file, all samples are present. In the second file, only the header announces samples.
         for large in (compressed_matrix("bomb", 100 << 20, zeros), compressed_matrix("bomb", 500 << 20, [])):
             (self.folder / "bomb.mat").write_bytes(header + small + large)
             self.assertLess((self.folder / "bomb.mat").stat().st_size, 2 << 20)
@@ -208,7 +212,8 @@ class Bombs(bench_files.Files):
             self.assertEqual(len((self.folder / "from_mat.csv").read_text().splitlines()), 51)
 
     def test_matlab_cells(self):
-        """Each empty cell takes 8 bytes of the file, almost nothing when compressed, but an object of libmatio."""
+        """An empty cell takes 8 bytes of the file and almost no bytes after compression. In memory, it takes an
+        object of libmatio."""
         header = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x0100, 0x4D49)
         body = (struct.pack("<IIII", 6, 8, 1, 0) + struct.pack("<IIii", 5, 8, 500_000_000, 1) + struct.pack("<II", 1, 4) +
                 b"bomb" + bytes(4 + (100 << 20)))
@@ -231,7 +236,7 @@ class Bombs(bench_files.Files):
 
 
 class OtherFiles(bench_files.Files):
-    """Tests HDF5 files that refer to other files, whose content must not get into the log."""
+    """Tests HDF5 files that refer to other files. The content of these other files must not get into the log."""
 
     def setUp(self):
         super().setUp()
@@ -269,7 +274,7 @@ class OtherFiles(bench_files.Files):
             file["data"] = [float(i) for i in range(50)]
         with h5py.File(self.folder / "a.h5", "w") as file:
             self.columns(file)
-            file["displacement_mm"] = h5py.SoftLink("/#hidden/data")  # names with # are not listed
+            file["displacement_mm"] = h5py.SoftLink("/#hidden/data")  # a list of columns does not show names with #
             file["#hidden"] = h5py.ExternalLink(str(self.folder / "other.h5"), "/")
         said = self.limited("import", "a.h5", "--yes", "--out", "stolen.csv", code=3)
         self.assertIn("no column looks like a displacement", said)

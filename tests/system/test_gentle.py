@@ -1,5 +1,4 @@
-"""Tests gentle grips. A part at any place must be held with a gripping pressure that does not exceed the limit of the
-recipe."""
+"""Tests gentle grips. Wherever a part is, its gripping pressure must not exceed the limit of the recipe."""
 
 import csv
 import pathlib
@@ -21,8 +20,8 @@ class Gentle(bench.BenchTest):
                 self.assertEqual(gripping.broken(trial, judged, gripping.bound_kpa(gripping.recipe(trial))), [])
 
     def squeezed_kpa(self, truth):
-        """Returns the pressure above the pressure that the free finger needs at the same place. The part is rigid, so
-        only the last place counts."""
+        """Returns the largest gripping pressure. It is the pressure minus the pressure that the free finger needs for
+        the same displacement. The part is rigid, so only samples at its position count."""
         with open(truth, newline="") as file:
             rows = [row for row in csv.DictReader(file) if float(row["displacement_mm"]) > self.at_mm - 0.05]
         self.assertTrue(rows)
@@ -42,7 +41,8 @@ class Gentle(bench.BenchTest):
         daemon.end()
         emulated.end()
         allowed_kpa = gripping.bound_kpa((self.folder / "config/sequences/pick_stone.yaml").read_text())
-        # On a busy machine readings may be old, and the motion since the last reading is unknown.
+        # On a busy machine, a reading may be old. The finger may have moved since then, so the limit has an
+        # additional tolerance of 2 kPa.
         self.assertLess(self.squeezed_kpa(truth), allowed_kpa + 2)
 
     def test_a_hold_ends_when_its_release_is_asked_for(self):

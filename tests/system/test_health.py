@@ -1,4 +1,5 @@
-"""Tests softgrip health on recordings of softgrip run. It must find the change of a finger from its ordinary grips."""
+"""Tests softgrip health on recordings of softgrip run. The command must detect that a finger has changed from
+recordings of ordinary grips."""
 
 import datetime
 import json
@@ -17,7 +18,7 @@ def day(number, hour=8):
 
 
 class Health(bench.BenchTest):
-    """Recordings of 12 days with 2 grips per day. The left finger changes from the ninth day on."""
+    """Writes recordings of 12 days with 2 grips per day. From the ninth day on, the left finger is changed."""
 
     @classmethod
     def setUpClass(cls):
@@ -132,7 +133,7 @@ class Health(bench.BenchTest):
         self.assertEqual(fingers["left"]["grips"], 24)
         result = json.loads((self.folder / "out/health.json").read_text())
         self.assertEqual([one["run"] for one in result["skipped"]], [bad.name])
-        # A recording that was scored is not scored again.
+        # The command must not score a recording a second time.
         self.assertEqual(len((self.folder / "out/health-scores.jsonl").read_text().splitlines()), 48)
 
     def test_what_cannot_be_compared_is_refused(self):
@@ -148,8 +149,8 @@ class Health(bench.BenchTest):
 
 
 class Told(web.WebTest):
-    """Tests that every program that reads the last result shows it. The service writes this result next to the
-    recordings."""
+    """Tests that every program that reads the last result of softgrip health shows it. The service writes this result
+    next to the recordings."""
 
     def judge(self):
         at_work = working_life.Rig(bench.SOFTGRIP, self.folder / "at_work")

@@ -1,6 +1,6 @@
-"""Tests that a vent request is carried out regardless of other clients and resources: floods, pipelined commands, many
-silent clients, clients that stop reading, files that never respond, a full disk, and a reader that hangs.
-scripts/vent_times.py repeats the tests of Hearing that vent and prints the longest time.
+"""Tests that the daemon carries out a vent request under all disturbances. The disturbances are floods of requests,
+pipelined commands, many silent clients, clients that stop reading, files that never respond, a full disk, and a log
+reader that hangs. scripts/vent_times.py repeats the tests of Hearing that vent and prints the longest time.
 """
 
 import json
@@ -20,11 +20,11 @@ import bench
 import fail_nth
 import soak_disturbances
 
-# Longest time from the client's request to the written output. A busy machine may lengthen this time, but other clients
-# must not.
+# Longest permitted time [s] from the client's request to the written output. A busy machine may lengthen the
+# measured time. Other clients must not lengthen it.
 VENT_BOUND_S = 0.5
 
-# A client that sends these lines, prints when it has sent them, and reads nothing.
+# A client program that sends the given lines. It prints "said" after it has sent them, and reads nothing.
 CLIENT = """
 import socket, sys, time
 client = socket.socket(socket.AF_UNIX)
@@ -38,14 +38,14 @@ except TimeoutError:
 print("said", flush=True)
 time.sleep(600)
 """
-# What the clients send before they stop: half a line, requests whose answers nobody reads, and subscriptions to events
-# and values that nobody reads.
+# Lines that the clients send before they stop: half of a line, requests whose answers they do not read, and
+# subscriptions to events and values that they do not read.
 LAST_WORDS = (('{"command":"ve', 1), ('{"command":"events","limit":1000}\n', 10_000),
               ('{"command":"subscribe","since":0}\n{"command":"watch","rate_hz":50}\n', 1))
 
 
 class Hearing(bench.BenchTest):
-    waited_s = {}  # the times of all vents, by the name of the test
+    waited_s = {}  # measured times of all vents, by the name of the test
 
     def setUp(self):
         super().setUp()
@@ -87,7 +87,7 @@ class Hearing(bench.BenchTest):
         self.addCleanup(self.stop_.set)
 
     def flood(self, line, reads=True):
-        """A client that sends as fast as it can, and reads its answers equally fast or never."""
+        """A client that sends as fast as it can. It reads its answers at the same speed, or does not read them."""
         client = self.raw()
         client.settimeout(0.2)
 
@@ -142,8 +142,8 @@ class Hearing(bench.BenchTest):
         self.check_vent()
 
     def paused_clients(self, each):
-        """Starts processes that send their last line and are then stopped, as by a debugger, a closed laptop or a full
-        pipe."""
+        """Starts client processes that send their last line and are then stopped. A debugger, a closed laptop or a
+        full pipe can stop a process in this way."""
         for words, times in LAST_WORDS:
             for _ in range(each):
                 client = subprocess.Popen([sys.executable, "-c", CLIENT, self.daemon_.socket_path, words, str(times)],
@@ -166,7 +166,7 @@ class Hearing(bench.BenchTest):
         self.check_vent()
 
     def test_on_a_full_disk(self):
-        """The disk becomes full in the middle of a recording, and is still full when the next recording would begin."""
+        """The disk becomes full in the middle of a recording. It is still full at the start of the next recording."""
         disk = soak_disturbances.Runs(self.folder)
         self.addCleanup(disk.end)
         if not disk.mounted:
@@ -182,7 +182,7 @@ class Hearing(bench.BenchTest):
         self.assertEqual(self.daemon_.end(), 0)
 
     def serving_s(self):
-        """Returns the processor time [s] of the thread that serves clients."""
+        """Returns the processor time [s] of the daemon's thread that serves clients."""
         for task in pathlib.Path(f"/proc/{self.daemon_.child.pid}/task").iterdir():
             fields = (task / "stat").read_text()
             if "(softgrip-serve)" in fields:
@@ -214,7 +214,7 @@ class Hearing(bench.BenchTest):
 
     @unittest.skipUnless(fail_nth.SHIM.exists(), "the shim is not built: a sanitizer's runtime must be loaded first")
     def test_a_disk_that_does_not_answer(self):
-        """A file on a mount whose server is gone: open() does not return."""
+        """Simulates a file on a network disk whose server does not respond. open() of this file never returns."""
         shutil.copy(self.folder / "config/sequences/pick_stone.yaml", self.folder / "config/sequences/lost.yaml")
         self.assertEqual(self.daemon_.end(), 0)
         self.daemon_ = self.daemon(self.folder / "config/test_rig.yaml",
@@ -268,7 +268,8 @@ class Ending(bench.BenchTest):
         self.addCleanup(daemon.wait)
         self.addCleanup(daemon.kill)
         bench.wait_for("the socket", lambda: (self.folder / "softgripd.sock").exists())
-        # O_NONBLOCK is set on this descriptor only; the daemon's descriptor must block.
+        # This descriptor has its own flags. So O_NONBLOCK does not apply to the daemon's descriptor, which
+        # must block.
         filler = os.open(f"/proc/self/fd/{writer}", os.O_WRONLY | os.O_NONBLOCK)
         os.close(writer)
         try:
@@ -292,10 +293,12 @@ class AnotherMaster(bench.BenchTest):
             daemon.wait_for_event("grip_result", code="HOLDING", channel=channel)
         other = socket.create_connection(("127.0.0.1", emulator.port))
         self.addCleanup(other.close)
-        # FC16: sets outputs 10 and 11 to 0 again and again, like a script that somebody forgot to stop.
+        # Sends FC16 requests that set outputs 10 and 11 to 0, in a loop. A script that somebody has forgotten
+        # to stop could do this.
         frame = bytes([0, 1, 0, 0, 0, 11, 1, 16, 0, 10, 0, 2, 4, 0, 0, 0, 0])
-        # If one of its writes falls between a write of the daemon and its read-back, the daemon sees an output that was
-        # not set. The first code is then F302, and the outputs are held.
+        # A write of this client may fall between a write of the daemon and its read-back. The daemon then
+        # reads an output that it has not written. In this case the first fault is F302, and the outputs are
+        # held.
         codes = []
         began = time.monotonic()
         while time.monotonic() - began < 5 and "F304" not in codes:

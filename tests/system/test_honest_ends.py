@@ -1,4 +1,4 @@
-"""Tests that a person and a program can see that a check failed."""
+"""Tests that a failed check is visible to a person, in the output, and to a program, in the exit code."""
 
 import bench
 import terminal

@@ -1,5 +1,5 @@
-"""Tests softgrip import as a user sees it: the table of external files, the questions, the stored answers, and the
-refusals."""
+"""Tests softgrip import as a user sees it: the imports of external files, the questions of the command, the stored
+answers, and the refusals."""
 
 import json
 import os

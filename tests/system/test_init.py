@@ -11,7 +11,7 @@ import bench
 
 
 class Terminal:
-    """softgrip on a pseudo-terminal."""
+    """Runs softgrip on a pseudo-terminal."""
 
     def __init__(self, test, *arguments):
         self.master, slave = pty.openpty()
@@ -41,7 +41,8 @@ class Terminal:
             self.said += said.replace("\r\n", "\n")
 
     def answer(self, question, text):
-        """Waits for a matching question and answers it. Returns the output since the last answer."""
+        """Waits for a question that matches the pattern and answers it. Returns the output since the previous
+        answer."""
         self.read_until(lambda: re.search(rf"\? [^\n]*{question}[^\n]*: $", self.said))
         said, self.said = self.said, ""
         os.write(self.master, text.encode() + b"\n")

@@ -1,5 +1,6 @@
-"""Tests softgrip investigate if the experiment is not as assumed: the finger touches an object, or the rig plays
-another signal. In both cases the command must end with exit code 6 and must not use the recording as evidence."""
+"""Tests softgrip investigate with an experiment that the rig cannot carry out as planned. Either the finger touches
+an object, or the rig plays a signal that differs from the command. In both cases the command must end with exit code
+6 and must not use the recording as evidence."""
 
 import json
 import shlex
@@ -9,11 +10,11 @@ import bench
 
 GIVEN = "config/models/bench_twin.yaml"
 FINGER = "config/models/finger.yaml"
-# The pressure rises and falls once. Afterwards the finger is softer, but the log also fits a sensor that has drifted or
-# has a wrong scale.
+# The pressure rises and falls once. The finger is softer than the given model. However, the log also fits a
+# sensor with a drift or with a wrong scale.
 CORNERS = ((0, 0), (1, 0), (7, 45), (13, 0), (16, 0))
 RATE_HZ, NOISE_MM, NOISES, LONGEST_MINUTES = 25, "0.15", range(1, 17), 1
-# The rig behind --rig-command, which consists of a finger and a regulator that changes the command.
+# A program for --rig-command. It changes the command with the function CHANGE and simulates a finger with the result.
 PLAYER = """
 import csv, subprocess, sys
 with open(sys.argv[1], newline="") as file:
@@ -40,8 +41,8 @@ class Investigation(bench.BenchTest):
         self.assertTrue(any(map(self.asks, NOISES)), "for none of these logs an experiment is suggested")
 
     def asks(self, seed):
-        """Writes log.csv with this noise. Returns True if a short experiment would separate the causes that explain the
-        log."""
+        """Writes log.csv with this noise. Returns True if a short experiment can separate the causes that explain the
+        log equally well."""
         self.softgrip("simulate", "--model", FINGER, "--input", "load.csv", "--out", "log.csv", "--noise-mm", NOISE_MM,
                       "--seed", seed)
         told = json.loads(self.softgrip("diagnose", "--model", GIVEN, "--data", "log.csv", "--no-closed-loop", "--out",
@@ -65,7 +66,7 @@ class Investigation(bench.BenchTest):
         self.assertIn(told["why"], page)
 
     def simulated(self, about):
-        """Writes the rig of config/rig.yaml with this finger. `about` replaces the stones in the file."""
+        """Writes a rig file like config/rig.yaml with this finger. `about` replaces the stones in the file."""
         text = (self.folder / "config/rig.yaml").read_text()
         stone = "\n        object: {position_mm: 12, yielding: 0.1}    # a stone between the fingers"
         self.assertIn(stone, text)

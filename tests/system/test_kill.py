@@ -1,5 +1,5 @@
-"""Kills the daemon with kill -9 in the middle of a grip. The board must vent, and the recording must be complete except
-for at most the last second."""
+"""Kills the daemon with kill -9 in the middle of a grip. The board must vent, and at most the last second of the
+recording may be missing."""
 
 import json
 import random
@@ -8,7 +8,7 @@ import time
 import bench
 import kill_nine
 
-WATCHDOG_S = 0.5  # of the board map
+WATCHDOG_S = 0.5  # time-out of the watchdog in the board map
 
 
 class Kill(bench.BenchTest):
@@ -25,7 +25,7 @@ class Kill(bench.BenchTest):
         daemon.kill()
         killed = time.monotonic()
         bench.wait_for("vented valves", lambda: max(emulator.commands_kpa()) == 0)
-        # The emulator is asked every 20 ms; the rest is a margin for a busy machine.
+        # The test asks the emulator every 20 ms. The rest of the 0.5 s is a margin for a busy machine.
         self.assertLess(time.monotonic() - killed, WATCHDOG_S + 0.5)
         self.assertTrue(emulator.status()["watchdog_tripped"])
 
@@ -54,8 +54,8 @@ class Kill(bench.BenchTest):
         self.assertEqual(again.status()["state"], "idle")
 
     def test_after_a_free_stroke_the_next_daemon_grips_again(self):
-        """The creep of a finger after its last pressure is unknown to a new daemon. The daemon learns the creep from a
-        stroke without a part."""
+        """A new daemon does not know the creep that a previous pressure has left in the finger. The daemon learns the
+        creep from a stroke without a part."""
         self.creep_faster()
         emulator = self.emulator("--object", "stone")
         rig = self.rig(emulator.port)
@@ -80,7 +80,7 @@ class Kill(bench.BenchTest):
         self.assertEqual(grip(), "HOLDING")
 
     def test_at_random_moments(self):
-        """Runs a few kills at random moments; scripts/kill_nine.sh runs a hundred."""
+        """Runs a few kills at random times. scripts/kill_nine.sh runs a hundred kills."""
         seed = random.SystemRandom().randrange(1 << 31)
         print(f"seed {seed}")
         for number in range(4):

@@ -1,5 +1,5 @@
-"""Tests a server that sends lines that softgripd never sends. Each command must report this in a sentence and end with
-exit code 4, and a gateway must continue as without a daemon."""
+"""Tests the programs with a server that sends lines that softgripd never sends. Each command must report such a line
+in a sentence and end with exit code 4. A gateway must behave as without a daemon."""
 
 import contextlib
 import json
@@ -32,7 +32,7 @@ HELLO = {"api": 1, "version": "1", "capabilities": ["start_id"]}
 
 
 class FakeDaemon:
-    """Answers each request with `answer(request)`: bytes, or None for an endless line."""
+    """Serves requests. `answer(request)` returns the bytes of the answer, or None for a line that never ends."""
 
     def __init__(self, path, answer):
         self.answer = answer
@@ -89,8 +89,8 @@ class Commands(bench.BenchTest):
         self.assertGreater(daemon.connections, len(COMMANDS))
 
     def test_behind_a_good_hello(self):
-        """A sequence that may have started is stopped by its id over a new connection, whatever the first connection
-        answered."""
+        """A sequence may have started although the answer is malformed. The client must stop this sequence by its id,
+        over a new connection."""
         said = b""
         def answer(request):
             if request["command"] == "hello":
@@ -123,7 +123,7 @@ class Commands(bench.BenchTest):
 
 
 class Gateways(bench.BenchTest):
-    """Tests that a gateway treats a malformed line as a lost connection and connects again."""
+    """Tests that a gateway treats a malformed line like a lost connection and connects a second time."""
 
     def setUp(self):
         super().setUp()

@@ -1,4 +1,5 @@
-"""Tests that a board has only one Modbus client at a time, and that a process ends in order after a signal."""
+"""Tests that a board accepts only one Modbus client at a time. Also tests that a program that receives a signal
+releases the board before it ends."""
 
 import os
 import pathlib
@@ -16,7 +17,7 @@ ENDING = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.S
 
 class Masters(bench.BenchTest):
     def second_rig(self, rig):
-        """Writes a second rig file with the same board and another socket."""
+        """Writes a second rig file with the same board and a different socket."""
         text = rig.read_text().replace("softgripd.sock", "second.sock")
         path = rig.with_name("second.yaml")
         path.write_text(text)
@@ -97,7 +98,8 @@ class Masters(bench.BenchTest):
 
 @unittest.skipUnless(os.geteuid() == 0, other_user.NEEDS_ROOT)
 class OtherUsers(bench.BenchTest):
-    """Another user of the machine occupies the name of the board's lock. The board has no watchdog."""
+    """Another user of the machine occupies the name that the program uses to lock the board. The board has no
+    watchdog."""
 
     HOLDERS = {"listens": 5, "lets nobody in": 0, "does not listen": None}
 
@@ -185,7 +187,8 @@ class OtherUsers(bench.BenchTest):
         second = self.rig_path.with_name("second.yaml")
         second.write_text(self.rig_path.read_text().replace("softgripd.sock", "second.sock"))
         program = self.folder / "softgripd"
-        program.write_bytes(bench.SOFTGRIPD.read_bytes())  # the build may be in a folder that other users cannot read
+        # Copies the program, because other users may not be able to read the folder of the build.
+        program.write_bytes(bench.SOFTGRIPD.read_bytes())
         program.chmod(0o755)
         other = subprocess.run([program, "--config", second], user=other_user.NOBODY, group=other_user.NOBODY,
                                extra_groups=[], cwd=self.folder, capture_output=True, text=True,

@@ -22,7 +22,7 @@ class Mbpoll(bench.BenchTest):
 
     def test_reads_inputs_with_either_function_and_writes_outputs(self):
         emulator = self.emulator("--watchdog-s", "0", "--noise-mm", "0", "--pressure-noise-kpa", "0")
-        one_volt = round((1 + 10) / 20 * 65535)  # 0 mm on a sensor of -5 to 45 mm over 0-10 V
+        one_volt = round((1 + 10) / 20 * 65535)  # reading of 1 V: with 0 to 10 V for -5 to 45 mm, 1 V means 0 mm
         zero_volts = round(10 / 20 * 65535)
         expected = [one_volt, one_volt, zero_volts, zero_volts, zero_volts, zero_volts]
         for table in ("3", "4"):

@@ -13,7 +13,7 @@ PROMETHEUS, PROMTOOL = "/usr/bin/prometheus", "/usr/bin/promtool"
 
 
 class Prometheus(bench.Process):
-    """A real Prometheus that reads every second, on its own free port."""
+    """A Prometheus server on its own free port that reads the metrics every second."""
 
     def __init__(self, folder, port, target, rules):
         config = folder / "prometheus.yml"

@@ -1,4 +1,4 @@
-"""Repeats the session of docs/how-to/a-morning.md; the screen must show what the page says."""
+"""Carries out the session of docs/how-to/a-morning.md. The screen must show the same text as the page."""
 
 import subprocess
 import sys

@@ -1,6 +1,6 @@
-"""Tests that commands that move a rig without a daemon follow the same rule as the daemon: no pressure rises after a
-gap in which the board has vented, or without a sensor that the motion needs. The commands must then end with the
-corresponding exit code."""
+"""Tests commands that move a rig without a daemon. They must follow the same rule as the daemon: after a gap in which
+the board has vented, no pressure may rise. The same holds if a sensor fails that the motion needs. The command must
+then end with the exit code for this fault."""
 
 import json
 import re
@@ -9,17 +9,18 @@ import time
 
 import bench
 
-WATCHDOG_S = 0.5  # of the board map
+WATCHDOG_S = 0.5  # time-out of the watchdog in the board map
 PAUSE_S = 1.2
-NOISE_KPA = 0.05  # the board's resolution
-# The fault file of all tests here; each test begins its own fault.
+NOISE_KPA = 0.05  # resolution of the board's outputs
+# The faults file for all tests in this module. Each test switches one of these faults on.
 FAULTS = """faults:
   - {name: requests_lost, kind: lost_request, for_s: 0.7}
   - {name: replies_lost, kind: no_reply, for_s: 0.7}
   - {name: blind, kind: sensor_out_of_range, channel: left}
 """
 CALIBRATE = ("calibrate", "--channel", "left", "--average-s", "0.3")
-# Commands that move the left finger, each with its exit code if the board has vented.
+# Commands that move the left finger, each with the required exit code for a motion during which the board has
+# vented.
 MOTIONS = {
     "calibrate": ((*CALIBRATE, "--valve", "--move", "--settle-s", "1"), 4),
     "doctor": (("doctor", "--move", "--json"), 6),
@@ -48,7 +49,7 @@ class MotionTest(bench.BenchTest):
         bench.wait_for(f"{kpa} kPa", reached, pause_s=0.005)
 
     def outputs_to_the_end(self, child):
-        """Returns the values of the outputs until the command ends."""
+        """Reads the outputs until the command ends. Returns all values."""
         samples = []
         while child.running():
             samples.append(self.board.commands_kpa())
@@ -79,7 +80,7 @@ class MotionTest(bench.BenchTest):
 
 
 class Paused(MotionTest):
-    """The whole process is paused (SIGSTOP) for longer than the board's watchdog waits."""
+    """Pauses the whole process (SIGSTOP). The pause is longer than the time-out of the board's watchdog."""
 
     def check(self, name):
         command, code = MOTIONS[name]
@@ -104,7 +105,8 @@ class Paused(MotionTest):
 
     def test_calibrate_while_it_asks(self):
         child = self.begin((*CALIBRATE, "--sensor", "--move", "--settle-s", "0.3"))
-        # Standard input is closed, so the pause occurs before the question, while the finger is pressurised.
+        # Standard input is closed. The pause occurs before the command asks its question, while the finger is
+        # pressurised.
         self.wait_for_pressure(child, 9.9)
         self.pause(child)
         samples = self.outputs_to_the_end(child)
@@ -113,7 +115,7 @@ class Paused(MotionTest):
 
 
 class Silent(MotionTest):
-    """Messages on the line are lost for 0.7 s."""
+    """Messages on the connection are lost for 0.7 s."""
 
     def check(self, name, fault, expected, kpa=5):
         child = self.begin(MOTIONS[name][0])
@@ -138,8 +140,8 @@ class Silent(MotionTest):
         self.check_nothing_rises_again(samples)
 
     def test_calibrate_without_the_replies(self):
-        """The board still receives requests and holds its outputs. The outputs may keep the last command, but must not
-        rise."""
+        """The board receives the requests and keeps its outputs, but its replies are lost. The outputs may keep the
+        last command but must not rise."""
         highest, samples = self.check("calibrate", "replies_lost", 4)
         self.assertLess(max(sample[0] for sample in samples), highest + 2, "at most one step of a cycle plus the noise")
         self.assertLessEqual(samples[-1][0], NOISE_KPA)
@@ -174,7 +176,7 @@ class Blind(MotionTest):
 
     def test_a_cable_that_comes_out_on_the_way_ends_the_motion(self):
         child = self.begin((*CALIBRATE, "--valve", "--move", "--settle-s", "1"))
-        self.wait_for_pressure(child, 12)  # on the way to 40
+        self.wait_for_pressure(child, 12)  # the pressure is on its way to 40 kPa
         self.board.ask("fault blind")
         samples = self.outputs_to_the_end(child)
         self.assertEqual(child.wait(), 6, child.errors())

@@ -1,8 +1,8 @@
-"""Tests that no pressure rises without a command after a pause, regardless of the paused part and of the duration.
+"""Tests that no pressure rises without a command after a pause of the daemon.
 
-The whole process (SIGSTOP) or only its loop, its bus or its service thread (ptrace) is paused, for less than,
-exactly and more than the time of the board's watchdog, in every phase of a grip, over a real wire.
-"""
+Either the whole process pauses (SIGSTOP), or one of its threads does (ptrace): the loop, the bus or the service
+thread. The pauses are shorter than, equal to and longer than the time-out of the board's watchdog. They occur in
+every phase of a grip, over a real connection."""
 
 import os
 import subprocess
@@ -11,18 +11,20 @@ import time
 import bench
 import pauses
 
-WATCHDOG_S = 0.5  # of the board map
-# The paused part, the duration of the pause [s], and the required result.
+WATCHDOG_S = 0.5  # time-out of the watchdog in the board map
+# Each entry: the process or thread that pauses, the duration of the pause [s], and the required result.
 PAUSES = (
-    ("process", 0.2, "anything"),   # shorter than the bus may be silent: the grip continues, or a fault ends it
+    # The bus may be silent for longer than this pause, so the grip may continue or end with a fault.
+    ("process", 0.2, "anything"),
     ("process", WATCHDOG_S, "F303"),
     ("process", 0.8, "F303"),
     ("softgrip-loop", 0.2, "anything"),
     ("softgrip-loop", 1.5, "F901"),
-    ("softgrip-bus", 0.8, "faulted"),  # the loop notices the silent bus before the bus can report the reason
+    # The loop notices that the bus thread is silent before the bus thread can report the fault.
+    ("softgrip-bus", 0.8, "faulted"),
     ("softgrip-serve", 0.8, "nothing"),
 )
-NOISE_KPA = 0.05  # the board's resolution
+NOISE_KPA = 0.05  # resolution of the board's outputs
 
 
 class Pauses(bench.BenchTest):

@@ -1,4 +1,4 @@
-"""Tests planned feedforward from the rig file to the recording."""
+"""Tests a planned feedforward, from the rig file through to the recording."""
 
 import math
 import re
@@ -6,10 +6,10 @@ import re
 import bench
 
 PLANNED = "feedforward: planned"
-# softgrip tune --model config/models/zhang2025.yaml --feedforward none
+# The gains that softgrip tune --model config/models/zhang2025.yaml --feedforward none computes.
 PID_ALONE = ((PLANNED, "feedforward: none"), ("kp_kpa_per_mm: 3.067", "kp_kpa_per_mm: 4.402"),
              ("ki_kpa_per_mm_s: 12.68", "ki_kpa_per_mm_s: 13.79"))
-# The gains of config/rig.yaml.
+# The model and the gains of config/rig.yaml.
 TWIN = (("models/zhang2025.yaml", "models/bench_twin.yaml"), ("kp_kpa_per_mm: 3.067", "kp_kpa_per_mm: 2.7"),
         ("ki_kpa_per_mm_s: 12.68", "ki_kpa_per_mm_s: 13"))
 
@@ -103,7 +103,8 @@ class Served(bench.BenchTest):
         lines.file.write('{"id": 1, "command": "start", "sequence": "long", "sequence_text": "'
                          + long.replace("\n", "\\n") + '"}\n')
         lines.file.flush()
-        self.assertIn("idle", lines.ask('{"id": 2, "command": "status"}'))  # the daemon answers while it plans
+        # The daemon must answer while it computes the plan.
+        self.assertIn("idle", lines.ask('{"id": 2, "command": "status"}'))
         self.assertEqual(self.softgripd.ask("start", sequence="track_sine")["error"]["code"], "busy")
         self.softgripd.ask("vent")
         self.assertIn('"abandoned"', lines.file.readline())

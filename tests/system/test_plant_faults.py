@@ -1,4 +1,4 @@
-"""Tests faults of sensors, lines and outputs while a finger moves."""
+"""Tests faults of sensors, pressure lines and outputs while a finger moves."""
 
 import time
 
@@ -41,12 +41,14 @@ class PlantFaults(bench.BenchTest):
         bench.wait_for("vented valves", lambda: max(self.emulated.commands_kpa()) < 0.1)
 
     def test_a_jumping_sensor(self):
-        # At 100 mm/s a finger needs 15 cycles for a motion of 15 mm, so the reading is implausible for 15 cycles.
+        # The sensor jumps by 15 mm. At 100 mm/s, a finger needs 15 cycles for this distance. So the daemon
+        # rejects the reading for 15 cycles.
         self.check_latches("jumping", ("F204",), "right", ((r"max_speed_mm_per_s: \d+", "max_speed_mm_per_s: 100"),
                                                            (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 10")))
 
     def test_a_sensor_that_jumps_ten_times_a_second(self):
-        # A finger may move 5 mm within max_speed_mm_per_s, so no single reading is refused.
+        # The jumps of 5 mm are slower than max_speed_mm_per_s permits, so the daemon rejects no single
+        # reading.
         self.check_latches("unsteady", ("F204",), "right")
 
     def test_where_that_is_no_fault_it_is_told(self):
@@ -85,7 +87,7 @@ class PlantFaults(bench.BenchTest):
     def test_a_blocked_line_where_the_pressure_is_measured(self):
         self.check_latches("blocked", ("F207",), "left")
 
-    # Without a measured pressure, only the model can show the fault.
+    # Without a measured pressure, only the model can show a leak or a lost pressure.
     UNWATCHED = ((r"pressure_cycles: \d+", "pressure_cycles: 0"),)
 
     def test_a_leaking_line_makes_the_model_unfit(self):

@@ -1,4 +1,5 @@
-"""Tests that hostile masters of softgrip-plc get only refusals and that the PLC keeps its place."""
+"""Tests softgrip-plc with hostile Modbus clients. They must get only refusals, and the PLC must keep its
+connection."""
 
 import contextlib
 import os
@@ -30,7 +31,7 @@ class Abuse(bench.BenchTest):
         return client
 
     def assert_well(self):
-        """Checks that the PLC still gets answers on its first connection and that the rig has not moved."""
+        """Checks that the PLC gets answers on its first connection, and that the rig has not moved."""
         self.assertTrue(self.gateway.running())
         self.assertEqual(self.master.read("state"), plc.IDLE)
         status = self.softgripd.status()
@@ -42,10 +43,12 @@ class Abuse(bench.BenchTest):
         for _ in range(1000):
             crowd.append(self.connect())
             if len(crowd) % 5 == 0:
-                self.master.read("state")  # as often as a PLC; on a busy machine the connections take seconds
+                # The PLC must send requests regularly, and on a busy machine the 1000 connections take seconds.
+                self.master.read("state")
             if len(crowd) % 100 == 0:
                 self.assert_well()
-        # Besides the PLC three may stay until they have sent no request for five seconds.
+        # In addition to the PLC, the gateway keeps three connections. It closes them after five seconds
+        # without a request.
         ends = sum(self.is_at_its_end(client) for client in crowd)
         self.assertGreaterEqual(ends, 997)
         self.assert_well()
@@ -56,7 +59,8 @@ class Abuse(bench.BenchTest):
         resource.prlimit(pid, resource.RLIMIT_NOFILE, (in_use, in_use))
         for _ in range(8):
             self.connect()
-            self.master.read("state")  # like a PLC: a connection without requests is dropped for a new one
+            # The PLC sends requests, because the gateway closes an idle connection in favour of a new one.
+            self.master.read("state")
         before = processor_s(pid)
         for _ in range(40):
             time.sleep(0.1)
@@ -83,7 +87,8 @@ class Abuse(bench.BenchTest):
             return False
 
     def test_who_dribbles_a_request_is_shown_out(self):
-        """A byte per second never completes a request of 260 bytes; after `idle_s` another client gets the place."""
+        """The client sends one byte per second and never completes its request of 260 bytes. After `idle_s`, the
+        gateway must give its connection to another client."""
         slow = self.connect()
         began = time.monotonic()
         for byte in struct.pack(">HHHB", 1, 0, 254, 1) + b"\x10" * 253:
@@ -118,8 +123,8 @@ class Abuse(bench.BenchTest):
         self.assert_well()
 
     def test_strange_bytes(self):
-        """Frames that are cut off, damaged or joined, or whose function, address, count or length is wrong. None of
-        them is a command: words that could be a command are left out."""
+        """Generates frames that are cut off, damaged or joined, and frames with a wrong function, address, count or
+        length. No frame is a valid command, because values that could be a command are left out."""
         seed = 20261122
         chance = random.Random(seed)
         for turn in range(1500):
@@ -141,7 +146,8 @@ class Abuse(bench.BenchTest):
         self.assert_well()
 
     def check_answers(self, data):
-        """Checks that the answer consists of complete frames, at most one per request, or that the connection ends."""
+        """Checks that the answer consists of complete frames, with at most one frame per request. Instead of an
+        answer, the gateway may close the connection."""
         with socket.create_connection(("127.0.0.1", self.gateway.port)) as client:
             client.settimeout(bench.PATIENCE_S)
             answer = b""

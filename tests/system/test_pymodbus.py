@@ -1,4 +1,4 @@
-"""Tests softgripd with a board that pymodbus serves. The two programs have independent implementations of the
+"""Tests softgripd with a board that pymodbus serves. softgripd and pymodbus have independent implementations of the
 protocol."""
 
 import json

@@ -1,4 +1,4 @@
-"""Tests the Python package with a real daemon, from the view of a robot's program."""
+"""Tests the Python package with a real daemon, as a robot's program would use it."""
 
 import asyncio
 import os
@@ -95,12 +95,14 @@ class Python(bench.BenchTest):
         again.wait_for_state("idle")
         gripper.reconnect()
         self.assertEqual(gripper.wait(timeout_s=PATIENCE_S), softgrip.SequenceEnd.FAULTED)
-        # The finger has gripped until now, so its creep on the way back would look like a part.
+        # The finger creeps back after the grip. The daemon could mistake this creep for a part, so it refuses
+        # a grip.
         gripper.start("pick_stone")
         with self.assertRaises(softgrip.GripFailed):
             gripper.wait_until(softgrip.Result.HOLDING, timeout_s=PATIENCE_S)
         codes = {event["code"] for event in again.events() if event["kind"] == "not_at_rest"}
-        # It is away from the expected place, and still moves in the first moments.
+        # The finger is away from the position that the model expects, and it still moves during the first
+        # moments.
         self.assertIn("off_model", codes)
         self.assertLessEqual(codes, {"off_model", "moves"})
 

@@ -1,5 +1,5 @@
-"""Tests the end of the `with` block of a Python client after any event in the block. The client's own sequence must no
-longer run, or an exception must say that it may still run. No sequence of another client may be stopped."""
+"""Tests the end of the `with` block of a Python client, whatever happens in the block. The client's own sequence must
+have ended, or an exception must say that the sequence may still run. No sequence of another client may be stopped."""
 
 import asyncio
 import contextlib
@@ -20,9 +20,10 @@ sys.path.insert(0, str(bench.SOURCE / "python"))
 
 import softgrip  # noqa: E402
 
-# A failed test prints its seed; SOFTGRIP_SEEDS=FIRST:COUNT runs other seeds.
+# A failed test prints the seed of its random values. SOFTGRIP_SEEDS=FIRST:COUNT runs COUNT seeds from FIRST
+# on.
 FIRST_SEED, SEEDS = map(int, os.environ.get("SOFTGRIP_SEEDS", "1:25").split(":"))
-# How long a client waits for an answer, and a silence that is longer.
+# The time [s] for which a client waits for an answer, and a longer time for which the daemon is silent.
 ANSWER_S = 0.4
 SILENCE_S = 0.7
 
@@ -70,7 +71,8 @@ class Leaving(quiet_rig.QuietRigTest):
             other = self.gripper(name="other")
             self.addCleanup(other.close)
             theirs = other.start("long", text=LONG).request
-            # The robot has not yet read that its sequence ended and that another one runs.
+            # The robot has not yet read that its own sequence has ended and that another client's sequence
+            # runs.
         self.assertEqual(self.running(), theirs)
         other.status()
         other.stop()
@@ -80,7 +82,7 @@ class Leaving(quiet_rig.QuietRigTest):
         async def work():
             async with softgrip.AsyncGripper(self.path, name="robot", answer_s=bench.PATIENCE_S) as robot:
                 await robot.start("short", text=SHORT)
-                # The loop of asyncio does not run here, so nothing is read.
+                # The event loop of asyncio does not run during this code, so the client reads nothing.
                 self.wait_until_ended(self.starts()[-1])
                 self.softgripd.wait_for_state("idle")
                 return other.start("long", text=LONG).request
@@ -91,7 +93,8 @@ class Leaving(quiet_rig.QuietRigTest):
         self.assertEqual(self.running(), theirs)
 
     def test_a_daemon_that_was_silent_stops_when_it_goes_on(self):
-        """The daemon is paused, or its line is stalled: the stop waits in the socket, and an exception says so."""
+        """The daemon is paused, or its connection is stalled. The stop request waits in the socket, and an exception
+        must say that the stop is not confirmed."""
         proxy = self.proxy()
         for path, pause, resume in (
                 (self.path, lambda: self.softgripd.send(signal.SIGSTOP), lambda: self.softgripd.send(signal.SIGCONT)),
@@ -162,7 +165,7 @@ class Leaving(quiet_rig.QuietRigTest):
         self.assertEqual(self.running(), request)
 
     def interrupted(self, path, chance):
-        """Runs a robot's program that receives a SIGINT in start() or a moment later."""
+        """Runs a robot's program. The program receives a SIGINT during start() or shortly after it."""
         program = chance.choice((ROBOT, ROBOT, ASYNCIO_ROBOT))
         robot = subprocess.Popen([sys.executable, "-c", program, path, LONG, str(bench.PATIENCE_S)], text=True,
                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -210,13 +213,13 @@ class Leaving(quiet_rig.QuietRigTest):
             request = robot.start("long", text=LONG).request
             subscriber = self.gripper(name="subscriber")
             self.addCleanup(subscriber.close)
-            # All other places are taken by clients that keep sending requests.
+            # Clients that keep sending requests use all other connections of the daemon.
             crowd = [bench.Lines(self.path) for _ in range(13)]
             for client in crowd:
                 self.addCleanup(client.close)
             began = time.monotonic()
             refused = 0
-            while time.monotonic() - began < 6:  # longer than a silent client keeps its place
+            while time.monotonic() - began < 6:  # longer than the daemon keeps the connection of a silent client
                 self.softgripd.status()
                 for client in crowd:
                     client.ask('{"command":"sequences"}')
@@ -232,7 +235,7 @@ class Leaving(quiet_rig.QuietRigTest):
 
     def test_a_newcomer_without_a_place_is_refused_with_a_sentence(self):
         proxy = self.proxy()
-        # The test's own connection takes one place as well.
+        # The test itself uses one of the 16 connections.
         subscribers = [self.gripper(path, name="subscriber") for path in [proxy.path] + 14 * [self.path]]
         for subscriber in subscribers:
             self.addCleanup(subscriber.close)
@@ -240,7 +243,8 @@ class Leaving(quiet_rig.QuietRigTest):
         self.softgripd.status()
         with self.assertRaisesRegex(softgrip.ConnectionLost, "at most 16 clients"):
             self.gripper(name="late")
-        # A stop is carried out nevertheless, also for a program whose connection was lost in the meantime.
+        # The daemon must carry out a stop although all connections are in use. This also holds for a program
+        # that has lost its connection.
         with subscribers[0] as robot:
             request = robot.start("long", text=LONG).request
             proxy.cut()
@@ -251,7 +255,8 @@ class Leaving(quiet_rig.QuietRigTest):
             self.assertEqual(subscriber.status().state, softgrip.State.IDLE)
 
     def test_malformed_lines(self):
-        """Whatever the daemon sends, the result is an exception of the package, and the sequence is stopped."""
+        """Whatever the server sends, the client must raise an exception of the package, and the sequence must be
+        stopped."""
         proxy = self.proxy()
         for seed in range(FIRST_SEED, FIRST_SEED + SEEDS):
             with self.subTest(seed=seed):
@@ -298,8 +303,8 @@ class Leaving(quiet_rig.QuietRigTest):
         asyncio.run(work())
 
     def test_two_clients_and_two_faults_at_once(self):
-        """With seeds: stalls, closed connections, damaged lines and exceptions for two clients that use the rig in
-        turn."""
+        """Runs random stalls, closed connections, damaged lines and exceptions. Two clients use the rig in turn. Each
+        seed gives one series of events."""
         proxy = self.proxy()
         for seed in range(FIRST_SEED, FIRST_SEED + SEEDS):
             with self.subTest(seed=seed):
@@ -343,7 +348,8 @@ class Leaving(quiet_rig.QuietRigTest):
         own = self.starts()[before:]
         proxy.let_go()
         if isinstance(raised, softgrip.StopNotConfirmed):
-            time.sleep(0.1)  # what waited in the socket is carried out, unless the connection was closed
+            # The daemon carries out the requests that waited in the socket, if the connection was not closed.
+            time.sleep(0.1)
         else:
             self.assertNotIn(self.running(), own, raised)
         if theirs is not None:

@@ -1,5 +1,5 @@
-"""Tests that the recordings of a grip that ends in a fault satisfy the guarantees, and that a recording with changed
-rows does not."""
+"""Tests the check of recordings. The recordings of a grip that ends in a fault must pass the check. A recording with
+changed rows must not pass."""
 
 import csv
 import signal
@@ -11,8 +11,8 @@ import recording_check
 
 class Recordings(bench.BenchTest):
     def record(self):
-        """Records a grip, a pause of the process that is longer than the time-out of the board's watchdog, an
-        acknowledgement, and another grip."""
+        """Records a grip, a pause of the process, an acknowledgement, and a second grip. The pause is longer than the
+        time-out of the board's watchdog."""
         emulator = self.emulator("--object", "stone")
         daemon = self.daemon(self.rig(emulator.port))
         daemon.wait_for_state("idle")
@@ -22,7 +22,7 @@ class Recordings(bench.BenchTest):
         time.sleep(0.8)
         daemon.send(signal.SIGCONT)
         daemon.wait_for_state("faulted")
-        time.sleep(1)  # the end of the recording
+        time.sleep(1)  # waits until the recording has ended
         bench.wait_for("an acknowledged fault", lambda: daemon.ask("acknowledge")["ok"])
         daemon.wait_for_state("idle")
         daemon.start("pick_stone")
@@ -33,7 +33,7 @@ class Recordings(bench.BenchTest):
         return recordings
 
     def tampered(self, recording, change):
-        """Returns the findings for the recording with changed rows. Afterwards the recording is restored."""
+        """Changes rows of the recording, returns the violations that the check finds, and restores the recording."""
         path = recording / "run.csv"
         before = path.read_text()
         with open(path, newline="") as file:

@@ -1,5 +1,5 @@
-"""Tests the outputs after the end of a daemon: softgripd --safe-outputs, which the service manager runs after a crash,
-and a hold."""
+"""Tests the outputs after a daemon has ended. After a crash, the service manager runs softgripd --safe-outputs. After
+a normal end, the daemon may leave its outputs in a hold."""
 
 import os
 import signal
@@ -30,7 +30,8 @@ class SafeOutputs(bench.BenchTest):
     def test_after_a_kill_the_board_is_vented(self):
         self.hold().kill()
         time.sleep(0.5)
-        self.assertGreater(min(self.emulator_.commands_kpa()), 10)  # the board does not vent on its own
+        # Without the command, the board keeps its outputs, because it has no watchdog.
+        self.assertGreater(min(self.emulator_.commands_kpa()), 10)
         ended = self.safe_outputs(SERVICE_RESULT="signal")
         self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
         self.assertIn("vented and confirmed", ended.stdout)
@@ -58,7 +59,7 @@ class SafeOutputs(bench.BenchTest):
 
 
 class EditedRig(bench.BenchTest):
-    """A rig file that is only half edited when a crash occurs. The board has no watchdog."""
+    """A crash occurs while the user is editing the rig file, so the file is incomplete. The board has no watchdog."""
 
     def setUp(self):
         super().setUp()
@@ -81,7 +82,7 @@ class EditedRig(bench.BenchTest):
         return ended
 
     def edits(self):
-        """Returns changes that make a rig file unreadable, by name."""
+        """Returns changes that make a rig file unreadable, each with its name."""
         board = self.folder / "config/boards/adam-6024.yaml"
         model = self.folder / "config/models/bench_twin.yaml"
         for path in (self.rig_path, board, model):
@@ -145,12 +146,12 @@ class EditedRig(bench.BenchTest):
 
 
 class Hold(bench.BenchTest):
-    """Tests the messages about a hold. The duration of a hold depends on the board, and the programs must say so before
-    the start, at the start and at the end."""
+    """Tests the messages about a hold. How long the board holds its outputs depends on the board. The programs must
+    say this before the start, at the start and at the end."""
 
     def ends_holding(self, emulator, rig):
-        """Returns the output of the check, the output of the daemon, which is ended while it holds, and the outputs of
-        the board 1 s later."""
+        """Ends a daemon while it holds a part. Returns the output of the check, the output of the daemon, and the
+        outputs of the board 1 s later."""
         check = subprocess.run([bench.SOFTGRIPD, "--check", "--config", rig], capture_output=True, text=True, check=True)
         daemon = self.daemon(rig)
         daemon.wait_for_state("idle")

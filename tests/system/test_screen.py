@@ -1,4 +1,5 @@
-"""Tests the output on the screen: remaining pressure, refusals as sentences, and events as a journal."""
+"""Tests the texts on the screen: the warning about remaining pressure, the sentences of refusals, and the events as a
+journal."""
 
 import json
 import re
@@ -79,7 +80,7 @@ class Screen(bench.BenchTest):
         self.hold()
         self.softgrip("vent")
         self.softgripd.wait_for_state("idle")
-        self.softgripd.wait_for_event("recording_finished")  # the recorder writes the last event
+        self.softgripd.wait_for_event("recording_finished")  # this is the last event of the recording
         every = self.softgrip("events", "--json").stdout.splitlines()
         told = [json.loads(line) for line in every]
         self.assertEqual([event["id"] for event in told], sorted(event["id"] for event in told))

@@ -1,5 +1,5 @@
-"""Tests another Modbus client whose reads keep the board's watchdog from tripping. The programs must report this
-client."""
+"""Tests a second Modbus client whose reads prevent the watchdog of the board from tripping. The programs must report
+this client."""
 
 import contextlib
 import json
@@ -9,13 +9,13 @@ import time
 
 import bench
 
-WATCHDOG_S = 0.5  # of the board map
-# FC4, one register from 0, unit 1.
+WATCHDOG_S = 0.5  # time-out of the watchdog in the board map
+# Modbus request: function 4, one register from address 0, unit 1.
 REQUEST = bytes((0, 1, 0, 0, 0, 6, 1, 4, 0, 0, 0, 1))
 
 
 class Reader(threading.Thread):
-    """Reads the board's first input every 50 ms, like a display."""
+    """Reads the first input of the board every 50 ms, like a display."""
 
     def __init__(self, port):
         super().__init__(daemon=True)
@@ -51,7 +51,8 @@ class SecondClient(bench.BenchTest):
         return {finding["name"]: finding for finding in report["findings"]}
 
     def test_a_reader_keeps_the_pressure_of_a_killed_daemon_and_was_told_before(self):
-        """No daemon can prevent that the pressure remains, as the manual says. But the daemon can warn before."""
+        """After the kill, the second client keeps the watchdog from tripping, so the pressure remains. No daemon can
+        prevent this, but the daemon must warn before."""
         emulator = self.emulator("--object", "stone")
         daemon = self.daemon(self.rig(emulator.port))
         daemon.wait_for_state("idle")

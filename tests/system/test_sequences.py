@@ -1,4 +1,4 @@
-"""Tests recipes with arguments, the list of recipes, and the message about a mistyped word, as a user sees them."""
+"""Tests recipes with arguments, the list of recipes, and the message about a mistyped name, as a user sees them."""
 
 import json
 import re
@@ -12,7 +12,7 @@ PICK = "config/sequences/pick_stone.yaml"
 
 
 def simulated_rig(folder):
-    """Writes the shipped simulated rig with its socket and recordings in the folder of the test."""
+    """Writes the shipped simulated rig file. Its socket and its recordings are in the folder of the test."""
     text = (folder / "config/rig.yaml").read_text()
     for pattern, replacement in ((r"directory: /tmp/softgrip-runs", f"directory: {folder}/runs"),
                                  (r"path: /tmp/softgrip.sock", f"path: {folder}/softgripd.sock"),
@@ -57,7 +57,8 @@ class WithoutADaemon(bench.BenchTest):
         weak = self.softgrip("check", "config/rig.yaml", "weak.yaml", expect=3).stderr
         self.assertRegex(weak, r"weak\.yaml:9:3: with `squeeze_kpa` = 0\.5, the lower end of its range, line \d+ is "
                                r"wrong: step 'grip': grips with 0\.5 kPa, but channel 'left' detects")
-        self.softgrip("check", "weak.yaml")  # accepted without a rig, because some rigs may detect such a grip
+        # Without a rig, the check accepts this grip, because some rigs can detect it.
+        self.softgrip("check", "weak.yaml")
         self.write("strong.yaml", recipe.replace("range: [3, 10]", "range: [3, 12]"))
         self.assertIn("squeeze_max_kpa is below squeeze_kpa", self.softgrip("check", "strong.yaml", expect=3).stderr)
         self.assertIn("has no parameter", self.softgrip("check", PICK, "--set", "a=1", expect=3).stderr)

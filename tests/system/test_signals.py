@@ -1,5 +1,5 @@
-"""Tests a signal that interrupts a command. The command must write safe outputs and then end by the same signal, so
-that a shell ends its loop."""
+"""Tests commands that are interrupted by a signal. The command must write safe outputs and then end by the same
+signal, so that a shell script stops, too."""
 
 import os
 import signal
@@ -23,7 +23,7 @@ class Interrupted(bench.BenchTest):
         return process
 
     def running(self, *more):
-        """Starts a run and returns it when its fingers are pressurised."""
+        """Starts a run. Returns its process as soon as the fingers are pressurised."""
         run = self.process(bench.SOFTGRIP, "run", "config/sequences/pick_stone.yaml", "--rig", self.rig_path, *more)
         bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 3, pause_s=0.005)
         return run
@@ -55,7 +55,7 @@ class Interrupted(bench.BenchTest):
                                  stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.addCleanup(shell.wait)
         bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 3, pause_s=0.005)
-        os.killpg(shell.pid, signal.SIGINT)  # like a terminal
+        os.killpg(shell.pid, signal.SIGINT)  # a terminal also sends Ctrl-C to all processes of the group
         self.assertEqual(shell.wait(bench.PATIENCE_S), -signal.SIGINT)
         self.assertEqual((self.folder / "turns").read_text(), "turn 1\n")
         self.assertEqual(max(self.board.commands_kpa()), 0)
@@ -92,7 +92,8 @@ class Interrupted(bench.BenchTest):
 
 
 class WithoutABoard(bench.BenchTest):
-    """Tests virtual time: an endless sequence is interrupted, and its recording is closed."""
+    """Tests a run in virtual time. A signal interrupts an endless sequence, and the recording must be closed
+    properly."""
 
     def test_a_run_in_virtual_time(self):
         for number in INTERRUPTING:

@@ -8,11 +8,12 @@ import bench
 
 
 class Client:
-    """A connection that separates the answers to its requests from all other lines."""
+    """A connection that separates the answers to its own requests from all other lines."""
 
     def __init__(self, path):
         self.lines = bench.Lines(path)
-        # Reading has its own file object, because one for both forgets what it has read ahead when it writes.
+        # Uses a separate file object for reading. A file object for both directions drops the data that it
+        # has read ahead when it writes.
         self.input = self.lines.socket.makefile("r", encoding="utf-8", newline="\n")
         self.told = []
 
@@ -39,7 +40,7 @@ class Client:
         return line
 
     def events(self, until):
-        """Returns the received events up to an event for which `until` is true."""
+        """Returns the received events up to the first event for which `until` is true."""
         events = []
         while True:
             line = self.told.pop(0) if self.told else self.line()
@@ -164,7 +165,8 @@ class SocketApi(bench.BenchTest):
         seen += second.events(lambda e: e["kind"] == "sequence_finished")
         self.assertEqual([e["id"] for e in seen], list(range(1, len(seen) + 1)))
         self.assertEqual(self.softgripd.end(), 0)
-        # Another daemon counts from one: its events are new, whatever was seen of the previous daemon.
+        # A new daemon numbers its events from one. So a client must receive all its events, whatever the
+        # client has seen of the previous daemon.
         again = self.daemon(self.rig_path)
         again.wait_for_state("idle")
         third = self.client("watcher")
@@ -177,9 +179,9 @@ class SocketApi(bench.BenchTest):
         slow = self.client("slow")
         slow.ask("subscribe", since=0)
         slow.ask("watch", rate_hz=50)
-        time.sleep(3)  # now state lines fill the buffers that the kernel keeps for it
+        time.sleep(3)  # meanwhile, state lines fill the kernel's buffers of this connection
         asking = self.client("busy")
-        for _ in range(5):  # each causes an event
+        for _ in range(5):  # each acknowledgement causes an event
             asking.ask("acknowledge")
         newest = self.softgripd.result("events", limit=1)["newest"]
         told = slow.told
@@ -188,7 +190,8 @@ class SocketApi(bench.BenchTest):
             try:
                 told.append(slow.line())
             except AssertionError:
-                # If the machine is too busy, its connection was closed in the meantime: it has only ten seconds.
+                # On a very busy machine, the daemon may have closed the connection, because a client may not
+                # leave its data unread for more than ten seconds.
                 slow = self.client("slow")
                 slow.ask("subscribe", since=ids[-1] if ids else 0)
                 told += slow.told

@@ -1,5 +1,5 @@
-"""Tests the interruption of softgrip start. Only its own sequence must be stopped, and the program must end by the
-signal."""
+"""Interrupts softgrip start with a signal. The program must stop only the sequence that it has started, and must end
+by the signal."""
 
 import json
 import os
@@ -52,7 +52,7 @@ class StartInterrupted(quiet_rig.QuietRigTest):
     def test_the_sequence_of_another_client_goes_on(self):
         process = self.start("--wait", sequence=self.short)
         request = self.wait_until_running()
-        process.send_signal(signal.SIGSTOP)  # so that it does not notice the end
+        process.send_signal(signal.SIGSTOP)  # pauses the program, so that it does not notice the end of its sequence
         self.wait_until_ended(request)
         self.softgripd.wait_for_state("idle")
         theirs = self.softgripd.result("start", sequence="long", sequence_text=quiet_rig.LONG)["request"]
@@ -70,7 +70,7 @@ class StartInterrupted(quiet_rig.QuietRigTest):
                 time.sleep(chance.choice((0.01, 0.1)) * chance.random())
                 process.send_signal(signal.SIGINT)
                 code, errors = self.ended_by(process)
-                if code == 0:  # the start was accepted before the signal, and there was nothing to wait for
+                if code == 0:  # the daemon accepted the start before the signal, and the program did not have to wait
                     self.wait_until_running()
                     self.softgripd.result("stop")
                 else:
@@ -129,7 +129,8 @@ class StartInterrupted(quiet_rig.QuietRigTest):
                 self.assertIsNone(self.running())
 
     def test_an_older_daemon_is_refused(self):
-        """It answers hello as version 1 did before starts had ids, and gets no start."""
+        """The simulated daemon answers hello like an early daemon of version 1, in which starts had no ids. The
+        program must not send it a start."""
         heard = []
         listener = socket.socket(socket.AF_UNIX)
         self.addCleanup(listener.close)

@@ -44,7 +44,7 @@ class Tune(bench.BenchTest):
             self.tune("--rate-hz", number, "--out", "pid.yaml", expect=2)
         self.tune("--feedforward", "magic", "--out", "pid.yaml", expect=2)
         self.tune("--rig", "config/rig.yaml", "--channel", "thumb", "--out", "pid.yaml", expect=2)
-        self.tune(expect=2)  # no --out
+        self.tune(expect=2)  # the option --out is missing
         for missing in (("tune", "--model", "absent.yaml"), ("tune", "--model", MODEL, "--rig", "absent.yaml")):
             done = self.softgrip(*missing, "--out", "pid.yaml", expect=4)
             self.assertIn("absent.yaml", done.stderr)
@@ -56,7 +56,8 @@ class Tune(bench.BenchTest):
         rig = (self.folder / "config/rig.yaml").read_text().replace("rate_hz: 200", "rate_hz: -200")
         done = self.tune("--rig", self.write("config/slow.yaml", rig), "--out", "pid.yaml", expect=3)
         self.assertRegex(done.stderr, r"slow\.yaml:\d+:\d+: ")
-        # If the model does not have the requested feedforward, the input is refused with the reason.
+        # The model does not allow the requested feedforward. The command must refuse the input with the
+        # reason.
         done = self.softgrip("tune", "--model", "config/models/zhang2025.yaml", "--feedforward", "full_model", "--out",
                              "pid.yaml", expect=3)
         self.assertIn("beta > alpha + 1/k0", done.stderr)

@@ -1,4 +1,4 @@
-"""Carries out docs/tutorial from the text of its pages: the commands in the fences are run."""
+"""Carries out docs/tutorial. The test runs the commands in the code blocks of the pages."""
 
 import html
 import json
@@ -20,13 +20,13 @@ FENCE = re.compile(r"^```\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 def fences(page):
-    """Returns the commands of the page, one string per fence."""
+    """Returns the commands of the page, one string for each code block."""
     return FENCE.findall((bench.SOURCE / "docs/tutorial" / page).read_text(encoding="utf-8"))
 
 
 class FirstRun(bench.BenchTest):
-    """docs/tutorial/first-run.md. Only the port, the socket and the folder of runs are changed in its text, because
-    other tests run at the same time; the time limits are those of a busy machine."""
+    """Tests docs/tutorial/first-run.md. The test changes only the port, the socket and the folder of recordings in
+    the commands, because other tests run at the same time. It also uses longer time limits for a busy machine."""
 
     def setUp(self):
         super().setUp()
@@ -44,7 +44,7 @@ class FirstRun(bench.BenchTest):
             "/tmp/softgrip-runs", f"{self.folder}/runs")
 
     def beside(self, name, words):
-        """Runs a command that the page runs in its own terminal."""
+        """Starts a command that, according to the page, runs in its own terminal."""
         line = f"PATH={self.environment['PATH']}; exec {self.said(words).strip()}"
         process = bench.Process(name, ["bash", "-c", line], self.folder)
         self.processes.append(process)
@@ -57,7 +57,7 @@ class FirstRun(bench.BenchTest):
         return done.stdout
 
     def status(self):
-        """Returns the status, or None as long as the daemon does not listen."""
+        """Returns the status of the daemon, or None while the daemon does not listen yet."""
         done = subprocess.run([bench.SOFTGRIP, "status", "--json"], cwd=self.folder, text=True, capture_output=True,
                               env=self.environment)
         return json.loads(done.stdout) if done.returncode == 0 else {}
@@ -83,7 +83,7 @@ class FirstRun(bench.BenchTest):
         rig = self.beside("softgrip-rig-again", self.rig_words)
         bench.wait_for("the rig", lambda: "listening" in rig.output())
         bench.wait_for("the session", lambda: "Communication with the board restored" in self.shell("softgrip events"))
-        time.sleep(1)  # what a hand on a keyboard takes, at least
+        time.sleep(1)  # a user needs at least this time to type the next command
         self.assertEqual(self.state(), "faulted", "nothing moves before somebody says so")
         self.shell("softgrip acknowledge")
         self.wait_for_state("idle")
@@ -103,7 +103,7 @@ class FirstRun(bench.BenchTest):
         self.check_on_paper(self.folder / "diagnosis/report.html")
 
     def check_on_paper(self, page):
-        """Checks the printed report, which is also the report of the demo."""
+        """Checks the report that the command prints. The demo shows the same report."""
         text = page.read_text(encoding="utf-8")
         self.assertLess(len(text.encode()), 1_500_000)
         sheets = printing.sheets(page, self.folder)
@@ -118,16 +118,16 @@ class FirstRun(bench.BenchTest):
 
 
 MODULE = bench.BUILD / "python"
-LONGEST_S = 60  # processor time of a notebook
+LONGEST_S = 60  # longest permitted processor time of a notebook [s]
 
 
 @unittest.skipUnless(list(MODULE.glob("softgrip/_core.*.so")), "the build has no Python module: pybind11 was missing")
 class Notebooks(bench.BenchTest):
-    """docs/tutorial/*.ipynb: the cells of each are run one after the other in one Python process. A kernel does the same
-    with cells without magic commands, but would need fifty packages."""
+    """Runs the cells of each docs/tutorial/*.ipynb, one after the other, in one Python process. For cells without
+    magic commands, a Jupyter kernel does the same, but it would need fifty packages."""
 
     def printed(self, name):
-        """What the cells of the notebook print, in the folder of the test."""
+        """Runs the cells of the notebook in the folder of the test. Returns what they print."""
         notebook = json.loads((bench.SOURCE / "docs/tutorial" / name).read_text(encoding="utf-8"))
         self.assertEqual(notebook["nbformat"], 4)
         cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
@@ -146,7 +146,8 @@ class Notebooks(bench.BenchTest):
 
     @staticmethod
     def computed_s():
-        """Processor time of all programs that have ended: other tests do not change it as they change the time of a clock."""
+        """Returns the processor time [s] of all child processes that have ended. Unlike the elapsed time, the
+        processor time does not depend on other tests."""
         used = resource.getrusage(resource.RUSAGE_CHILDREN)
         return used.ru_utime + used.ru_stime
 

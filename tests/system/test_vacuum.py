@@ -1,5 +1,5 @@
-"""Tests a rig from -40 to 60 kPa on the emulated board. Regardless of the reason for its end, a vacuum must end at the
-rest pressure of 0 kPa."""
+"""Tests a rig with pressures from -40 to 60 kPa on the emulated board. Whatever ends a vacuum, the pressure must then
+go to the rest pressure of 0 kPa."""
 
 import os
 import signal
@@ -9,7 +9,7 @@ import time
 import bench
 
 VACUUM_KPA = -30
-# The emulated valve has the resolution of a float.
+# Tolerance [kPa] of an emulated valve, whose output is a float.
 EQUAL_KPA = 1e-3
 
 
@@ -25,7 +25,8 @@ class Vacuum(bench.BenchTest):
         return self.rig(port, name="vacuum/rig_tcp.yaml",
                         changes=((r"\.\./models/", "models/"),
                                  (r"sequence_directory: sequences", "sequence_directory: vacuum/sequences"),
-                                 # a watchdog that a busy machine does not trip
+                                 # this board map has a long watchdog time-out, so that a busy machine does
+                                 # not trip the watchdog
                                  (r"map: board\.yaml", "map: boards/patient.yaml")))
 
     def setUp(self):
@@ -41,8 +42,8 @@ class Vacuum(bench.BenchTest):
             self.assertAlmostEqual(kpa, VACUUM_KPA, delta=EQUAL_KPA)
 
     def wait_for_rest(self):
-        """Waits until the rest pressure is reached and checks that it is not passed: 0 kPa is the highest pressure on
-        the way back from a vacuum."""
+        """Waits until the pressure reaches the rest pressure. Checks that the pressure never exceeds 0 kPa on its way
+        back from a vacuum."""
         highest_kpa = -1e9
         end = time.monotonic() + bench.PATIENCE_S
         while time.monotonic() < end:
@@ -110,7 +111,7 @@ class Vacuum(bench.BenchTest):
         self.evacuate()
         self.softgripd.kill()
         time.sleep(1)
-        self.assertLess(max(self.board.commands_kpa()), -20)  # the board does not vent on its own
+        self.assertLess(max(self.board.commands_kpa()), -20)  # without a command, the board keeps its outputs
         ended = subprocess.run([bench.SOFTGRIPD, "--config", self.rig_path, "--safe-outputs"], capture_output=True,
                                text=True, timeout=bench.PATIENCE_S, check=False,
                                env={**os.environ, "SERVICE_RESULT": "signal"})

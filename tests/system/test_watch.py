@@ -1,4 +1,5 @@
-"""Tests softgrip watch on a terminal: the display, the keys, and the restored terminal at the end."""
+"""Tests softgrip watch on a terminal. Checks the display, the keys, and that the program restores the terminal at its
+end."""
 
 import os
 import signal
@@ -83,7 +84,8 @@ class Watch(bench.BenchTest):
         watched.wait_for("fault F202 of left")
         self.emulated.ask("clear blind")
         screen = watched.wait_for("The cause is gone")
-        # A text that is too long for its line continues in the next one, so the remedy's last word is visible, too.
+        # A text that is too long for its line continues in the next line. So the last word of the remedy must
+        # be visible, too.
         self.assertIn("measure the signal.", " ".join(screen.split()))
         self.assertIn("s stop  v vent  r release  a acknowledge  g start  q quit", screen)
 

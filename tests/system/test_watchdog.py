@@ -1,5 +1,5 @@
-"""Tests that the daemon notifies the service manager's watchdog while the loop, the bus and the service thread run. The
-notifications must end as soon as one of these threads hangs."""
+"""Tests that the daemon notifies the service manager's watchdog while the loop, the bus and the service thread run.
+When one of these threads hangs, the notifications must end."""
 
 import contextlib
 import os
@@ -12,7 +12,7 @@ import time
 import bench
 
 HANG_THREAD = pathlib.Path(__file__).parent / "vm/drive/hang_thread.py"
-WATCHDOG_S = 0.4  # the daemon sends four notices in it
+WATCHDOG_S = 0.4  # watchdog time-out of the service; the daemon sends four notifications during this time
 
 
 class Watchdog(bench.BenchTest):
@@ -33,7 +33,7 @@ class Watchdog(bench.BenchTest):
         self.daemon_.wait_for_state("idle")
 
     def notices_for(self, seconds):
-        """Returns the messages of the daemon to the service manager in the next seconds."""
+        """Returns the messages that the daemon sends to the service manager in the next `seconds`."""
         texts, end = [], time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:
             self.notices.settimeout(left)
@@ -55,10 +55,10 @@ class Watchdog(bench.BenchTest):
         self.addCleanup(self.daemon_.kill)
         if hang.stdout.readline() != "hangs\n":
             self.skipTest("this user may not trace another process")
-        self.notices_for(patience_s)  # the daemon's patience, and notices that were already sent
+        self.notices_for(patience_s)  # the daemon waits for this time before it treats the thread as hanging
         notices = self.notices_for(2)
         self.assertNotIn("WATCHDOG=1", notices)
-        self.assertTrue(self.daemon_.running())  # only the service manager ends it
+        self.assertTrue(self.daemon_.running())  # the daemon must not end by itself; only the service manager ends it
 
     def test_a_hung_loop_starves_it(self):
         self.starves_when("softgrip-loop")

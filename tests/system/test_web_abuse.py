@@ -1,4 +1,4 @@
-"""Tests that hostile clients of softgrip-web get only refusals and that the daemon is not affected."""
+"""Tests softgrip-web with hostile clients. They must get only refusals, and they must not affect the daemon."""
 
 import contextlib
 import random
@@ -21,7 +21,7 @@ class Abuse(web.WebTest):
         (self.folder / "runs" / "one" / "picture.svg").write_text("<svg/>")
 
     def check_recordings(self):
-        """There are no recordings, except the one that a test makes."""
+        """Checks nothing, because the only recording here is one that a test makes itself."""
 
     def connect(self):
         client = socket.create_connection(("127.0.0.1", self.told.port))
@@ -30,10 +30,11 @@ class Abuse(web.WebTest):
         return client
 
     def say(self, data):
-        """Sends these bytes and no others. Returns the complete answer."""
+        """Sends exactly these bytes. Returns the complete answer."""
         with socket.create_connection(("127.0.0.1", self.told.port)) as client:
             client.settimeout(bench.PATIENCE_S)
-            # the server may close the connection before everything is sent: EPIPE, ECONNRESET, ENOTCONN
+            # the server may close the connection before it has received everything (EPIPE, ECONNRESET,
+            # ENOTCONN)
             with contextlib.suppress(OSError):
                 client.sendall(data)
                 client.shutdown(socket.SHUT_WR)
@@ -48,7 +49,7 @@ class Abuse(web.WebTest):
         return int(answer.split()[1]) if answer else 0
 
     def assert_well(self):
-        """Checks that softgrip-web answers and that the daemon's loop has continued."""
+        """Checks that softgrip-web answers and that the control loop of the daemon has continued."""
         def well():
             with contextlib.suppress(OSError):
                 return self.told.ask("/api/status")[0] == 200
@@ -111,7 +112,7 @@ class Abuse(web.WebTest):
                     except (BrokenPipeError, ConnectionResetError):
                         gone.add(client)
             if time.monotonic() - began < 1:
-                self.assert_well()  # a client that sends requests still gets a place
+                self.assert_well()  # a client that sends requests must still get a connection
             time.sleep(0.1)
         self.assertEqual(len(gone), len(slow))
         self.assert_well()

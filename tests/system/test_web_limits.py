@@ -1,5 +1,5 @@
-"""Tests the limits of softgrip-web. A viewer must not use up the resources that an operator needs for a stop or a
-vent."""
+"""Tests the limits of softgrip-web. A user who only views must not use up the resources that an operator needs for a
+stop or a vent."""
 
 import contextlib
 import os
@@ -16,13 +16,12 @@ import web
 STUCK_DISK = bench.BUILD / "tests" / "system" / "libstuck_disk.so"
 MIB_IN_KIB = 1024
 LARGEST_FILE = 16 << 20
-# The limit of the unit (systemd/softgrip-web.service.in), which ends the process beyond it.
+# Memory limit in systemd/softgrip-web.service.in. systemd ends the process if it exceeds this limit.
 MEMORY_OF_UNIT_KIB = 128 * MIB_IN_KIB
 
 
 def processor_s(pid):
-    """Returns the processor time of a process [s]. Other processes have no influence on this time, unlike on the
-    elapsed time."""
+    """Returns the processor time of a process [s]. Unlike the elapsed time, it does not depend on other processes."""
     fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
@@ -35,7 +34,8 @@ class Limits(web.WebTest):
         (self.runs / "one").mkdir(parents=True)
 
     def check_recordings(self):
-        """The tests of this file record nothing, or fill the folder themselves."""
+        """Checks nothing, because the tests of this file record nothing or fill the folder of recordings
+        themselves."""
 
     def send(self, told, path, receive_buffer=None):
         """Opens a connection that sends a request and does not read the answer."""
@@ -55,13 +55,13 @@ class Limits(web.WebTest):
         return answer
 
     def log_in(self, told, token):
-        """Returns the cookie of a new session."""
+        """Opens a session and returns its cookie."""
         status, _, headers = told.ask("/api/session", {"token": token})
         self.assertEqual(status, 200)
         return headers["Set-Cookie"].partition(";")[0]
 
     def assert_heard(self, told):
-        """Checks that a stop, a vent and the metrics are answered at the first request."""
+        """Checks that a stop, a vent and a request for the metrics each get an answer at the first attempt."""
         status, answer = told.command("stop")
         self.assertEqual((status, answer["details"]["refusal"]["name"]), (409, "nothing_to_stop"),
                          "the daemon must answer")
@@ -104,7 +104,8 @@ class Limits(web.WebTest):
         held = []
         for number in range(600):
             path = ("/recordings/one/run.csv", "/api/stream", "/api/recordings", "/chart.js")[number % 4]
-            with contextlib.suppress(OSError):  # a connection without a place may be closed while it sends
+            # The server may close a connection that exceeds the limit while the client is sending.
+            with contextlib.suppress(OSError):
                 held.append(self.send(told, path, receive_buffer=4096))
             if number % 50 == 49:
                 self.assertEqual(told.metrics()["softgrip_up"], 1)
@@ -139,13 +140,14 @@ class Limits(web.WebTest):
         self.assertEqual(told.metrics()["softgrip_web_pages"], 6)
 
     def test_a_list_is_made_once_for_all_who_ask(self):
-        """20,000 folders, six viewers: the processor time for the lists, which determines how long others wait."""
+        """Six viewers list 20,000 folders. The test measures the processor time for the lists, because all other
+        requests wait for this time."""
         for number in range(20_000):
             (self.runs / f"run-{number:06}").mkdir()
         (self.runs / "run-999999").mkdir()
         (self.runs / "run-999999" / "run.csv").touch()
         told = self.start_web()
-        time.sleep(2.5)  # a folder that has just changed is read again
+        time.sleep(2.5)  # waits, because the server reads a recently changed folder a second time
         lists = []
 
         def view():
@@ -213,7 +215,7 @@ class Limits(web.WebTest):
         time.sleep(4)
         self.assertLess(processor_s(told.child.pid) - before, 0.4, "of 4 s")
         self.assertIn(b"event: state", page.recv(1 << 20), "an open page must continue")
-        self.assert_heard(told)  # connections without a request are closed
+        self.assert_heard(told)  # the server closes connections that send no request, so this request gets an answer
 
     def test_a_limit_of_descriptors_that_is_lowered_ends_nothing_but_pages(self):
         told = self.start_web()

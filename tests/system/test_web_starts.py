@@ -1,5 +1,5 @@
-"""Tests starts from a browser that does not receive the answer. softgrip-web must stop each of these starts by its id,
-and no other sequence."""
+"""Tests starts from a browser that does not receive the answer. softgrip-web must stop each of these sequences by the
+id of its start. It must not stop any other sequence."""
 
 import json
 import signal
@@ -26,7 +26,7 @@ class WebStarts(quiet_rig.QuietRigTest):
         self.processes.append(self.web)
 
     def open_start(self):
-        """A browser that has sent a start and waits."""
+        """A browser that has sent a start and waits for the answer."""
         browser = socket.create_connection(("127.0.0.1", self.web.port))
         self.addCleanup(browser.close)
         browser.sendall(REQUEST)

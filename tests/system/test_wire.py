@@ -1,5 +1,5 @@
-"""Cuts the connection in the middle of a grip and tests which fault latches, when it latches, how the outputs change,
-and which steps are needed to continue."""
+"""Cuts the connection in the middle of a grip. Tests which fault latches and when, how the outputs change, and which
+steps are needed to continue."""
 
 import bench
 
@@ -19,8 +19,8 @@ class Wire(bench.BenchTest):
         return daemon
 
     def check_cycles_to_fault(self, recording):
-        """Checks that the fault occurs no later than after the number of cycles without a successful exchange that the
-        rig file allows."""
+        """Checks that the fault occurs in time. The rig file states the permitted number of cycles without a
+        successful exchange."""
         rows = self.rows(recording, "left")
         faulted = next(i for i, row in enumerate(rows) if row["state"] == "faulted")
         missed = 0
@@ -30,8 +30,8 @@ class Wire(bench.BenchTest):
         self.assertGreaterEqual(missed, bench.BUS_DOWN_CYCLES // 2)
 
     def check_nothing_moves_until_started(self, daemon, rig_process, sequence="pick_stone"):
-        """The connection is restored: the rig stays vented and faulted until it is acknowledged, and nothing moves
-        until a new start."""
+        """After the connection is restored, the rig must stay vented and faulted until it is acknowledged. No finger
+        may move until a new start."""
         bench.wait_for("the bus", lambda: daemon.status()["bus"]["connected"])
         for _ in range(20):
             self.assertEqual(daemon.status()["state"], "faulted")
@@ -66,8 +66,9 @@ class Wire(bench.BenchTest):
         daemon.wait_for_event("fault_latched", code="F101")
         bench.wait_for("the end of the recording", lambda: not daemon.status()["recording"]["active"])
         self.check_cycles_to_fault(self.recordings()[0])
-        # The new emulator's fingers never moved, so they do not have the creep that the daemon's model still expects. A
-        # sequence that detects objects would therefore wait. A sequence that only presses starts at once.
+        # The fingers of the new emulator have never moved, so they have no creep, but the daemon's model
+        # still expects creep. So a sequence that detects objects would have to wait. A sequence that only
+        # sets a pressure starts at once.
         again = self.emulator("--object", "stone", port=port, name="softgrip-rig-again")
         self.check_nothing_moves_until_started(daemon, again, "pressure_staircase")
 

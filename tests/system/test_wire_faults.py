@@ -3,8 +3,9 @@ their code."""
 
 import bench
 
-# Which daemon fault latches when the wire fault lasts. A reply that makes no sense ends the session; it depends on the
-# moment whether the daemon last saw the failed next session or the reply.
+# Maps a permanent fault of the connection to the daemon faults that may latch. An invalid reply ends the
+# session. Depending on the moment, the last error of the daemon is the invalid reply or the failed next
+# session.
 WIRE = {
     "lost_request": ("", ("F101", "F102")),
     "no_reply": ("", ("F101", "F102")),
@@ -42,7 +43,7 @@ class WireFaults(bench.BenchTest):
     def test_one_bad_reply_is_survived(self):
         for kind in (*WIRE, "repeated_reply"):
             if kind == "disconnect":
-                continue  # it lasts until it is cleared: a cable is not disconnected for only one reply
+                continue  # a disconnect affects more than one reply, because it lasts until the test clears it
             with self.subTest(kind):
                 before = self.softgripd.result("statistics")["bus"]["exchanges"]
                 self.emulated.ask(f"fault {kind}_once")
@@ -50,7 +51,8 @@ class WireFaults(bench.BenchTest):
                                lambda: self.softgripd.result("statistics")["bus"]["exchanges"] > before + 10)
                 self.fresh_readings()
                 self.assertEqual(self.softgripd.status()["state"], "idle", self.softgripd.errors())
-                # A late or repeated reply must not shift later replies: the reading is still that of the finger.
+                # A late or repeated reply must not shift the later replies. So the reading must be that of
+                # the finger.
                 for channel in self.softgripd.status()["channels"]:
                     self.assertAlmostEqual(channel["displacement_mm"], 0, delta=0.3)
 

@@ -12,8 +12,8 @@ LOOK, OPERATE = "look-" + "a" * 20, "operate-" + "b" * 20
 
 
 class Web(bench.Process):
-    """softgrip-web on a free port for the daemon of the test. `access`: text of the access file. `operate`: socket for
-    commands."""
+    """A process of softgrip-web on a free port for the daemon of the test. `access` is the text of the access file.
+    `operate` is the socket for commands."""
 
     def __init__(self, folder, access="without_token: operate", name="softgrip-web", port=0, most=64, environment=None,
                  operate=None):
@@ -36,7 +36,7 @@ class Web(bench.Process):
         return found and found.group(1)
 
     def ask(self, path, body=None, method=None, token=None, headers=()):
-        """Sends a request as the page does, or with a token. Returns (status, text, headers)."""
+        """Sends a request like the page, or with a token. Returns (status, text, headers)."""
         request = urllib.request.Request(self.address + path, method=method,
                                          data=None if body is None else json.dumps(body).encode())
         if body is not None:
@@ -58,7 +58,7 @@ class Web(bench.Process):
         return status, json.loads(text)
 
     def metrics(self):
-        """Returns the values by their names with labels, as in the text."""
+        """Returns the values of the metrics. The keys are the names with labels, as in the text."""
         status, text, _ = self.ask("/metrics")
         if status != 200:
             raise AssertionError(f"/metrics: {status} {text}")
@@ -67,7 +67,7 @@ class Web(bench.Process):
 
 
 class WebTest(bench.BenchTest):
-    """A test with a rig, its daemon, and softgrip-web."""
+    """A test class with an emulated rig, its daemon, and softgrip-web."""
 
     def start_web(self, **keys):
         process = Web(self.folder, **keys)

@@ -1,9 +1,8 @@
-"""A Modbus TCP proxy between daemon and board that can disturb the connection and that records the written values.
+"""A Modbus TCP proxy between daemon and board. It can disturb the connection, and it records the written values.
 
-It knows the shipped ADAM-6024 map: six inputs from 0, two outputs from 10, input status from 20. A disturbance of a
-message has the name of a kind (KINDS); fault_matrix.yaml describes each kind by the class of faults that it
-represents.
-"""
+The proxy uses the addresses of the shipped ADAM-6024 map: six inputs from 0, two outputs from 10, input status from
+20. KINDS contains the names of the disturbances. fault_matrix.yaml describes the class of faults that each
+disturbance represents."""
 
 import contextlib
 import math
@@ -15,16 +14,17 @@ import threading
 import time
 
 INPUTS, OUTPUTS, STATUS = 0, 10, 20
-# 0-10 V are -5 to 45 mm on a +/-10 V input of 16 bits, and 0-100 kPa on an output of 12.
+# Scales of the board. Displacements of -5 to 45 mm are 0 to 10 V on a 16-bit input with a range of -10 to 10
+# V. Pressures of 0 to 100 kPa are the full range of a 12-bit output.
 RAW_PER_MM = 65535 / 20 * 10 / 50
 RAW_PER_KPA = 4095 / 100
 HIGHEST_INPUT = 65535
-# The permitted difference of a read-back (tolerance_raw of the board map).
+# Permitted difference between a written value and its read-back (tolerance_raw of the board map).
 TOLERATED_RAW = 1
 
 
 class Frame:
-    """One Modbus TCP message, divided into parts that can be changed."""
+    """One Modbus TCP message whose parts can be changed."""
 
     def __init__(self, raw):
         self.transaction, self.protocol, self.length, self.unit = struct.unpack(">HHHB", raw[:7])
@@ -41,14 +41,14 @@ class Frame:
         return struct.unpack(">H", self.pdu[1:3])[0]
 
     def words(self):
-        """Returns the words of a reply to a register read."""
+        """Returns the register values in the reply to a read."""
         return list(struct.unpack(f">{self.pdu[1] // 2}H", self.pdu[2:2 + self.pdu[1]]))
 
     def set_words(self, words):
         self.pdu[2:] = struct.pack(f">{len(words)}H", *words)
 
     def written(self):
-        """Returns the words of a request that writes several registers."""
+        """Returns the register values in a request that writes several registers."""
         return list(struct.unpack(f">{self.pdu[5] // 2}H", self.pdu[6:6 + self.pdu[5]]))
 
     def set_written(self, words):
@@ -56,15 +56,15 @@ class Frame:
 
 
 class Fault:
-    """A fault of the connection. `times`: number of messages that the fault affects."""
+    """A fault of the connection. `times` is the number of messages that the fault affects."""
 
     def __init__(self, kind, times=None, seed=1, **keys):
         self.kind = KINDS[kind]
         self.left = math.inf if times is None else times
         self.keys = keys
         self.random = random.Random(seed)
-        self.first_touch = None  # time.monotonic() of the first changed message
-        self.memory = {}  # state that a kind of fault keeps between messages
+        self.first_touch = None  # time.monotonic() of the first message that the fault changed
+        self.memory = {}  # values that a disturbance keeps from one message to the next
 
     def touch(self):
         """Returns True if this message must be changed."""
@@ -84,7 +84,7 @@ class Fault:
 
 
 class Session:
-    """One connection of the daemon and the proxy's own connection to the board."""
+    """One connection of the daemon to the proxy, with the proxy's connection to the board."""
 
     def __init__(self, proxy, client):
         self.proxy = proxy
@@ -92,7 +92,7 @@ class Session:
         self.board = socket.create_connection(("127.0.0.1", proxy.board_port), 10)
         for end in (self.client, self.board):
             end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        self.previous = None  # the previous reply
+        self.previous = None  # the reply to the previous request
 
     def read(self, end):
         header = self.read_exactly(end, 7)
@@ -135,7 +135,7 @@ class Session:
         self.send(reply.bytes())
 
     def wait_until_gone(self):
-        """Sends and answers nothing more, and returns when the daemon closes the session."""
+        """Sends no further message. Returns when the daemon closes the session."""
         while not self.proxy.closed:
             ready, _, _ = select.select([self.client], [], [], 0.05)
             if ready and not self.client.recv(4096):
@@ -146,7 +146,8 @@ class Session:
             end.close()
 
 
-# What can be done to a request and its reply. True: the message is done; False: the fault was not for this message.
+# Functions that disturb a request and its reply. They return True if they have handled the message, and False
+# if the fault does not apply to this message.
 
 def noticeable(words, others):
     return any(abs(a - b) > TOLERATED_RAW for a, b in zip(words, others))
@@ -188,12 +189,13 @@ def repeated(session, fault, request):
 
 
 def replayed(session, fault, request):
-    """Replies with old contents in a new frame, as a gateway with a cache does."""
+    """Replies with old contents in a frame with valid numbers, like a gateway with a cache."""
     reply = session.ask_board(request)
     session.proxy.note(request)
     if request.function == 4:
         old = fault.memory.setdefault((request.address(), len(reply.pdu)), bytes(reply.pdu))
-        # Old sensor readings within the noise cannot be noticed; outputs that do not follow can.
+        # The daemon cannot notice old sensor readings that differ only by noise. It can notice old outputs
+        # that do not follow its commands.
         true = reply.words()
         reply.pdu = bytearray(old)
         if request.address() == OUTPUTS and noticeable(true, reply.words()):
@@ -225,7 +227,7 @@ def other_function(session, fault, request):
 
 
 def twin(session, fault, request):
-    """Replies like another board of the same kind that is at rest and vented. The form of its messages is correct."""
+    """Replies like a board of the same type that is at rest and vented. The messages have the correct format."""
     reply = session.ask_board(request)
     session.proxy.note(request)
     if request.function == 4 and fault.touch():
@@ -260,7 +262,7 @@ def from_other_unit(session, fault, request):
 
 
 def out_of_order(session, fault, request):
-    """Answers each request with the answer to the previous request."""
+    """Answers each request with the reply to the previous request."""
     if not fault.touch():
         return False
     reply = session.ask_board(request)
@@ -293,7 +295,7 @@ def corrupted_header(session, fault, request):
 
 
 def changed_words(session, fault, request, change):
-    """Changes the words of the reply to a read of the inputs by `change` and passes the reply on."""
+    """Passes the reply to a read of the inputs on, after `change` has changed its register values."""
     reply = session.ask_board(request)
     session.proxy.note(request)
     if is_read_of(request, INPUTS) and len(reply.pdu) > 2 and reply.function == 4 and fault.touch():
@@ -336,11 +338,11 @@ def sensor_noise(session, fault, request):
 
 
 def sensor_dropout(session, fault, request):
-    """Removes the sensor signal from some readings."""
+    """Removes the signal of the sensor from some of the readings."""
     def change(words):
         fault.memory["n"] = fault.memory.get("n", 0) + 1
         if fault.memory["n"] % fault.key("every", 3) == 0:
-            words[0] = HIGHEST_INPUT / 2  # 0 V: a broken wire
+            words[0] = HIGHEST_INPUT / 2  # an input of 0 V, as from a broken wire
     return changed_words(session, fault, request, change)
 
 
@@ -351,7 +353,7 @@ def sensor_out_of_range(session, fault, request):
 
 
 def sensor_error(session, fault, request):
-    """Sets the board's status word of the left input to `over`."""
+    """Sets the status word of the left input to `over` (over range)."""
     reply = session.ask_board(request)
     session.proxy.note(request)
     if is_read_of(request, STATUS) and fault.touch():
@@ -382,7 +384,7 @@ def asymmetric(session, fault, request):
 
 
 def received_by_some(session, fault, request):
-    """Passes only the value for the right output on. The left output keeps its value from the beginning of the
+    """Passes the value for the right output on. The left output keeps the value that it had at the beginning of the
     fault."""
     def change(words):
         words[0] = fault.memory.setdefault("word", words[0])
@@ -390,7 +392,7 @@ def received_by_some(session, fault, request):
 
 
 def blocked(session, fault, request):
-    """Simulates another sender that sends without a pause, so that no answer arrives."""
+    """Simulates another sender on the line that sends without a pause, so that no reply arrives."""
     if not fault.touch():
         return False
     session.ask_board(request)
@@ -410,7 +412,7 @@ def reset(session, fault, request):
 
 
 def half_open(session, fault, request):
-    """Makes this session fail without a message to either side. New sessions work normally."""
+    """Makes this session fail without a message to the daemon or the board. New sessions work normally."""
     sessions = fault.memory.setdefault("dead", set())
     if not sessions:
         sessions.add(id(session))
@@ -422,7 +424,7 @@ def half_open(session, fault, request):
 
 
 def silent(session, fault, request):
-    """Keeps sessions open and accepts new sessions, but answers no request."""
+    """Keeps the sessions open and accepts new sessions, but answers no request."""
     if not fault.touch():
         return False
     session.wait_until_gone()
@@ -451,7 +453,7 @@ def stalled(session, fault, request):
 
 
 def exception(session, fault, request):
-    """Answers with an exception and carries out no request."""
+    """Answers every request with a Modbus exception, and carries out no request."""
     if not fault.touch():
         return False
     request.pdu = bytearray([request.function | 0x80, fault.key("code", 4)])
@@ -460,7 +462,7 @@ def exception(session, fault, request):
 
 
 def refused(session, fault, request):
-    """Ends all sessions, and ends new sessions immediately."""
+    """Closes all sessions, and closes new sessions immediately."""
     if not fault.touch():
         return False
     raise ConnectionError("refused")
@@ -474,8 +476,8 @@ KINDS = {f.__name__: f for f in (
 
 
 class Proxy:
-    """Accepts the connection of the daemon and connects to the board. `writes`: (time.monotonic(), [raw outputs]) of
-    each write that was passed on."""
+    """Accepts the connection of the daemon and connects to the board. `writes` contains (time.monotonic(), [raw
+    outputs]) of each write that was passed on."""
 
     def __init__(self, board_port):
         self.board_port = board_port

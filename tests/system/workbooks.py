@@ -1,4 +1,5 @@
-"""Writes workbooks (.xlsx) for tests, without the library that reads them (ECMA-376, part 1)."""
+"""Writes workbooks (.xlsx) for tests by the specification (ECMA-376, part 1), without the library with which softgrip
+reads them."""
 
 import io
 import zipfile
@@ -7,7 +8,8 @@ from xml.sax.saxutils import escape, quoteattr
 MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
 OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
 PACKAGE = "http://schemas.openxmlformats.org/package/2006/relationships"
-# Styles of cells: 0 plain, 1 date and time, 2 time of day, 3 a number with a unit in quotes.
+# The formats of cells by index: 0 plain, 1 date and time, 2 time of day, 3 a number followed by the text "
+# mm".
 STYLES = (f'<styleSheet xmlns="{MAIN}"><numFmts count="3"><numFmt numFmtId="164" formatCode="yyyy\\-mm\\-dd hh:mm:ss.000"/>'
           '<numFmt numFmtId="165" formatCode="[h]:mm:ss.000"/><numFmt numFmtId="166" formatCode="0.00&quot; mm&quot;"/></numFmts>'
           '<cellXfs count="4"><xf numFmtId="0"/><xf numFmtId="164"/><xf numFmtId="165"/><xf numFmtId="166"/></cellXfs></styleSheet>')
@@ -44,8 +46,8 @@ def letters(column):
 
 
 def sheet(rows, strings, first_row=1, first_column=0, below="", row_attributes=""):
-    """Returns the XML of a sheet with these rows of cells. A cell or a row that is None is missing in the file. Texts
-    are added to `strings`."""
+    """Returns the XML of a sheet with these rows of cells. The file does not contain cells and rows that are None.
+    New texts are added to `strings`."""
     lines = []
     for number, row in enumerate(rows, first_row):
         if row is None:
@@ -68,8 +70,8 @@ def sheet(rows, strings, first_row=1, first_column=0, below="", row_attributes="
 
 
 def package(sheets, strings=(), from_1904=False, changed=None):
-    """Returns the bytes of a workbook. `sheets`: XML by name. `changed`: parts that are replaced, or left out
-    (None)."""
+    """Returns the bytes of a workbook. `sheets` maps names to XML. `changed` maps files of the workbook to their new
+    content, or to None to leave a file out."""
     relations, listed, parts = [], [], {}
     for number, (name, xml) in enumerate(sheets.items(), 1):
         relations.append((f"rId{number}", "worksheet", f"worksheets/sheet{number}.xml"))
@@ -94,7 +96,7 @@ def package(sheets, strings=(), from_1904=False, changed=None):
 
 
 def book(rows, **options):
-    """Returns a workbook of one sheet."""
+    """Returns a workbook that has one sheet."""
     strings = []
     xml = sheet(rows, strings, **options)
     return package({"Run": xml}, strings)

@@ -1,8 +1,8 @@
-"""Simulates a rig that works for months, in virtual time. `softgrip run` records grips on fingers that change.
+"""Simulates a rig that works for months, in virtual time. `softgrip run` records grips with fingers that change.
 
-A change is made in the simulated plant, never in the recording: another gain of the model, a line that leaks, a sensor
-with a wrong scale. Only the time of day is written into run.json afterwards, because a run in virtual time has none.
-"""
+A finger changes only in the simulated plant: by a different gain of its model, a leak, or a sensor with a wrong
+scale. The recordings are not changed, with one exception. The date and time are written to run.json afterwards,
+because a run in virtual time has none."""
 import dataclasses
 import json
 import pathlib
@@ -12,7 +12,8 @@ import subprocess
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 MODEL = SOURCE / "config/models/bench_twin.yaml"
-# The parameters that increase with the gain, and the parameters that decrease with the gain.
+# The model parameters that increase with the gain (GAINS), and those that decrease when the gain increases
+# (STIFFNESSES).
 GAINS = {"alpha_mm_per_kpa": 0.21105, "beta_mm_per_kpa": 0.1713}
 STIFFNESSES = {"k0_kpa_per_mm": 325.9, "k1_kpa_per_mm": 18.16, "c1_kpa_s_per_mm": 299.8, "k2_kpa_per_mm": 2.761,
                "c2_kpa_s_per_mm": 1.621}
@@ -26,24 +27,24 @@ class Finger:
     """The simulated changes of a finger."""
     gain: float = 1
     zero_mm: float = 0
-    leak: float = 0  # lost share of the pressure
+    leak: float = 0  # share of the pressure that a leak removes
     valve_lag_s: float = VALVE_LAG_S
     gain_per_c: float = 0
 
 
 @dataclasses.dataclass(frozen=True)
 class Grip:
-    at: str  # UTC, "2026-08-01T08:00:00Z"
+    at: str  # date and time in UTC, such as "2026-08-01T08:00:00Z"
     seed: int
-    fingers: dict  # by name
+    fingers: dict  # changes of the fingers by the name of the finger
     sequence: str = "pick_stone"
-    part_mm: float = 12  # position of the part
+    part_mm: float = 12  # position of the part [mm]
     temperature_c: float = 20
     thermometer: bool = False  # the rig has one thermometer for all channels
 
 
 class Rig:
-    """Plays grips into folders of `recordings`."""
+    """Runs grips and stores the recordings in the folder `recordings`."""
 
     def __init__(self, softgrip, folder):
         self.softgrip = softgrip
@@ -52,7 +53,7 @@ class Rig:
         self.recordings.mkdir(parents=True, exist_ok=True)
 
     def baseline(self):
-        """Writes the logs of the healthy finger and the result of `softgrip baseline` for these logs."""
+        """Writes logs of the healthy finger, and the result of `softgrip baseline` for these logs."""
         logs = []
         for signal in ("tp1", "steps", "sp2"):
             logs.append(self.folder / f"{signal}.csv")
@@ -64,7 +65,7 @@ class Rig:
         return self.recordings / f"{grip.at.replace(':', '-')}_{grip.sequence}"
 
     def has(self, grip):
-        """Returns True if the sequence was played completely."""
+        """Runs a sequence. Returns True if the sequence was played completely."""
         story = self._run_of(grip) / "run.json"
         return story.exists() and "started_at" in json.loads(story.read_text())
 

@@ -10,7 +10,8 @@ here=$(dirname "$(realpath "$0")")
 mkdir -p "$work"
 say() { printf '   guest: %s\n' "$*"; }
 
-# Sets `kernel` to the release of the archive's PREEMPT_RT kernel; determined once per WORK.
+# Sets `kernel` to the release of the archive's PREEMPT_RT kernel. The release is determined once for each
+# folder WORK.
 find_kernel() {
   if [ ! -s "$work/release" ]; then
     apt-cache depends linux-image-rt-amd64 |
@@ -30,8 +31,8 @@ fetch() {
   mv "$folder" "$2"
 }
 
-# Debian's kernels have neither gpio-sim nor the simulated interrupts that it needs. Both are built from
-# Debian's own kernel source against Debian's headers, as one module.
+# The kernels of Debian have neither gpio-sim nor the simulated interrupts that gpio-sim needs. Both are built
+# as one module from the kernel source of Debian, with the kernel headers of Debian.
 build_gpio() {
   local build=$work/gpio.part source
   rm -rf "$build" "$work/source" && mkdir -p "$build"
@@ -41,7 +42,7 @@ build_gpio() {
     '*/drivers/gpio/gpiolib.h' '*/kernel/irq/irq_sim.c'
   cp "$work/source/drivers/gpio/gpiolib.h" "$build/"
   cp "$work/source/drivers/gpio/gpio-sim.c" "$build/lines.c"
-  # irq_to_desc() is not exported to modules; generic_handle_irq() does the same and is exported.
+  # The kernel does not export irq_to_desc() to modules. It exports generic_handle_irq(), which does the same.
   sed 's/handle_simple_irq(irq_to_desc(\(.*\)));/generic_handle_irq(\1);/' "$work/source/kernel/irq/irq_sim.c" \
     >"$build/interrupts.c"
   printf 'obj-m := gpio-sim.o\ngpio-sim-objs := lines.o interrupts.o\n' >"$build/Kbuild"
@@ -51,8 +52,8 @@ build_gpio() {
   mv "$build" "$work/gpio"
 }
 
-# The root file system as a tar file: the packages of a technician's computer, and the dependencies of the package,
-# because the guest has no network.
+# Writes the root file system as a tar file. It contains the packages of a technician's computer. It also
+# contains the dependencies of the softgrip package, because the guest has no network.
 build_root() {
   local needs wanted
   needs=$(dpkg-deb -f "$package" Depends | tr ',' '\n' | sed 's/[|(].*//; s/ //g' | grep -v '^$' | sort -u | paste -sd,)
@@ -65,7 +66,8 @@ build_root() {
   echo "$wanted" >"$work/root.packages"
 }
 
-# modules NAME ...: the files of these modules and of their dependencies, in the order in which they load
+# modules NAME ...: prints the files of these modules and of the modules that they depend on, in the order of
+# loading
 modules() {
   local name
   for name in "$@"; do
@@ -97,7 +99,8 @@ build_disk() {
   rm -rf "$root"
 }
 
-# Only what is needed to find the disk: busybox, the modules in their order, and a script.
+# The initial file system only has to find the disk. It contains busybox, the modules in their order, and a
+# script.
 build_initrd() {
   local folder=$work/initrd file
   rm -rf "$folder" && mkdir -p "$folder"/{bin,modules,proc,sys,dev,root}

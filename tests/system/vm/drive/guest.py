@@ -1,5 +1,5 @@
-"""Provides the functions for the steps in the guest: commands, the service, the emulator, and the printed result of
-each step."""
+"""Functions for the steps of the system test inside the guest system. They run commands, control the service and the
+emulator, and print the result of each step."""
 
 import json
 import os
@@ -17,12 +17,13 @@ RIG = CONFIGURATION / "rig_service.yaml"
 UNIT = "softgripd.service"
 SOCKET = "/run/softgrip/softgripd.sock"
 RUNS = pathlib.Path("/var/lib/softgrip/runs")
-# Generous limit, because the guest is emulated. Some steps have their own limits.
+# Longest waiting time [s]. It is generous, because the processor of the guest is emulated. Some steps have
+# their own limits.
 PATIENCE_S = 40
 
 
 class Failed(Exception):
-    """A step did not have the expected result."""
+    """Raised if a step did not have the expected result."""
 
 
 def expect(condition, what):
@@ -31,7 +32,8 @@ def expect(condition, what):
 
 
 def sh(command, check=True):
-    """Runs a command line and returns its output, both streams. The command must succeed unless `check` is false."""
+    """Runs a command line and returns both of its output streams as one text. The command must succeed if `check` is
+    true."""
     done = subprocess.run(["bash", "-c", command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           stdin=subprocess.DEVNULL, check=False)
     if check and done.returncode != 0:
@@ -40,7 +42,7 @@ def sh(command, check=True):
 
 
 def wait_for(what, condition, patience_s=PATIENCE_S, pause_s=0.1):
-    """Returns the first true result of condition() and the time until this result [s]."""
+    """Calls condition() until its result is true. Returns this result and the time that it took."""
     begin = time.monotonic()
     while True:
         result = condition()
@@ -52,7 +54,7 @@ def wait_for(what, condition, patience_s=PATIENCE_S, pause_s=0.1):
 
 
 def ask(path, line):
-    """Sends one line to a Unix socket and returns one line; None if there is no answer."""
+    """Sends one line to a Unix socket and returns one line, or None if there is no answer."""
     try:
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
             connection.settimeout(PATIENCE_S)
@@ -66,7 +68,8 @@ def ask(path, line):
 
 
 class Emulator:
-    """softgrip-rig as the board of the installed rig file. This board has no watchdog, so only softgrip can vent it."""
+    """A process of softgrip-rig as the board of the installed rig file. This board has no watchdog, so only softgrip
+    can vent its outputs."""
 
     control = "/run/emulator.sock"
     process = None
@@ -75,8 +78,8 @@ class Emulator:
         self.start()
 
     def start(self):
-        """Starts the service with fingers that never moved. A used finger would creep back for half a minute before a
-        start is accepted."""
+        """Starts the service with fingers that have never moved. A used finger would creep back for half a minute,
+        and the daemon would refuse a start during this time."""
         if self.process:
             self.process.kill()
             self.process.wait()
@@ -93,7 +96,7 @@ class Emulator:
         return took_s
 
     def expect_still(self, seconds):
-        """Checks that no pressure is commanded for this duration."""
+        """Checks that no pressure is commanded for `seconds`."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             expect(max(self.commands_kpa()) == 0, f"the outputs moved: {self.commands_kpa()}")
@@ -101,8 +104,8 @@ class Emulator:
 
 
 class Lines:
-    """A chip of simulated GPIO lines that the rig file uses and the test switches, and a second chip that the rig file
-    does not use."""
+    """A chip of simulated GPIO lines. The rig file uses the lines and the test switches them. There is also a second
+    chip that the rig file does not use."""
 
     label = "softgrip-panel"
     emergency_stop, enable = 0, 1
@@ -136,7 +139,7 @@ class Lines:
 
 
 class Service:
-    """softgripd.service, observed with systemctl, its socket and its journal."""
+    """The service softgripd.service. It is observed with systemctl, through its socket and in its journal."""
 
     @staticmethod
     def show(name):
@@ -177,7 +180,7 @@ class Service:
         return wait_for(f"event {kind} {keys}", find, patience_s)[0][0]
 
     def thread(self, name):
-        """Returns the id of a thread of the service."""
+        """Returns the id of a thread of the daemon."""
         tasks = pathlib.Path(f"/proc/{self.pid()}/task")
         for task in tasks.iterdir():
             if (task / "comm").read_text().strip() == name:
@@ -185,8 +188,8 @@ class Service:
         raise Failed(f"no thread {name}")
 
     def start_fresh(self, emulator):
-        """Brings the service to the idle state with a restart count of 0 and new fingers, regardless of the previous
-        step."""
+        """Restarts the service with new fingers and waits until it is idle with a restart count of 0, whatever the
+        previous step has done."""
         sh(f"systemctl stop {UNIT}; systemctl reset-failed {UNIT}", check=False)
         emulator.start()
         sh(f"systemctl start {UNIT}", check=False)
@@ -206,7 +209,7 @@ class Service:
 
 
 class Steps:
-    """Runs functions in order and prints for each whether its requirements were met."""
+    """Runs functions in order. Prints for each function if its requirements were met."""
 
     def __init__(self):
         self.failed = []
@@ -237,7 +240,7 @@ class Steps:
 
 
 def edit(path, *replacements):
-    """Replaces texts by patterns; each pattern must match."""
+    """Replaces each pattern in a file by a text. Each pattern must match at least once."""
     text = path.read_text()
     for pattern, replacement in replacements:
         text, count = re.subn(pattern, replacement, text)

@@ -1,4 +1,5 @@
-"""Stops one thread of another process, like a defect, until that process is gone: hang_thread.py TID."""
+"""Stops one thread of another process until this process has ended, like a thread with a defect: hang_thread.py
+TID."""
 
 import ctypes
 import os
@@ -6,7 +7,7 @@ import sys
 
 PTRACE_SEIZE = 0x4206
 PTRACE_INTERRUPT = 0x4207
-WALL = 0x40000000  # __WALL: threads as well
+WALL = 0x40000000  # __WALL: waitpid() also waits for threads
 
 libc = ctypes.CDLL(None, use_errno=True)
 libc.ptrace.argtypes = [ctypes.c_long, ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p]

@@ -1,5 +1,6 @@
-"""Measures the wake-up latency of softgripd and of cyclictest in turns, idle and loaded, and prints a table. In a guest
-whose clock counts instructions, the host has no influence, so the latency is caused by the kernel and the program."""
+"""Measures the wake-up latency of softgripd and of cyclictest in turns, with and without load, and prints a table.
+The clock of the guest counts instructions, so the host has no influence. The latency is therefore that of the kernel
+and the program."""
 
 import itertools
 import pathlib
@@ -16,7 +17,8 @@ TURN_S = 10
 ROUNDS = 3
 LOADS = ["hackbench -g 2 -f 4 -l 1000", "find / -xdev -type f -exec true {} +",
          "dd if=/dev/zero of=/var/tmp/load bs=64k count=64 conv=fsync"]
-# A quarter of a period, and twice the longest wake-up of cyclictest under load on this kernel (123 us).
+# Largest permitted latency [us]. It is a quarter of a control period, and twice the longest wake-up latency
+# of cyclictest under load on this kernel (123 us).
 MOST_US = 250
 RIG = CONFIGURATION / "rig_service.yaml"
 
@@ -91,7 +93,8 @@ def with_load(function, *arguments):
 def main():
     main_guard()
     sh(f"dpkg -i {sorted(DRIVE.glob('softgrip_*.deb'))[0]}")
-    # An exchange that the load delays counts as a missed cycle of the bus and does not end the run.
+    # If the load delays an exchange with the board, this counts as a missed bus cycle and does not end the
+    # run.
     edit(RIG, (r"host: .*", "host: 127.0.0.1"), (r"port: \d+", "port: 1502"), (r"cpus: \[1\]", "cpus: [0]"),
          (r"rate_hz: .*", f"rate_hz: {RATE_HZ}"), (r"priority: \d+", f"priority: {PRIORITY}"),
          (r"_cycles: [1-9]\d*", "_cycles: 100"), (r"max_missed_commands: \d+", "max_missed_commands: 100"))

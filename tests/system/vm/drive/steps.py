@@ -1,7 +1,7 @@
-"""Runs the system test inside the guest: installs the package, exposes the service to many failures, and purges the
-package.
+"""Runs the system test inside the guest system. It installs the package, exposes the service to many failures, and
+purges the package.
 
-    steps.py [SEED]    draws the random moments; the seed is printed, and drawn if not given
+  steps.py [SEED]    SEED determines the random times of the failures; without SEED, a random seed is used and printed
 """
 
 import hashlib
@@ -18,13 +18,15 @@ from guest import (CONFIGURATION, DRIVE, RIG, RUNS, UNIT, Emulator, Failed, Line
                    wait_for)
 
 service = Service()
-# WatchdogSec=, and the longest stall of a thread after which softgripd still notifies the service manager.
+# WatchdogSec= of the service [s]. For each thread: the longest stall [s] during which softgripd still
+# notifies the service manager.
 WATCHDOG_S = 2.0
 STANDSTILL_S = {"softgrip-loop": 0.55, "softgrip-bus": 1.05, "process": 0}
-# The time in which the emulated processor starts a confined program. A real processor needs hundredths of a second.
+# Time [s] that the emulated processor needs to start a program in the sandbox of the service. A real
+# processor needs hundredths of a second.
 START_S = 3.0
 DROP_IN = pathlib.Path(f"/run/systemd/system/{UNIT}.d/system-test.conf")
-# Files that the machine itself writes during the test, and files that tools leave beside the user database.
+# Files that the system writes during the test, and copies that tools make of the user database.
 NOT_COMPARED = ("/proc", "/sys", "/dev", "/run", "/tmp", "/mnt", "/var/log", "/var/lib/dpkg", "/var/cache", "/var/tmp",
                 "/var/lib/systemd", "/var/lib/apt", "/root")
 USER_DATABASE = {"/etc/passwd", "/etc/group", "/etc/shadow", "/etc/gshadow"}
@@ -38,7 +40,7 @@ def packages():
 
 
 def files():
-    """Returns every path, and the contents of the files in /etc."""
+    """Returns the paths of all files, and the contents of the files in /etc."""
     found = {}
     for folder, folders, names in os.walk("/"):
         folders[:] = [name for name in folders if os.path.join(folder, name) not in NOT_COMPARED]
@@ -145,7 +147,8 @@ gpio:
 
 
 def expect_came_back(state, restarts):
-    """Checks that the service vented, restarted once and is idle, and that no finger moves for 3 s."""
+    """Checks that the service has vented, has restarted once and is idle. Also checks that no finger moves for 3
+    s."""
     wait_for("a restart", lambda: service.restarts() == restarts + 1)
     service.wait_idle()
     state["emulator"].expect_still(3)
@@ -207,7 +210,8 @@ def stopped(state):
     wall = time.time()
     sh(f"systemctl stop {UNIT}")
     after = state["emulator"].commands_kpa()
-    # The controller acts until the last tick; a part that is released would be at 0.
+    # The controller acts until the last tick, so the outputs may change slightly. If the part had been
+    # released, the outputs would be 0.
     expect(all(abs(now - then) < 2 for now, then in zip(after, before)), f"held with {before}, left with {after} kPa")
     expect("ended normally" in service.journal(wall - 1), "ExecStopPost= did not say so")
     expect(service.show("Result") == "success", service.show("Result"))
