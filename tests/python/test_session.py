@@ -98,8 +98,8 @@ class Story(unittest.TestCase):
         told = Events()
         told.tell("overall_result", "HOLDING")
         told.session.subscribed({"since": 0, "started_at": "second"})
-        told.tell("overall_result", "RELEASED")  # belongs to a request of the new daemon; requests of both
-                                                 # daemons can have the same number
+        # Belongs to a request of the new daemon; requests of both daemons can have the same number.
+        told.tell("overall_result", "RELEASED")
         self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
         told.session.grip = 3
         self.assertFalse(told.session.ended())

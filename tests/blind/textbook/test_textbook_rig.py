@@ -62,10 +62,10 @@ class TextbookRig(unittest.TestCase):
         self.assertGreater(displacement_mm[0], 3)
         self.assertAlmostEqual(displacement_mm[1], 0, delta=0.1)
         vented = self.master.stay([0, 3], 2.0)
-        self.assertLess(5 * vented[0] - 5, displacement_mm[0] / 2)  # the tolerance is large, because creep
-                                                                    # and hysteresis decay slowly
-        self.assertAlmostEqual(5 * vented[1] - 5, displacement_mm[0], delta=0.1)  # both fingers have the same
-                                                                                  # parameters
+        # The tolerance is large, because creep and hysteresis decay slowly.
+        self.assertLess(5 * vented[0] - 5, displacement_mm[0] / 2)
+        # Both fingers have the same parameters.
+        self.assertAlmostEqual(5 * vented[1] - 5, displacement_mm[0], delta=0.1)
 
     def test_outputs_are_read_back_one_exchange_later(self):
         self.master.exchange([2.5, 1.25])
