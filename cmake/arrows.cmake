@@ -1,4 +1,5 @@
-# Run at build time: fails where a file of a room includes a header of a room that it may not use.
+# Runs at build time. Fails if a file of a room (source folder) includes a header of a room that it may not
+# use.
 #   FOLDERS  the room's own folders, by commas      USES   the folders that it may include
 #   FILES    a list of its files, one a line        STAMP  touched when all is well
 cmake_minimum_required(VERSION 3.25)

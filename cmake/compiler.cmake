@@ -1,13 +1,15 @@
-# Flags that every target of the project shares: warnings, sanitizers by one option.
+# Compiler flags that all targets of the project share: the warnings, and the sanitizers that the option
+# SOFTGRIP_SANITIZE selects.
 add_library(softgrip_flags INTERFACE)
 target_include_directories(softgrip_flags INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(softgrip_flags INTERFACE
   -Wall -Wextra -Wpedantic $<$<BOOL:${SOFTGRIP_WERROR}>:-Werror> -Wshadow -Wconversion -Wsign-conversion
   -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Wimplicit-fallthrough
-  # Bit-for-bit repeatable runs: no contraction of a*b+c that differs between compilers and call sites.
+  # No contraction of a*b+c, because compilers contract it at different places. So runs can be repeated bit
+  # for bit.
   -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # GCC 12 reports null dereferences inside inlined standard containers under -O2.
+  # With -O2, GCC 12 incorrectly reports null dereferences in inlined standard containers.
   target_compile_options(softgrip_flags INTERFACE -Wno-null-dereference)
 endif()
 if(SOFTGRIP_SANITIZE)
@@ -18,10 +20,11 @@ if(SOFTGRIP_SANITIZE)
   endif()
 endif()
 if(NOT SOFTGRIP_SANITIZE)
-  # What Debian's package builds with, for whoever runs another build on a rig.
+  # The hardening options of the Debian package. All builds have them, because a user may run another build on
+  # a rig.
   include(CheckCXXCompilerFlag)
   check_cxx_compiler_flag(-fcf-protection SOFTGRIP_HAS_CF_PROTECTION)
-  if(NOT CMAKE_BUILD_TYPE STREQUAL "Debug")  # it needs an optimiser
+  if(NOT CMAKE_BUILD_TYPE STREQUAL "Debug")  # _FORTIFY_SOURCE needs an optimised build
     add_compile_options(-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
   endif()
   add_compile_options(-fstack-protector-strong -fstack-clash-protection
@@ -29,6 +32,7 @@ if(NOT SOFTGRIP_SANITIZE)
   add_link_options(-Wl,-z,relro,-z,now)
 endif()
 if(SOFTGRIP_FUZZERS)
-  # Coverage of all libraries steers the fuzzer; only its own targets get its main().
+  # The coverage of all libraries guides the fuzzer. Only the fuzz targets themselves are linked with main()
+  # of libFuzzer.
   add_compile_options(-fsanitize=fuzzer-no-link)
 endif()

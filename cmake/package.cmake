@@ -1,9 +1,10 @@
-# The Debian package: `cpack` in the build folder, or scripts/package.sh. Programs go to /usr, whatever prefix the build
-# was configured with; the configuration always lives in /etc/softgrip.
+# Builds the Debian package with `cpack` in the build folder, or with scripts/package.sh. The package installs
+# the programs to /usr, whatever prefix the build has. The configuration is always in /etc/softgrip.
 set(packaging ${PROJECT_SOURCE_DIR}/packaging)
 set(packaged ${CMAKE_CURRENT_BINARY_DIR}/packaging)
 
-# Units and rules name programs by their full path, which only the installation knows.
+# The units and rules contain the full paths of programs. These paths are known only at installation time, so
+# the files are configured then.
 install(CODE "set(CMAKE_INSTALL_FULL_BINDIR \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")
 set(SOFTGRIP_CONFIGURATION \"${SOFTGRIP_CONFIGURATION}\")
 foreach(unit IN ITEMS softgripd softgrip-plc softgrip-web softgrip-health)
@@ -16,11 +17,11 @@ install(FILES systemd/softgrip-health.timer DESTINATION lib/systemd/system)
 install(FILES systemd/softgrip.sysusers DESTINATION lib/sysusers.d RENAME softgrip.conf)
 install(FILES systemd/softgrip.tmpfiles DESTINATION lib/tmpfiles.d RENAME softgrip.conf)
 
-# Man pages, where pandoc is there to make them.
+# Builds the man pages if pandoc is installed.
 find_program(SOFTGRIP_PANDOC pandoc)
 string(TIMESTAMP man_date "%Y-%m-%d" UTC)
 set(man_pages "")
-# man_page(NAME SECTION SUMMARY [PROGRAM] REFERENCE.md)
+# man_page(NAME SECTION SUMMARY [PROGRAM] REFERENCE.md)  builds and installs one man page
 function(man_page name section summary)
   set(page ${packaged}/man/${name}.${section}.gz)
   set(reference ${ARGV})
@@ -52,9 +53,9 @@ else()
   message(STATUS "pandoc is missing: no man pages")
 endif()
 
-# Completion for shells, out of the program that it completes.
+# The completion scripts of the shells. The program softgrip writes them.
 set(completions "")
-# completion(SHELL FILE FOLDER)
+# completion(SHELL FILE FOLDER)  writes and installs the completion script for one shell
 function(completion shell file folder)
   set(script ${packaged}/completion/${file})
   add_custom_command(OUTPUT ${script}
@@ -70,7 +71,7 @@ completion(zsh _softgrip zsh/vendor-completions)
 completion(fish softgrip.fish fish/vendor_completions.d)
 add_custom_target(completions ALL DEPENDS ${completions})
 
-# What only the package has.
+# Files that only the package contains: changelog, copyright and the overrides for lintian.
 set(SOFTGRIP_PACKAGE_RELEASE 1 CACHE STRING "Debian revision of the package")
 string(TIMESTAMP SOFTGRIP_PACKAGE_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)
 configure_file(${packaging}/deb/changelog.in ${packaged}/changelog.Debian @ONLY)
@@ -79,7 +80,7 @@ install(FILES ${packaged}/changelog.Debian.gz DESTINATION ${CMAKE_INSTALL_DOCDIR
 install(FILES ${packaging}/deb/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES ${packaging}/deb/lintian-overrides DESTINATION share/lintian/overrides RENAME softgrip)
 
-# Everything in /etc is a file that its owner may have changed.
+# All files in /etc are marked as configuration files, so that an upgrade keeps the changes of the user.
 file(GLOB_RECURSE conffiles CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/config ${PROJECT_SOURCE_DIR}/config/*)
 list(TRANSFORM conffiles PREPEND ${SOFTGRIP_CONFIGURATION}/)
 list(JOIN conffiles "\n" conffiles)
@@ -94,7 +95,7 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXE
 set(CPACK_PACKAGE_NAME softgrip)
 set(CPACK_PACKAGE_CONTACT "The softgrip developers <developers@softgrip.example>")
 set(CPACK_DEB_COMPONENT_INSTALL OFF)
-# The library has packages of its own (packaging/deb/library.sh).
+# packaging/deb/library.sh builds the packages of the library. This package does not contain the library.
 set(CPACK_INSTALL_CMAKE_PROJECTS "${CMAKE_BINARY_DIR};softgrip;Unspecified;/")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE ${SOFTGRIP_PACKAGE_RELEASE})

@@ -1,10 +1,11 @@
-# The extension module of the Python package, where pybind11 and the headers of the system's Python are there. The folder
-# python/softgrip of the build tree has it beside links to the package's files: PYTHONPATH=BUILD/python.
-# Python itself is built without sanitizers: the library of AddressSanitizer can be preloaded (tests/python/CMakeLists.txt).
+# Builds the extension module of the Python package if pybind11 and the headers of the system's Python are
+# installed. The folder python/softgrip of the build contains the module and links to the other files of the
+# package, so use PYTHONPATH=BUILD/python. The system's Python is built without sanitizers, so a test preloads
+# the library of AddressSanitizer (tests/python/CMakeLists.txt).
 if(SOFTGRIP_SANITIZE AND (NOT SOFTGRIP_SANITIZE MATCHES "address" OR SOFTGRIP_FUZZERS))
   return()
 endif()
-if(EXISTS /usr/bin/python3)  # another one that comes first in PATH has other headers
+if(EXISTS /usr/bin/python3)  # another python3 that is earlier in PATH would have different headers
   set(Python_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "Python of the extension module")
 endif()
 find_package(Python 3.9 COMPONENTS Interpreter Development.Module)

@@ -1,29 +1,31 @@
-# The house: every room (a folder), and the rooms whose headers it may include. Arrows point one way: a room may use
-# only rooms that stand above it in this file, and of those only the ones that it names. A source that includes another
-# room's header does not compile (arrows.cmake says which line and why). docs/explanation/architecture.md draws it.
+# The list of all rooms. A room is a source folder with the rooms whose headers it may include. A room may
+# only use rooms that are above it in this file and that it names after USES. If a source includes the header
+# of any other room, the build fails (arrows.cmake prints the line and the reason).
+# docs/explanation/architecture.md draws the rooms.
 #
-# Every .cpp of a room belongs to its library, but for the programs' main files; a new file needs no edit here.
+# Every .cpp file of a room belongs to its library, except the files with main(). A new file needs no edit
+# here.
 
-# Ground floor: nobody's in particular.
+# General functions that every room may use.
 softgrip_room(base LIBRARIES Threads::Threads)
 target_sources(softgrip_base PRIVATE ${version_file})
 add_dependencies(softgrip_base softgrip_version_file)
 softgrip_room(document USES base LIBRARIES yaml-cpp)
 
-# What a rig does, and its files.
+# The model of a finger, and its file format.
 softgrip_room(model FOLDERS model/blocks USES base)
 softgrip_room(model/file USES base document model)
 
-# What a tick runs.
+# The code that runs in every control cycle.
 softgrip_room(control/elements USES base model)
 softgrip_room(control/feedforward USES base model control/elements)
 softgrip_room(control/tick USES document model control/elements control/feedforward)
-# What is done before it.
+# Computations before the control cycles start: sequences and tuning.
 softgrip_room(control/sequences USES base document model control/elements control/feedforward control/tick
   LIBRARIES Eigen3::Eigen)
 softgrip_room(control/tuning USES base model control/elements control/feedforward control/tick control/sequences)
 
-# Boards.
+# Drivers of the boards.
 softgrip_room(drivers/board USES base model)
 softgrip_room(drivers/modbus USES base drivers/board LIBRARIES PkgConfig::modbus)
 softgrip_room(drivers/modbus_server USES base drivers/modbus)
@@ -33,22 +35,22 @@ if(gpiod_VERSION VERSION_GREATER_EQUAL 2)
   target_compile_definitions(softgrip_drivers_gpio PRIVATE SOFTGRIP_GPIOD_2=1)
 endif()
 
-# What stands in for the rig.
+# Simulated and emulated rigs.
 softgrip_room(simulation/plant USES base document model drivers/board)
 softgrip_room(simulation/emulator
   USES base document model drivers/board drivers/modbus drivers/modbus_server simulation/plant)
 
-# The file of softgrip-plc, which `softgrip check` reads too.
+# The file format of softgrip-plc. `softgrip check` also reads it.
 softgrip_room(rig/plc_file USES document drivers/modbus_server LIBRARIES fmt::fmt)
-# The file of softgrip-web, the same.
+# The file format of softgrip-web. `softgrip check` also reads it.
 softgrip_room(rig/web_file USES document drivers/modbus_server)
 
-# The rig file.
+# The file format of the rig.
 softgrip_room(rig
   USES base document model/file control/feedforward control/tick control/sequences drivers/board drivers/modbus
        drivers/iio drivers/gpio simulation/plant rig/plc_file rig/web_file)
 
-# The daemon.
+# The daemon softgripd.
 softgrip_room(daemon/loop USES base model control/elements control/tick drivers/board rig LIBRARIES spdlog::spdlog)
 softgrip_room(daemon/recording
   USES base control/elements control/tick rig daemon/loop
@@ -61,11 +63,11 @@ softgrip_room(daemon/service
   USES base control/tick drivers/board drivers/iio drivers/gpio rig daemon/loop daemon/recording daemon/panel daemon/socket
   LIBRARIES spdlog::spdlog nlohmann_json::nlohmann_json PkgConfig::systemd)
 
-# From a log to the reason.
+# System identification: from logs to a model and to the cause of its error.
 softgrip_room(sysid/logs USES base document model)
 softgrip_room(sysid/recordings USES base document sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(sysid/import USES base document model sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
-# Nobody else is to be compiled against them.
+# These libraries are linked PRIVATE, so that no other room is compiled against them.
 target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio PkgConfig::hdf5 PkgConfig::libzip PkgConfig::pugixml)
 softgrip_room(sysid/pages USES base model model/file sysid/logs)
 softgrip_room(sysid/fitting USES base model sysid/logs LIBRARIES Eigen3::Eigen Ceres::ceres)
@@ -109,16 +111,17 @@ softgrip_room(sysid/health
   USES base document model model/file control/elements sysid/logs sysid/recordings sysid/pages sysid/fitting sysid/diagnosis/causes
        sysid/changes sysid/diagnosis/experiments
   LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
-# The innermost loops of a fit; GCC 12 fails at them with -O3 and sanitizers.
+# These files contain the innermost loops of a fit and are compiled with -O3. With -O3 and a sanitizer, GCC 12
+# fails.
 if(NOT SOFTGRIP_SANITIZE)
   softgrip_flags_of(sysid/fitting -O3 chain_residuals.cpp separable.cpp separable_pressure.cpp separable_search.cpp)
 endif()
 
-# Programs.
+# The programs.
 softgrip_room(tools/command_line USES base document model model/file LIBRARIES CLI11::CLI11)
 target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_CONFIG_DIR="${SOFTGRIP_CONFIGURATION}")
 softgrip_room(tools/client USES base document control/tick control/elements rig tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
-# What stands in front of the daemon's socket, in processes of their own.
+# Gateways: separate processes between the daemon's socket and a network.
 softgrip_room(tools/plc USES base control/elements drivers/modbus_server rig/plc_file tools/client
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/web/metrics USES base LIBRARIES nlohmann_json::nlohmann_json)
@@ -130,11 +133,13 @@ softgrip_page_files(tools/web/page)
 if(httplib_VERSION VERSION_GREATER_EQUAL 0.18)
   target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_HTTPLIB_ADDRESSES=1)
 endif()
-# Separate from tools/command_line: the gateways, which a network reaches, do not link the readers of foreign files.
+# This room is separate from tools/command_line. So the gateways, which are reachable from a network, do not
+# link the readers of external files.
 softgrip_room(tools/log_input USES base document model sysid/logs sysid/import sysid/diagnosis/gauge tools/command_line
   LIBRARIES CLI11::CLI11)
 softgrip_room(tools/recordings USES base sysid/logs sysid/recordings sysid/pages)
-# By itself: librsvg wants -pthread, with which the headers of all rooms were not compiled.
+# This room has its own precompiled headers. librsvg needs -pthread, and the headers that the other rooms
+# share are compiled without it.
 softgrip_room(tools/figures USES base sysid/pages PRECOMPILE <string> <vector>)
 target_link_libraries(${softgrip_room_target} PRIVATE PkgConfig::librsvg)
 softgrip_room(tools/importing USES base document sysid/logs sysid/import tools/command_line
@@ -144,7 +149,7 @@ softgrip_room(tools/exporting
        tools/command_line tools/log_input
   LIBRARIES nlohmann_json::nlohmann_json)
 target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio)
-# What moves a rig by hand: doctor and calibrate.
+# Commands that move a rig without the daemon: doctor and calibrate.
 softgrip_room(tools/commissioning
   USES base document model model/file control/elements control/feedforward drivers/board drivers/modbus rig/plc_file
        rig/web_file rig daemon/loop daemon/recording tools/command_line
@@ -154,13 +159,13 @@ softgrip_room(tools/investigation
        daemon/service daemon/socket sysid/logs sysid/recordings sysid/pages sysid/identification sysid/diagnosis/causes
        sysid/diagnosis/verdict sysid/diagnosis/experiments sysid/diagnosis/report
   LIBRARIES nlohmann_json::nlohmann_json)
-# A report computed again.
+# Computes the values of a report a second time.
 softgrip_room(tools/verification USES base document model model/file sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
 # The studies of the paper. `softgrip study` runs them.
 softgrip_room(bench/studies
   USES base model control/elements control/feedforward control/tuning sysid/logs sysid/pages sysid/fitting
        sysid/identification)
-# The commissioning experiment on a rig.
+# Runs the commissioning experiment on a rig.
 softgrip_room(tools/baseline
   USES base daemon/service sysid/logs sysid/identification sysid/diagnosis/experiments tools/investigation)
 softgrip_room(tools/commands
@@ -172,7 +177,7 @@ softgrip_room(tools/commands
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json
   PRECOMPILE <CLI/CLI.hpp>)
 
-# The public library, which no room uses.
+# The public library. No other room uses it.
 softgrip_room(library FOLDERS library/include/softgrip
   USES base document model model/file control/elements control/feedforward control/tick drivers/board simulation/plant
        sysid/logs sysid/import sysid/fitting sysid/identification sysid/instrument sysid/diagnosis/report

@@ -1,9 +1,11 @@
 # softgrip_room(FOLDER [FOLDERS more ...] [USES room ...] [LIBRARIES target ...] [PRECOMPILE header ...])
-# A room is a folder, a static library of all its .cpp files (one that has none is an interface), and the rooms that
-# its files may include. PRECOMPILE: a library's header that most of its files include and that is most of their compile
-# time. Most of the rest are the same headers and templates in every file, so the files of a room are compiled as one: the
-# names in their unnamed namespaces differ. Both only with SOFTGRIP_PRECOMPILE. The target of daemon/loop is
-# softgrip_daemon_loop; ${softgrip_room_target} names the last one.
+# Adds a room: a folder, a static library of all its .cpp files, and the rooms whose headers its files may include. A room
+# without .cpp files is an interface library. The target of the room daemon/loop is softgrip_daemon_loop, and
+# ${softgrip_room_target} is the target of the most recent room.
+#
+# The other measures only reduce the compile time and need SOFTGRIP_PRECOMPILE. PRECOMPILE names a header that most files
+# of the room include and that takes most of their compile time. The files of a room are compiled as one file, because they
+# use the same headers and templates. So the names in their unnamed namespaces must differ.
 set_property(GLOBAL PROPERTY softgrip_rooms "")
 function(softgrip_room folder)
   cmake_parse_arguments(arg "" "" "FOLDERS;USES;LIBRARIES;PRECOMPILE" ${ARGN})
@@ -49,15 +51,16 @@ function(softgrip_room folder)
   set(softgrip_room_target ${target} PARENT_SCOPE)
 endfunction()
 
-# The shared library is made of the same objects as the programs. Names that it does not export are hidden, so that calls
-# within it are direct, as in a program.
+# The shared library consists of the same objects as the programs. The names that the library does not export are hidden,
+# so that calls within the library are direct, as in a program.
 function(softgrip_for_shared_library target)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON)
   target_compile_options(${target} PRIVATE -fno-semantic-interposition)
 endfunction()
 
-# softgrip_public_headers(FOLDER)  the last room also finds the headers under FOLDER as they are installed
+# softgrip_public_headers(FOLDER)  adds FOLDER to the include paths of the most recent room, so that it finds
+# the public headers as they are installed
 function(softgrip_public_headers folder)
   target_include_directories(${softgrip_room_target} PUBLIC ${PROJECT_SOURCE_DIR}/${folder})
 endfunction()
@@ -67,7 +70,7 @@ function(softgrip_target_of folder variable)
   set(${variable} ${name} PARENT_SCOPE)
 endfunction()
 
-# Before anything of a room compiles, what its files include is held against what the room may use.
+# Before a room is compiled, checks that its files include only headers of rooms that the room may use.
 function(softgrip_arrows target folders uses)
   set(stamp ${CMAKE_BINARY_DIR}/arrows/${target}.checked)
   string(REPLACE ";" "," folders "${folders}")
@@ -84,7 +87,7 @@ function(softgrip_arrows target folders uses)
   add_dependencies(${target} ${target}_arrows)
 endfunction()
 
-# softgrip_page_files(FOLDER)  the page of the folder (page.html, page.css, page.js) becomes part of the last room
+# softgrip_page_files(FOLDER)  compiles page.html, page.css and page.js of FOLDER into the most recent room
 function(softgrip_page_files folder)
   foreach(ending IN ITEMS html css js)
     set(file ${PROJECT_SOURCE_DIR}/${folder}/page.${ending})
@@ -95,14 +98,14 @@ function(softgrip_page_files folder)
   target_sources(${softgrip_room_target} PRIVATE ${CMAKE_BINARY_DIR}/page_files.cpp)
 endfunction()
 
-# softgrip_flags_of(ROOM FLAG FILES...)  compile options of some files of a room
+# softgrip_flags_of(ROOM FLAG FILES...)  sets a compile option for some files of a room
 function(softgrip_flags_of folder flag)
   list(TRANSFORM ARGN PREPEND ${PROJECT_SOURCE_DIR}/${folder}/)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS ${flag})
 endfunction()
 
-# softgrip_program(NAME FILES OUTPUT ROOM room [USES room ...] [LIBRARIES target ...])  an installed executable, in
-# the folder OUTPUT of the build tree
+# softgrip_program(NAME FILES OUTPUT ROOM room [USES room ...] [LIBRARIES target ...])  adds an executable
+# that is installed. OUTPUT is its folder in the build tree.
 function(softgrip_program name files output)
   cmake_parse_arguments(arg "" "ROOM" "USES;LIBRARIES" ${ARGN})
   list(TRANSFORM files PREPEND ${PROJECT_SOURCE_DIR}/)
@@ -114,13 +117,14 @@ function(softgrip_program name files output)
   target_link_libraries(${name} PRIVATE softgrip_flags ${arg_LIBRARIES})
   softgrip_compile_together(${name})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${output})
-  # All symbols are bound at the start: a first call in the loop must not look one up.
-  # And only libraries of which it calls something are loaded.
+  # All symbols are bound when the program starts, so that no first call in the control loop has to look one
+  # up. The program loads only libraries from which it calls a function.
   target_link_options(${name} PRIVATE -Wl,-z,relro,-z,now,--as-needed)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
-# clang wants the same definitions wherever a precompiled header is used; ccache finds nothing again behind one.
+# Clang requires the same definitions in every source that uses a precompiled header. ccache finds no cached
+# objects for sources with precompiled headers.
 function(softgrip_may_precompile variable)
   if(SOFTGRIP_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     set(${variable} TRUE PARENT_SCOPE)
@@ -128,24 +132,25 @@ function(softgrip_may_precompile variable)
     set(${variable} FALSE PARENT_SCOPE)
   endif()
 endfunction()
-# GCC 12 takes a short std::string for its inner buffer; that it happens in a system header hides it elsewhere, but not
-# where the header is precompiled or many files are one.
+# GCC 12 incorrectly warns about accesses to the inner buffer of a short std::string. In a system header, the
+# warning is normally hidden. It appears if the header is precompiled or if several files are compiled as one.
 set(softgrip_misread_strings -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
 
-# The files of a target are compiled as one (at most 32, which take 1.4 GB), where headers may be precompiled, too: a build
-# that is made once, in which nobody debugs.
+# Compiles up to 32 files of a target as one file, which takes 1.4 GB of memory. This is done if headers may
+# be precompiled, so in builds that are made once and not debugged.
 function(softgrip_compile_together target)
   softgrip_may_precompile(may)
   if(may)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 32)
     target_compile_options(${target} PRIVATE ${softgrip_misread_strings})
-    if(NOT SOFTGRIP_SANITIZE)  # whose reports name lines
+    if(NOT SOFTGRIP_SANITIZE)  # the reports of a sanitizer need line numbers
       target_compile_options(${target} PRIVATE -g0)
     endif()
   endif()
 endfunction()
 
-# What most rooms include is compiled once, where a room has no library of its own to precompile.
+# Compiles the headers that most rooms include once for all rooms. A room that precompiles its own library
+# headers does not use them.
 function(softgrip_precompile_for_rooms target own)
   if(own)
     target_precompile_headers(${target} PRIVATE ${own})
@@ -163,7 +168,7 @@ function(softgrip_precompile_for_rooms target own)
   target_precompile_headers(${target} REUSE_FROM softgrip_room_headers)
 endfunction()
 
-# softgrip_rooms(OUT room ...)  the targets of rooms
+# softgrip_rooms(OUT room ...)  sets OUT to the targets of the rooms
 function(softgrip_rooms variable)
   set(targets "")
   foreach(room IN LISTS ARGN)
@@ -173,8 +178,8 @@ function(softgrip_rooms variable)
   set(${variable} ${targets} PARENT_SCOPE)
 endfunction()
 
-# What all tests are compiled with: they check answers, not speed, and are most of what a build compiles. What every one
-# of them includes is compiled once.
+# Compile options of all tests. The tests are most of a build, and they check results, not speed, so they are
+# compiled with little optimisation. The headers that all tests include are compiled once.
 add_library(softgrip_test_flags INTERFACE)
 if(NOT SOFTGRIP_SANITIZE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
   target_compile_options(softgrip_test_flags INTERFACE -Og -g1)
@@ -202,11 +207,13 @@ endfunction()
 
 # softgrip_test(NAME FILES... [ROOMS room ...] [LINK target ...] [REALTIME test ...] [LONG test ...]
 #   [CAMPAIGN test ...] [PROPERTIES ...])
-# a GoogleTest program; its tests are discovered one by one. REALTIME: patterns of the tests that measure real time, which
-# a shared machine may disturb: they get a second attempt (scripts/ctest.sh). LONG: of those that compute for seconds,
-# which scripts/test.sh --quick leaves out and CTest begins with (COST), since one that began last would run alone.
-# CAMPAIGN: of those that take long and guard what another test of the same kind guards, too, for scripts/test.sh --all; a
-# name may stand there that a pattern of LONG has.
+# Adds a GoogleTest program. CTest runs each of its tests separately. Three options are lists of patterns of test names:
+#   REALTIME  tests that measure real time. A shared machine may disturb them, so they get a second attempt
+#             (scripts/ctest.sh).
+#   LONG      tests that compute for seconds. scripts/test.sh --quick leaves them out. CTest starts them first (COST),
+#             because a long test that starts last would run alone.
+#   CAMPAIGN  long tests that another test of the same kind nearly replaces. Only scripts/test.sh --all runs them. A
+#             CAMPAIGN test may also match a pattern of LONG.
 function(softgrip_test name)
   cmake_parse_arguments(arg "" "" "ROOMS;LINK;REALTIME;LONG;CAMPAIGN;PROPERTIES" ${ARGN})
   softgrip_rooms(rooms ${arg_ROOMS})
@@ -227,8 +234,8 @@ function(softgrip_test name)
   softgrip_discover(${name} "${long}" long COST 10 ${arg_PROPERTIES})
   softgrip_discover(${name} "${campaign}" campaign COST 10 ${arg_PROPERTIES})
 endfunction()
-# Each parameter has a name of its own, so CTest's names do without its value, which may be bytes with addresses in them
-# that differ from build to build.
+# Every parameter of a test has its own name. So CTest does not need the value of the parameter in the name.
+# Such a value may contain memory addresses, which differ between builds.
 function(softgrip_discover name filter label)
   if(filter AND NOT filter STREQUAL "*:-*")
     if(label)
@@ -240,7 +247,8 @@ function(softgrip_discover name filter label)
   endif()
 endfunction()
 
-# softgrip_fuzzer(NAME FILES... [ROOMS room ...] [LINK ...])  a libFuzzer target; only with SOFTGRIP_FUZZERS
+# softgrip_fuzzer(NAME FILES... [ROOMS room ...] [LINK ...])  adds a libFuzzer target; requires the option
+# SOFTGRIP_FUZZERS
 function(softgrip_fuzzer name)
   cmake_parse_arguments(arg "" "" "ROOMS;LINK" ${ARGN})
   softgrip_rooms(rooms ${arg_ROOMS})

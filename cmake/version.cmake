@@ -1,5 +1,6 @@
-# Run at build time: writes OUTPUT from INPUT with the version of the working tree as git names it, and only if it
-# changed. Without git or outside a repository (a release's tarball) the project's version stands alone.
+# Runs at build time. Writes OUTPUT from INPUT with the version that git gives to the working tree, and only
+# if the content has changed. Without a git repository, such as in a release tarball, the version is that of
+# the project.
 execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --tags
   OUTPUT_VARIABLE described OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
 set(SOFTGRIP_VERSION_TEXT "${VERSION}")
