@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The packages libsoftgrip0 (the shared library) and libsoftgrip-dev (headers, CMake and pkg-config files, examples):
-# library.sh SOURCE BUILD CHANGELOG.gz VERSION OUT_DIR prints their paths.
+# Builds the packages libsoftgrip0 (the shared library) and libsoftgrip-dev (headers, CMake and pkg-config
+# files, examples): library.sh SOURCE BUILD CHANGELOG.gz VERSION OUT_DIR prints their paths.
 set -euo pipefail
 source=$1 build=$2 changelog=$3 version=$4 out=$5
 . "$source/packaging/deb/tree.sh"
@@ -13,7 +13,8 @@ folder=usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)
 install -d "$work/run/$folder" "$work/run/DEBIAN"
 mv "$work/dev/$folder"/libsoftgrip.so.* "$work/run/$folder"
 libraries=$(libraries_of "$work/run/$folder/libsoftgrip.so.0")
-# Before 1.0.0 a minor version may change the interface.
+# Before version 1.0.0, each minor version may change the interface. So other packages depend on this version
+# or a later one.
 echo "libsoftgrip 0 libsoftgrip0 (>= ${version%%[+-]*})" >"$work/run/DEBIAN/shlibs"
 echo "activate-noawait ldconfig" >"$work/run/DEBIAN/triggers"
 packed "$work/run" libsoftgrip0 "$architecture"

@@ -1,7 +1,8 @@
-# Sourced: a Debian package out of a tree of files.
+# Functions to source. They build a Debian package from a folder tree.
 
-# packed TREE NAME ARCHITECTURE  adds copyright, changelog, overrides, control file (from NAME.control) and checksums, and
-# builds the package; prints its path. $source, $changelog, $version and $out are those of the script.
+# packed TREE NAME ARCHITECTURE  builds a package from TREE and prints its path. Before that, it adds the
+# copyright, the changelog, the overrides, the control file (from NAME.control) and the checksums. The calling
+# script sets $source, $changelog, $version and $out.
 packed() {
   local tree=$1 name=$2 architecture=$3
   local doc=$tree/usr/share/doc/$name package=$out/${name}_${version}_$architecture.deb
@@ -17,7 +18,8 @@ packed() {
   echo "$package"
 }
 
-# libraries_of FILE [FOLDER]  what a package with FILE depends on, with the libraries in FOLDER
+# libraries_of FILE [FOLDER]  prints the packages on which a package with FILE depends. FOLDER contains
+# further libraries that FILE needs.
 libraries_of() {
   local file folder=${2:+$(realpath "$2")} work
   file=$(realpath "$1")

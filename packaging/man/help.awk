@@ -1,4 +1,5 @@
-# What CLI11 prints as --help, as man source: options and subcommands become tagged paragraphs, the rest text.
+# Converts the output of --help (CLI11) to the source of a man page. Options and subcommands become tagged
+# paragraphs; all other lines become text.
 function roff(text) {
   gsub(/\\/, "\\e", text)
   gsub(/-/, "\\-", text)

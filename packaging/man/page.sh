@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# One man page, gzipped, out of what says the same elsewhere:
+# Writes a gzipped man page from the --help of a program and from a page of the documentation:
 #   page.sh VERSION DATE OUT.N.gz NAME SUMMARY [PROGRAM] REFERENCE.md
 #   with PROGRAM      synopsis and options out of its --help, then the reference
 #   without           the reference (a file format)
