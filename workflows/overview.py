@@ -1,4 +1,4 @@
-"""All rows of a table on one page, and as JSON: overview.py TABLE FOLDER."""
+"""Writes the results of all rows of a table to one page and to a JSON file: overview.py TABLE FOLDER."""
 import collections
 import html
 import json

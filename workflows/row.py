@@ -1,9 +1,10 @@
-"""One row of a table: its command is run, and row.json says what came of it.
+"""Runs the command of one row of a table and writes the result to row.json.
 
     row.py TABLE NAME --program softgrip [--threads 1] [--most-minutes 60] [--build BUILD] [--until UNIX_TIME]
 
-Called in the output folder by workflows/Snakefile. Whatever the command does, the exit code is 0 and TASK/NAME/row.json is
-written last, in one move: a row that was killed has none and is begun again. After --until, rows are not begun (75).
+workflows/Snakefile calls this program in the output folder. Whatever the command does, the exit code is 0.
+TASK/NAME/row.json is written at the end in one step. So a row that was killed has no row.json, and the next call runs
+it from its beginning. After the time --until, no row is started, and the exit code is 75.
 """
 import argparse
 import importlib
@@ -53,7 +54,7 @@ def read_json(path):
 
 
 def found_in(task, out):
-    """A line about a result, for the page."""
+    """Returns a short text about a result, for the page."""
     if task == "identify":
         told = read_json(out / "identify.json")
         return ", ".join(f"{value:.3g} mm" for value in told.get("rmse_mm", {}).values() if isinstance(value, float))
@@ -89,7 +90,7 @@ def run_world(row, args, out):
     world = json.loads(row.get("world"))
     try:
         judged = importlib.import_module(row.get("judge")).run_world(pathlib.Path(args.build), out, world)
-    except Exception as error:  # whatever it is, it is this world's
+    except Exception as error:  # any error belongs to this world only
         return {"status": "failed", "error": f"{type(error).__name__}: {error}"[-LONGEST_ERROR:]}
     return {"status": "done", "found": str(judged.get("outcome")), "world": judged}
 
@@ -109,7 +110,7 @@ def main():
     row = next(row for row in table.read(args.table) if row.name == args.name)
     place = pathlib.Path(row.result()).parent.resolve()
     place.mkdir(parents=True, exist_ok=True)
-    for left in place.glob("running-*"):  # of one that was killed
+    for left in place.glob("running-*"):  # these folders are left from rows that were killed
         shutil.rmtree(left, ignore_errors=True)
     running = pathlib.Path(tempfile.mkdtemp(prefix="running-", dir=place))
     began = time.monotonic()

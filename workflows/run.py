@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""A table of logs, recordings or rigs, row by row, on the cores of this machine or on Slurm; one page over all at the end.
+"""Runs the tasks in a table on the cores of this machine or on Slurm, and shows all results on one page.
 
     workflows/run.py TABLE --out DIR [--cores 2] [--slurm [--jobs 64] [--batch 20]] [--again]
 
-The table: workflows/table.py. Interrupted, by whatever, the same command goes on: rows that are done are not run again but
-where their line or what they read has changed. --again: nor are those that failed, otherwise. DIR/overview.html,
-DIR/overview.json, and DIR/TASK/NAME/ with row.json and result/. Exit codes: 0 all rows done, 1 the workflow was stopped, 2
-usage, 3 the table is refused, 4 Snakemake is missing, 5 the same DIR is in use, 6 some rows failed or are not acceptable.
+workflows/table.py describes the table. The same command continues an interrupted run. A finished row is run a second
+time only if its line or a file that it reads has changed. With --again, rows that have failed are also run a second
+time. The results are DIR/overview.html, DIR/overview.json, and for each row DIR/TASK/NAME/ with row.json and result/.
+Exit codes: 0 all rows done, 1 the workflow was stopped, 2 usage, 3 the table is refused, 4 Snakemake is missing, 5
+another run uses DIR, 6 some rows failed or have results that are not acceptable.
 """
 import argparse
 import fcntl
@@ -81,7 +82,8 @@ def main():
         print("snakemake is missing: apt install snakemake (scripts/packages.sh workflows)", file=sys.stderr)
         return 4
     args.out.mkdir(parents=True, exist_ok=True)
-    # Its own lock stays behind when Snakemake is killed; this one does not.
+    # When Snakemake is killed, its own lock file remains. The kernel releases this lock when the process
+    # ends.
     with (args.out / ".in_use").open("w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

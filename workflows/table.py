@@ -1,16 +1,17 @@
-"""The table of a workflow: CSV, or TSV by the file's ending .tsv. One row, one task.
+"""Reads the table of a workflow. The table is a CSV file, or a TSV file if its name ends in .tsv. Each row is one task.
 
-name      of the row, and of its folder: letters, digits, - _ .
+The columns, with the tasks that use them in parentheses:
+name      name of the row and of its folder: letters, digits, - _ .
 task      identify, diagnose, baseline, health or world
 data      logs, recordings or folders of recordings, separated by spaces (identify, diagnose, baseline, health)
-model     a model file (identify: to start from; diagnose, baseline)
-baseline  a folder of softgrip baseline, or @NAME: that of another row (diagnose, health)
-rig       a rig file that is moved (baseline)
-options   further words of the command line
-judge     whose run_world() a world goes through: judging, trial or changing (world)
-world     its settings as JSON (world)
+model     a model file; for identify, the start of the fit (identify, diagnose, baseline)
+baseline  a folder that softgrip baseline has written, or @NAME for the baseline of another row (diagnose, health)
+rig       the file of the rig that the experiment moves (baseline)
+options   further options of the command line
+judge     the module whose run_world() runs the world: judging, trial or changing (world)
+world     the settings of a simulated world as JSON (world)
 
-Paths are relative to the table. Every column but name and task may be missing; others are kept and ignored.
+Paths are relative to the folder of the table. Only the columns name and task are required. Unknown columns are ignored.
 """
 import csv
 import dataclasses
@@ -21,7 +22,7 @@ import shlex
 
 COLUMNS = ("name", "task", "data", "model", "baseline", "rig", "options", "judge", "world")
 JUDGES = ("judging", "trial", "changing")
-# What a task cannot do without; of a tuple, one.
+# The columns that each task needs. From the columns in a tuple, one is enough.
 NEEDED = {"identify": ("data",), "diagnose": ("data", ("model", "baseline")), "baseline": (("data", "rig"),),
           "health": ("data", "baseline"), "world": ("judge", "world")}
 TASKS = tuple(NEEDED)
@@ -29,14 +30,14 @@ quoted = shlex.quote
 
 
 class Refused(Exception):
-    """All that is wrong with a table, a line each."""
+    """Raised with all problems of a table, one per line."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Row:
-    folder: pathlib.Path  # of the table
+    folder: pathlib.Path  # folder of the table
     cells: dict
-    of: dict  # tasks by name, of all rows
+    of: dict  # maps the name of each row to its task
 
     @property
     def name(self):
@@ -56,15 +57,16 @@ class Row:
         return self.folder / self.get(column)
 
     def result(self, name=None):
-        """row.json, relative to the output folder."""
+        """Returns the path of row.json, relative to the output folder."""
         return f"{self.of[name]}/{name}/row.json" if name else f"{self.task}/{self.name}/row.json"
 
     def other_baseline(self):
-        """The row whose baseline this one reads, or None."""
+        """Returns the name of the row whose baseline this row reads, or None."""
         return self.get("baseline")[1:] if self.get("baseline").startswith("@") else None
 
     def inputs(self):
-        """Files and folders that are there; a change of one makes the row again."""
+        """Returns the existing files and folders that the row reads. If one of them changes, the row is run a second
+        time."""
         found = [log / "run.csv" if (log / "run.csv").exists() else log for log in self.logs()]
         found += [self.path(column) for column in ("model", "rig") if self.get(column)]
         other = self.other_baseline()
@@ -73,7 +75,7 @@ class Row:
         return [str(path) for path in found if path.exists()] + ([self.result(other)] if other else [])
 
     def text(self):
-        """What a change of makes the row again."""
+        """Returns the cells of the row as text. If this text changes, the row is run a second time."""
         return json.dumps([self.get(column) for column in COLUMNS])
 
 
@@ -107,7 +109,7 @@ def problems_of(row, seen):
 
 
 def read(path):
-    """The rows. Raises Refused with all that is wrong."""
+    """Returns the rows of the table. Raises Refused with all problems of the table."""
     path = pathlib.Path(path)
     with path.open(newline="", encoding="utf-8") as file:
         reader = csv.DictReader(file, delimiter="\t" if path.suffix == ".tsv" else ",")
