@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Measures the response time of softgripd's socket while other clients load it: answer_times.py [--seconds S]
 
-A daemon runs on the emulated rig at 1 kHz. One client sends a command every 5 ms. It runs alone, or together with
-watchers, floods of requests, and subscribers that never read. The turns have equal length and alternate: alone, loaded,
-alone, ... The output gives milliseconds, the wake-up latency of the loop and its overruns. Needs a release build
+A daemon runs on the emulated rig at 1 kHz. One client sends a command every 5 ms. In every second turn, other clients
+load the socket: watchers, floods of requests, and subscribers that never read. All turns have the same length. The
+script prints the response times [ms], the wake-up latency of the loop and its overruns. Needs a release build
 (SOFTGRIP_BUILD).
 """
 
@@ -24,7 +24,8 @@ COMMANDS = ("status", "events", "vent")
 
 
 class Crowd:
-    """Five watchers, five clients that never read their responses, and three that send requests as fast as possible."""
+    """Runs the load: five watchers, five clients that never read their responses, and three clients that send
+    requests as fast as possible."""
 
     def __init__(self, path):
         self.stop = threading.Event()
@@ -76,7 +77,7 @@ class Crowd:
 
 
 def measured(path, seconds):
-    """Returns the response time of each command [ms]."""
+    """Returns the response times of all commands [ms]."""
     lines = bench.Lines(path)
     times = {command: [] for command in COMMANDS}
     end = time.monotonic() + seconds

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Hides effects in new worlds (tests/blind), diagnoses them with `softgrip diagnose`, and counts the outcomes.
+"""Simulates worlds with hidden effects (tests/blind), diagnoses them with `softgrip diagnose`, and counts the
+outcomes.
 
     scripts/blind_campaign.py --work DIR [--build build/release] [--seeds 20] [--clean 200] [--outside 60] [--pairs 60]
                               [--strengths 8 2] [--causes ID ...] [--first-seed 1000] [--workers 1]
@@ -27,7 +28,8 @@ import judging  # noqa: E402
 import varying  # noqa: E402
 from ledger import Ledger  # noqa: E402
 
-# Causes with almost equal readings for every command. If both are hidden, no data can separate them.
+# Pairs of causes whose readings are almost equal for every command. If both causes of a pair are hidden, no
+# data can separate them.
 TWINS = [{"valve_lag", "sensor_lag", "transport_delay"}, {"stiffening", "sensor_nonlinearity"},
          {"pressure_saturation", "sensor_saturation", "contact"}, {"thermal_gain", "ageing"}]
 
@@ -38,7 +40,7 @@ def pairs(ids, count, seed):
 
 
 def worlds(args, ids, outside):
-    """Alternates between all kinds, so that an interrupted campaign contains all of them."""
+    """Sorts the worlds so that all kinds alternate. An interrupted campaign then contains worlds of every kind."""
     kinds = []
     for cause, strength in itertools.product(args.causes or ids, args.strengths):
         kinds.append([([cause], strength)] * args.seeds)

@@ -4,10 +4,11 @@
     scripts/blind_investigation.py --work DIR [--build build/release] [--campaign DIR] [--seeds 5] [--strengths 8 2]
                                    [--causes ID ...] [--first-seed 3000] [--page docs/results/blind-investigation.md]
 
-The worlds are the ambiguous ones of a campaign (scripts/blind_campaign.py --work DIR) and new ones that first write
-only one log of triangles, for which many diagnoses are ambiguous. If the diagnosis lists the true cause among its
-alternatives, the investigation plays the proposed experiments on the same world. If no waveform separates the causes,
-it checks the sensor of the world against a gauge. The script can be resumed like the campaign.
+The script uses the ambiguous worlds of a campaign (scripts/blind_campaign.py --work DIR) and new worlds. A new world
+first writes only one log of triangles, because many diagnoses of such a log are ambiguous. If the diagnosis lists the
+true cause among its alternatives, the investigation plays the proposed experiments on the same world. If no waveform
+separates the causes, the investigation checks the sensor of the world against a gauge. The script can be resumed like
+the campaign.
 """
 import argparse
 import collections

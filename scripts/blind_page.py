@@ -1,4 +1,5 @@
-"""The page of the blind campaign: what was found at which strength, as tables and two pictures (SVG)."""
+"""Writes the page of the blind campaign. Tables and two pictures (SVG) show which causes were found at which
+strength."""
 import collections
 import fractions
 import html
@@ -39,8 +40,9 @@ def interval(hits, count):
 
 
 def interval_by_seed(hits):
-    """Returns a share [%] of pairs (seed, hit) with its 95 % interval by a bootstrap over seeds (4,000 draws). Worlds
-    of one seed share their noise and actuator, so their errors are correlated."""
+    """Returns the share [%] of hits among pairs (seed, hit), with its 95 % interval. The interval is a bootstrap over
+    the seeds with 4,000 resamples. Worlds of one seed share their noise and actuator, so their errors are
+    correlated."""
     seeds = collections.defaultdict(list)
     for seed, hit in hits:
         seeds[seed].append(bool(hit))
@@ -93,7 +95,7 @@ def by_group(results):
 
 
 def bars(results):
-    """Draws the outcomes by hidden cause and strength as stacked bars."""
+    """Draws stacked bars of the outcomes for each hidden cause and strength."""
     rows = by_group(results)
     height, left, width = 15, 250, 460
     total = 46 + height * len(rows)
@@ -119,8 +121,8 @@ def bars(results):
 
 
 def confusion(results):
-    """Draws the hidden cause against the first named cause, over all strengths. Each of several alternatives counts by
-    its share."""
+    """Draws a matrix of the hidden causes and the causes that were named first, over all strengths. If a cause has
+    alternatives, each counts with its share."""
     singles = [r for r in results if len(r["causes"]) == 1]
     hidden = sorted({r["causes"][0] for r in singles}, key=lambda c: (is_outside(c), c)) + ["nothing"]
     named = [c for c in hidden if c != "nothing" and not is_outside(c)] + ["nothing", "unexplained"]
@@ -132,7 +134,8 @@ def confusion(results):
             continue
         for cause, rivals in zip(r["named"], r["rivals"]):
             for one in [cause, *rivals]:
-                row[one] += fractions.Fraction(1, len(r["named"]) * (1 + len(rivals)))  # whatever the order of rows
+                # Fractions make the sum independent of the order of the rows.
+                row[one] += fractions.Fraction(1, len(r["named"]) * (1 + len(rivals)))
     size, left, top = 21, 190, 175
     svg = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {left + size * len(named) + 45} '
            f'{top + size * len(hidden) + 20}" font-family="sans-serif" font-size="11">'
@@ -160,7 +163,8 @@ def confusion(results):
 
 
 def detection_limits(results):
-    """Returns by cause the share that was found at each strength, and the smallest strength that was found in 90 %."""
+    """Returns two values for each cause: the share that was found at each strength, and the smallest strength at
+    which 90 % were found."""
     singles = [r for r in results if len(r["causes"]) == 1 and not is_outside(r["causes"][0])]
     strengths = sorted({r["strength"] for r in singles}, reverse=True)
     lines = ["| cause | " + " | ".join(f"found at {s:g} x noise" for s in strengths) + " | smallest strength with at least 90 % found |",
@@ -199,7 +203,7 @@ def meaning(rows):
 
 
 def write(path, results, planned, command, variation, version):
-    """Writes the page. `variation`: the sentences on run-to-run variation."""
+    """Writes the page. `variation` contains the sentences about the run-to-run variation."""
     path = pathlib.Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     bars_path, confusion_path = (path.with_name(f"{path.stem}-{what}.svg") for what in ("outcomes", "confusion"))

@@ -1,6 +1,7 @@
-# To be sourced: builds and prints the last line of the build, or the lines of the failure.
+# A file to source. Its function builds and prints the last line of the output, or the error messages if the
+# build fails.
 
-# build PRESET [TARGET ...]
+# build PRESET [TARGET ...]  builds the targets
 build() {
   local preset=$1 log=build/$1.log
   shift

@@ -44,8 +44,8 @@ def causes_of(build, family, columns):
 
 
 def worlds(args, build):
-    """Returns all planned worlds in an order in which every part is a fair sample. A world does not depend on the other
-    worlds."""
+    """Returns all planned worlds. They are ordered so that the first worlds are a fair sample of all, however many
+    they are. A world does not depend on the other worlds."""
     planned = []
     for family, columns in itertools.product(("textbook", "first"), args.columns):
         kinds = [("none", 0, args.unchanged // 2 // len(args.columns))]
@@ -73,12 +73,13 @@ def table(rows, keys, outcomes):
 
 
 def with_runs(rows):
-    """Returns the rows with the number of their healthy logs."""
+    """Returns the rows with this number of healthy logs."""
     return [{**row, "baseline runs": row.get("baseline_runs", varying.BASELINE_RUNS)} for row in rows]
 
 
 def smallest_found(changed):
-    """Returns by number of baseline runs the smallest strength from which 90 % of the causes are named or listed."""
+    """Returns, for each number of baseline runs, the smallest strength at which 90 % of the causes are named or
+    listed."""
     lines = ["| baseline runs | smallest strength found in 90 % of the worlds |", "|---|---|"]
     for runs in sorted({row["baseline runs"] for row in changed}):
         smallest = "-"

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Counts the sources, the folders and the includes between them, on any checkout of this project:
+"""Counts the source files, the folders and the includes between folders, in any checkout of this project:
 
   scripts/count_house.py [--names] [CHECKOUT]
 
-Prints a table in Markdown. --names adds the places of each count. An include counts as one between folders if the
-header is in another folder. Product lines are those of .h and .cpp files outside tests/ and bench/.
-docs/results/house-counts.md compares two versions.
+Prints a table in Markdown. --names also prints the files that each count contains. An include counts as an include
+between folders if the header is in another folder than the file. Product lines are the lines of .h and .cpp files
+outside tests/ and bench/. docs/results/house-counts.md compares two versions.
 """
 
 import argparse
@@ -16,12 +16,12 @@ import subprocess
 
 SMALL, LARGE = 40, 400
 DIAGNOSE = "tools/commands/diagnose.cpp"
-# Files that may name a block: its own file and, if they exist, those of the causes.
+# Folders whose files may contain the id of a block.
 AT_HOME = ("model/", "sysid/diagnosis/causes/")
 
 
 def product(root):
-    """Returns {path: text} of the product's sources."""
+    """Returns {path: text} of the source files of the product."""
     listed = subprocess.run(["git", "-C", root, "ls-files", "--", "*.h", "*.cpp"], check=True, capture_output=True,
                             text=True).stdout.splitlines()
     return {name: (root / name).read_text() for name in listed
@@ -33,7 +33,7 @@ def folder(name):
 
 
 def included(sources):
-    """Returns {path: included headers of the project}."""
+    """Returns {path: headers of the project that the file includes}."""
     return {name: [header for header in re.findall(r'^#include "([^"]+)"', text, re.MULTILINE) if header in sources]
             for name, text in sources.items()}
 
@@ -82,7 +82,7 @@ def reached_from(start, sources, includes):
 
 
 def count(root):
-    """Returns [(measure, count, places)]."""
+    """Returns a list of (measure, count, places that are counted)."""
     sources = product(root)
     lines = {name: text.count("\n") for name, text in sources.items()}
     rooms = collections.Counter(map(folder, sources))

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Measures the branch coverage of control/, of the bus and of the loop: builds them with counters in build/coverage, runs
-# control_test, daemon_test and 100 worlds, and prints the branches per file and folder, least covered first. The list of
-# all branches that are not taken is build/coverage/branches.txt.
+# Measures the branch coverage of control/, the bus and the loop. The script builds them with counters in
+# build/coverage and runs control_test, daemon_test and 100 simulated worlds. It prints the branches per file
+# and folder, beginning with the lowest coverage. The list of all branches that are not taken is
+# build/coverage/branches.txt.
 #   scripts/coverage.sh
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
@@ -11,12 +12,12 @@ cmake -S . -B $build -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS="--cove
   -DSOFTGRIP_BENCHMARKS=OFF -DSOFTGRIP_PRECOMPILE=ON >/dev/null
 cmake --build $build --target control_test daemon_test softgrip-world >$build/build.log || { tail -n 30 $build/build.log; exit 1; }
 find $build -name '*.gcda' -delete
-# Tests that count allocations or system calls fail with these counters.
+# Tests that count allocations or system calls fail in this build, because its counters make such calls.
 $build/tests/control_test --gtest_brief=1 >$build/control.log 2>&1 || tail -n 5 $build/control.log
 $build/tests/daemon_test --gtest_brief=1 >$build/daemon.log 2>&1 || tail -n 5 $build/daemon.log
 $build/tests/world/softgrip-world --count 100 | tail -n 2
-# Branches for exceptions that the compiler adds to a call do not count, and neither do further copies of a header's
-# function in other objects.
+# Two kinds of branches are not counted: branches for exceptions that the compiler adds to a call, and further
+# copies of a header's function in other object files.
 gcovr -r . $build --branches --exclude-throw-branches --exclude-unreachable-branches --sort-percentage \
   --filter 'control/' --filter 'daemon/loop/(bus|loop|heartbeat)' --exclude '.*\.h$' \
   --txt $build/branches.txt --csv $build/branches.csv

@@ -1,10 +1,12 @@
-# To be sourced: runs the tests. A second attempt would hide a defect that occurs in 1 of 10 runs. Therefore only tests that
-# measure real time on a shared computer have one (label `realtime` in tests/CMakeLists.txt). These tests mostly wait, so
-# three per processor run at a time.
+# A file to source. Its functions run the tests. Only tests that measure real time on a shared computer get a
+# second attempt (label `realtime` in tests/CMakeLists.txt). For other tests, a second attempt would hide a
+# defect that occurs in 1 of 10 runs. Tests with this label mostly wait, so three per processor run at a time.
 
-# Tests that compute run at the same time in the idle class: they yield the processor at once.
+# Tests that compute run at the same time as the real-time tests. They run in the idle scheduling class, so
+# they yield the processor immediately.
 
-# start_computing_tests PRESET LABELS [CTEST OPTION ...]: runs every test without one of LABELS (a|b|c, or empty)
+# start_computing_tests PRESET LABELS [CTEST OPTION ...]  starts all tests that have none of the LABELS
+# (a|b|c, or empty)
 start_computing_tests() {
   local preset=$1 without=$2
   shift 2
@@ -13,7 +15,7 @@ start_computing_tests() {
   computing=$!
 }
 
-# end_computing_tests PRESET: waits for these tests, prints their results and returns their status
+# end_computing_tests PRESET  waits for these tests, prints their results and returns their exit status
 end_computing_tests() {
   local failed=0
   wait "$computing" || failed=1
@@ -21,14 +23,15 @@ end_computing_tests() {
   return $failed
 }
 
-# run_real_time_tests PRESET LABELS [CTEST OPTION ...]
+# run_real_time_tests PRESET LABELS [CTEST OPTION ...]  runs the tests that measure real time and have none of
+# the LABELS
 run_real_time_tests() {
   local preset=$1 without=$2
   shift 2
   ctest --preset "$preset" -j $((3 * $(nproc))) -L '^realtime$' ${without:+-LE "^($without)\$"} --repeat until-pass:2 "$@"
 }
 
-# run_ctest PRESET LABELS [CTEST OPTION ...]
+# run_ctest PRESET LABELS [CTEST OPTION ...]  runs both groups of tests
 run_ctest() {
   local failed=0
   start_computing_tests "$@"

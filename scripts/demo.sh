@@ -4,7 +4,8 @@
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 out=$(realpath -m "${1:-demo-output}")
-# Update an existing build. Otherwise build only the four programs, without debug information.
+# Updates an existing build. Without an existing build, builds only the four programs that the demo needs,
+# without debug information.
 build=build/release
 [ -f "$build/CMakeCache.txt" ] || build=build/demo
 
@@ -13,7 +14,7 @@ echo "Building (a few minutes the first time) ..."
 [ -f "$build/CMakeCache.txt" ] || cmake --preset demo >/dev/null
 build() { cmake --build "$build" -j "$(nproc)" --target softgrip softgripd softgrip-rig softgrip-web; }
 if [ -t 1 ]; then
-  build  # ninja keeps its progress on one line of a terminal
+  build  # on a terminal, ninja shows its progress on one line
 else
   build >"$build/demo.log" || { tail -n 40 "$build/demo.log" >&2; exit 1; }
 fi
@@ -86,7 +87,8 @@ for grip in $(seq -w 30); do
   "$softgrip" run config/sequences/pick_stone.yaml --rig "$work/worn_rig.yaml" --virtual-time --seed "$((10#$grip))" \
     --record "$out/grips/grip-$grip" --quiet --no-socket >/dev/null
 done
-"$softgrip" health "$out/grips" --baseline "$out/baseline" --out "$out/health" || [ $? -eq 6 ]  # 6: an alarm is active
+# Exit code 6 means that an alarm is active.
+"$softgrip" health "$out/grips" --baseline "$out/baseline" --out "$out/health" || [ $? -eq 6 ]
 
 say "All fingers are vented and all programs have stopped. Results in $out:"
 (cd "$out" && ls -1d pick_stone.svg runs/*/run.csv identified/report.html diagnosis/* changed/report.html health/*.html)

@@ -4,15 +4,17 @@
 #   scripts/fuzz.sh all MINUTES         one after the other, MINUTES each
 #   scripts/fuzz.sh list                their names
 #   scripts/fuzz.sh minimise TARGET     keeps the inputs of the grown corpus that add coverage: at most 100 files of 4 KiB
-# It starts from the corpus in the repository and extends it in build/fuzz/grown/TARGET. Each run adds a line with its
-# executions, coverage and findings to build/fuzz/runs.csv. Findings are in build/fuzz/findings. Exit code 1 if any.
-# FUZZ_BUILD names another folder with built targets, which is then not built. FUZZ_NICE=15 sets this niceness instead of
-# idle priority, which leaves a target almost no time on a busy computer.
+# A run starts with the corpus in the repository and collects new inputs in build/fuzz/grown/TARGET. Each run
+# adds a line with its executions, coverage and findings to build/fuzz/runs.csv. The inputs of the findings
+# are in build/fuzz/findings. The exit code is 1 if there are findings. FUZZ_BUILD names another folder with
+# built targets, which is then not built. FUZZ_NICE=15 sets this niceness instead of idle priority, which
+# leaves a target almost no time on a busy computer.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 home=build/fuzz
 
-# target | corpus in the repository | more seeds | dictionary | longest input
+# Columns: target | corpus in the repository | additional inputs to start with | dictionary | longest input
+# [bytes]
 targets() {
   cat <<'TABLE'
 yaml_fuzz|tests/document/corpus||tests/document/yaml.dict|4096
@@ -73,7 +75,8 @@ fuzz() {
   fi
 }
 
-# Copies the smallest set of short inputs with the coverage of the grown corpus into the repository.
+# Copies inputs of the grown corpus to the repository. The copied set is the smallest set of short inputs with
+# the same coverage.
 minimise() {
   local target=$1 corpus longest kept
   IFS='|' read -r _ corpus _ _ longest <<<"$(row_of "$target")"
@@ -82,7 +85,7 @@ minimise() {
   [ ! -d "$corpus" ] || folders+=("$corpus")
   "${priority[@]}" "$(program_of "$target")" -merge=1 "-max_len=$longest" -timeout=20 "$kept" "${folders[@]}" >/dev/null 2>&1
   mkdir -p "$corpus"
-  # Short inputs first, because a person can read them.
+  # Passes the short inputs first to the fuzzer, because a person can read short inputs.
   find "$kept" -type f -size -9 -printf '%s %p\n' | sort -n | head -n 100 | while read -r _ file; do
     cp "$file" "$corpus/"
   done

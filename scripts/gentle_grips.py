@@ -3,12 +3,13 @@
 
     scripts/gentle_grips.py [--build build/release] [--seeds 240] [--wire 0] [--side-by-side 8] [--first-seed 1] [--page PAGE.md]
 
-Each seed draws a part (stone, spring, screw, nut, washer, or none), one or two fingers, and the position of the part:
-up to 8 mm nearer or farther than the recipe expects, and for the second finger up to 1 mm different.
-tests/system/gripping.py defines how the gripping pressure is judged. A third of the seeds is repeated with fingers that
-move 2 % more, and 2 % less, than the model of the controller. The first --wire seeds are repeated in real time,
-softgripd with softgrip-rig over Modbus TCP, with --side-by-side rigs in parallel. The exit code is 1 if a gripping
-pressure exceeded that of the recipe, if an empty gripper reported a part, or if a part was missed.
+Each seed draws a part (stone, spring, screw, nut, washer, or none), one or two fingers, and the position of the part.
+The part is up to 8 mm nearer or farther than the recipe expects. For the second finger, the position differs by up to
+1 mm from that of the first finger. tests/system/gripping.py defines how the gripping pressure is judged. A third of
+the seeds is repeated with fingers that move 2 % more, and 2 % less, than the model of the controller. The first
+--wire seeds are repeated in real time, softgripd with softgrip-rig over Modbus TCP, with --side-by-side rigs in
+parallel. The exit code is 1 if a gripping pressure exceeded that of the recipe, if an empty gripper reported a part,
+or if a part was missed.
 """
 import argparse
 import concurrent.futures
@@ -113,7 +114,7 @@ Every third seed is repeated with fingers that move more or less than the contro
 
 
 def grips(finger, seeds, folder, play=gripping.play, side_by_side=1):
-    """Plays the trials of the seeds. Returns the judged trials by group, and the broken promises."""
+    """Plays the trials of the seeds. Returns the judged trials by group, and the list of violated guarantees."""
     groups, problems = {}, []
     trials = [gripping.drawn(seed) for seed in seeds]
     with concurrent.futures.ThreadPoolExecutor(side_by_side) as pool:

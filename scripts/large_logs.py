@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Measures the duration of softgrip for large logs: 40,000 rows in `diagnose`, 600,000 in `identify --structure auto`.
+"""Measures how long softgrip takes for large logs: 40,000 rows with `diagnose`, 600,000 rows with `identify
+--structure auto`.
 
     scripts/large_logs.py [--build build/release] [--threads 2] [--only CASE ...] [--page docs/results/large-logs.md]
 
@@ -29,8 +30,8 @@ MEDIAN_S = 10
 
 
 def command(length_s, rate_hz, seed):
-    """Returns times [s] and pressures [kPa]: ramps of 0.1 to 4 s to 0 or to 5 to 60 kPa, each with a hold of 0.5 to 6
-    s."""
+    """Returns times [s] and pressures [kPa] of a command. The command consists of ramps of 0.1 to 4 s to 0 kPa or to
+    a pressure between 5 and 60 kPa. After each ramp, the pressure is held for 0.5 to 6 s."""
     random = np.random.default_rng(seed)
     knots, at_s = [(0, 0), (2, 0)], 2
     while at_s < length_s - 4:
@@ -64,7 +65,8 @@ class Logs:
         return self.answer(model, *command(length_s, rate_hz, seed), seed)
 
     def measured(self, model, length_s, rate_hz, seed):
-        """Makes the model follow a measured pressure: the command with a lag of 0.1 s and 0.05 kPa of noise."""
+        """Changes the model so that its input is a measured pressure. This pressure follows the command with a lag of
+        0.1 s and has noise of 0.05 kPa."""
         time_s, command_kpa = command(length_s, rate_hz, seed)
         pressure_kpa, kept = np.empty_like(command_kpa), np.exp(-1 / (rate_hz * 0.1))
         state = 0.0
@@ -78,7 +80,7 @@ class Logs:
 
 
 def cases(logs):
-    """Returns {name: (program, arguments)}. Each case is created when it is needed."""
+    """Returns {name: (program, arguments)} of the cases. The files of a case are written when the case is needed."""
     def diagnose(given, data, healthy=()):
         return "diagnose", ["--model", given, "--data", *data, *(["--healthy", *healthy] if healthy else [])]
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Installs the MCAP reader for tests/system/test_export.py in build/mcap with npm, with the versions and hashes of
-# tests/system/mcap/package-lock.json. An installed reader needs no network.
-# If the computer reaches Debian's packages but no npm registry, the script reports it and writes build/mcap/unreachable.
-# The test then omits this reader. Any other failure is an error.
+# Installs the MCAP reader for tests/system/test_export.py in build/mcap with npm, with the versions and
+# hashes of tests/system/mcap/package-lock.json. If the reader is already installed, no network is needed. If
+# the computer can reach the packages of Debian but no npm registry, the script reports this and writes
+# build/mcap/unreachable. The test then skips this reader. Any other failure is an error.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 
@@ -13,7 +13,8 @@ if [ -d "$folder/node_modules/@mcap/core" ] && cmp -s "$pinned/package-lock.json
   exit 0
 fi
 rm -rf "$folder/node_modules"
-# node uses its own certificates. A network with its own authority has that authority in the system's certificates.
+# node uses its own list of certificates. A network with its own certificate authority has installed this
+# authority in the certificates of the system, so node must use them.
 system_authorities=/etc/ssl/certs/ca-certificates.crt
 [ ! -r $system_authorities ] || export NODE_EXTRA_CA_CERTS=${NODE_EXTRA_CA_CERTS:-$system_authorities}
 cp "$pinned/package.json" "$pinned/package-lock.json" "$folder/"

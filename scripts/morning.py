@@ -52,7 +52,7 @@ MENDED = (("sqeeze", "squeeze"), ("5 s", "5"), ("-20", "20"))
 
 
 def rounded(text):
-    """Masks times of day and ports and rounds measured numbers, because they differ between runs."""
+    """Masks times of day and ports, and rounds measured values, because these texts differ between runs."""
     text = re.sub(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d\.\d{3}", "hh:mm:ss", text)
     text = re.sub(r"127\.0\.0\.1:\d+", "127.0.0.1:1502", text)
     text = re.sub(r"\d+ ms old", "fresh", text)
@@ -62,8 +62,9 @@ def rounded(text):
 
 
 def sentences(page):
-    """Returns the sentences that --check compares. Numbers become #. It ignores line breaks, omitted lines, the part of
-    an exchange in which a connection broke, which of two watches reported it last, and the model's data so far."""
+    """Returns the sentences that --check compares. Numbers are replaced by #. The comparison ignores line breaks and
+    omitted lines. It also ignores details that differ between runs: how a connection broke, which watchdog reported
+    the break last, and how much data the model has."""
     text = re.sub(r"-?\d+(\.\d+)?", "#", page.replace("[...]", ""))
     text = re.sub(r"disconnected:[^.]*", "disconnected", " ".join(text.split()))
     text = text.replace("watchdog_tripped: no good exchange for # s: the board's own watchdog acts after # s",
@@ -86,8 +87,8 @@ def play():
                 self.page.append(textwrap.fill(paragraph, 118) + "\n")
 
         def show(self, *commands, keep=None, drop=None):
-            """Adds a command and its output to the page: only the lines that match `keep`, or those that do not match
-            `drop`."""
+            """Adds a command and its output to the page. If `keep` is given, adds only lines that match it. If `drop`
+            is given, leaves out lines that match it."""
             shown = []
             for command in commands:
                 done = self.softgrip(*command, expect=None)
@@ -104,12 +105,13 @@ def play():
             self.page.append("```\n" + rounded("\n".join(shown)) + "\n```\n")
 
         def show_status(self):
-            """Adds the status without the parts that never change in this page: loop, recording and bars."""
+            """Adds the output of `softgrip status` to the page. The lines about the loop, the recording and the bars
+            are left out, because they never change on this page."""
             self.show(("status",), drop=r"^(loop|recording|  (pressure|displacement) .*|$)|real time degraded")
 
         def show_failures(self, *command):
-            """Adds the failures of the doctor and the checks that were not judged because of them. Timing on a busy
-            computer is omitted."""
+            """Adds the failed checks of softgrip doctor, and the checks that could not be judged because of these
+            failures. The timing checks are left out, because the computer may be busy."""
             done = self.softgrip("doctor", *command, expect=6)
             shown, wanted = [f"$ softgrip doctor {' '.join(command)}".rstrip()], False
             for line in done.stdout.splitlines():
@@ -220,7 +222,8 @@ def play():
             self.write("faults.yaml", "faults:\n  - {name: cable, kind: disconnect}\n"
                                       "  - {name: blind, kind: sensor_out_of_range, channel: left}\n")
             port = self.emulate()
-            # Much shorter than the board's watchdog time, so that the watchdog is not detected first.
+            # This time is much shorter than the time-out of the board's watchdog, so that the watchdog does
+            # not trip first.
             rig = self.rig(port, ((r"bus_down_cycles: \d+", "bus_down_cycles: 10"),))
             self.emulated.end()
             self.softgripd = self.daemon(rig)

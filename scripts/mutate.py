@@ -25,14 +25,15 @@ from source_copy import SOURCE, copy_sources
 
 COPIES = SOURCE / "build/mutants"
 TIMEOUT_S = 240
-#: Folder -> what is built, and what is run, in this order.
+#: Each entry: a folder, the targets to build, and the test commands to run, in this order.
 FITTING = (
     ("control/", ("control_test",), (("tests/control_test", "--gtest_fail_fast"),)),
     ("daemon/loop/", ("daemon_test", "softgrip-world"),
      (("tests/daemon_test", "--gtest_fail_fast", "--gtest_filter=*Bus*:*Loop*:*Heartbeat*:*Ring*:*TripleBuffer*:*Histogram*"),
       ("tests/world/softgrip-world", "--count", "150", "--stop"))),
 )
-#: What worlds may still find when the unit tests of a folder did not.
+#: Further test commands for a folder. They run the simulated worlds if the unit tests have not detected a
+# defect.
 LAST = {"control/tick/": ("softgrip-world", ("tests/world/softgrip-world", "--count", "150", "--stop"))}
 OPERATORS = (
     (r"(?<![<>=!-])<(?![<=])(?= )", "<="), (r"(?<=\s)<=(?= )", "<"), (r"(?<=\s)>(?= )", ">="), (r"(?<=\s)>=(?= )", ">"),
@@ -52,7 +53,7 @@ class Mutant:
 
 
 def mutants_of(name):
-    """Returns every place of a file that an operator can change."""
+    """Returns every place of a file at which an operator of OPERATORS can insert a defect."""
     lines = (SOURCE / name).read_text().split("\n")
     found, in_comment = [], False
     for number, line in enumerate(lines, 1):
@@ -64,7 +65,7 @@ def mutants_of(name):
         for pattern, replacement in OPERATORS:
             for match in re.finditer(pattern, code):
                 new = code[:match.start()] + replacement + code[match.end():]
-                if replacement == "!(":  # if (...) of one line: the whole condition
+                if replacement == "!(":  # for if (...) on one line, the defect inverts the whole condition
                     end = closing(code, match.start())
                     if end is None:
                         continue
@@ -75,7 +76,7 @@ def mutants_of(name):
 
 
 def closing(code, begin):
-    """Returns the position of the bracket that closes the one before `begin`."""
+    """Returns the position of the closing bracket that belongs to the opening bracket before `begin`."""
     depth = 1
     for at in range(begin, len(code)):
         depth += {"(": 1, ")": -1}.get(code[at], 0)
@@ -85,7 +86,7 @@ def closing(code, begin):
 
 
 class Copy:
-    """A copy of the sources that is built."""
+    """A copy of the sources, in which one defect at a time is inserted and built."""
 
     def __init__(self, number):
         self.root = COPIES / str(number)
@@ -104,7 +105,7 @@ class Copy:
             sys.exit(done.stdout[-3000:] + done.stderr[-3000:])
 
     def judge(self, mutant):
-        """Returns "killed", "survived" or "does not build"."""
+        """Inserts a defect, builds and runs the tests. Returns "killed", "survived" or "does not build"."""
         path = self.root / mutant.name
         before = path.read_text()
         path.write_text(mutant.text)
@@ -129,11 +130,12 @@ class Copy:
         try:
             return self.run([self.root / "build/release" / command[0], *command[1:]], timeout=TIMEOUT_S).returncode != 0
         except subprocess.TimeoutExpired:
-            return True  # it hangs: noticed
+            return True  # a test that hangs has detected the defect
 
 
 def survivors_of(report):
-    """Finds the same places in the present sources, whose line numbers may differ."""
+    """Returns the survivors of an earlier report. Searches their places in the present sources, because the line
+    numbers may have changed."""
     listed = re.findall(r"^- (\S+?):\d+: `(.*)` -> `(.*)`$", report.read_text(), re.MULTILINE)
     return [next(m for m in mutants_of(name) if (m.old.strip(), m.new.strip()) == (old, new)) for name, old, new in listed]
 

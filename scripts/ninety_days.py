@@ -3,12 +3,13 @@
 
     scripts/ninety_days.py [--build build/release] [--healthy 6] [--seed 1] [--keep DIR] [--page PAGE.md]
 
-Two fingers grip four times a day, three times with one recipe and once with another. In every life, the temperature
-varies with the hour and the weather (which persists for days) and changes the gain of the fingers. The parts are at
-slightly different places, and the fingers wear a little. In the eventful life, a leak begins and grows, a sensor is
-displaced, a finger is replaced, another one softens, and a common supply line begins to leak. Repairs are noted.
-`softgrip run` makes every recording on a rig with a thermometer. The recordings are judged four times: with and without
-the temperature, for both fingers together and for each alone. The exit code is 1 if an event was not detected.
+Two fingers grip four times a day, three times with one recipe and once with another. Each simulation is called a
+life. In every life, the temperature changes the gain of the fingers. It varies with the hour and with the weather,
+which persists for days. The positions of the parts vary slightly, and the fingers wear a little. In the life with
+events, a leak begins and grows, a sensor is displaced, a finger is replaced, another finger softens, and a common
+supply line begins to leak. Each repair has a maintenance record. `softgrip run` makes every recording on a rig with a
+thermometer. The recordings are judged four times: with and without the temperature, for both fingers together and for
+each alone. The exit code is 1 if an event was not detected.
 """
 import argparse
 import concurrent.futures
@@ -53,8 +54,10 @@ class Event:
     what: str
     finger: str
     day: int
-    mended: int  # day; DAYS: not in these ninety
-    causes: tuple  # any of them is right; of both fingers: the number that must be told as shared
+    mended: int  # day of the repair; DAYS if there is no repair within the 90 days
+    # Each of these causes is a correct diagnosis; for an event of both fingers, the indicator that must be reported
+    # as shared.
+    causes: tuple
 
 
 EVENTS = (
@@ -68,9 +71,9 @@ NOTES = [(45, "left", "tube replaced"), (50, "right", "sensor put back"), (60, "
 
 @dataclasses.dataclass(frozen=True)
 class View:
-    """The input of `softgrip health` for one life."""
+    """The recordings of one life that `softgrip health` reads, with or without temperature."""
     temperature: bool
-    fingers: tuple  # those that are judged together
+    fingers: tuple  # fingers that are judged together
 
     def name(self):
         return "-".join(("warm" if self.temperature else "blind",) + self.fingers)
@@ -109,7 +112,7 @@ def finger_of(name, day, eventful):
 
 
 def live(softgrip, folder, seed, eventful):
-    """Makes the recordings of a life and scores each once."""
+    """Simulates the recordings of a life and computes the scores of each recording once."""
     rng = random.Random(seed)
     rig = working_life.Rig(softgrip, folder)
     if not (folder / "baseline/baseline.json").exists():
@@ -134,8 +137,8 @@ def call(softgrip, folder, recordings, out):
 
 
 def health(softgrip, folder, view, notes, until=DAYS):
-    """Returns the result for all recordings before a day. They are scored already, and the named recording is not
-    scored again."""
+    """Returns the result of softgrip health for all recordings before a day. Uses the stored scores, so that no
+    recording is scored a second time."""
     out = folder / f"{view.name()}-{until}"
     out.mkdir(exist_ok=True)
     noted = "".join(f"  - {{date: {text_of(day)}, finger: {finger}, mended: {what}}}\n" for day, finger, what in notes
@@ -173,7 +176,7 @@ def judged_common(softgrip, folder, view, event):
 
 
 def judged_event(softgrip, folder, view, event):
-    """Returns what was detected of an event before its repair: day, indicators, candidate fault."""
+    """Returns the day, the indicators and the candidate fault with which an event was detected before its repair."""
     if event.finger == BOTH:
         return judged_common(softgrip, folder, view, event)
     said = finger_in(health(softgrip, folder, view, NOTES, event.mended), event.finger)
@@ -191,7 +194,7 @@ def judged_event(softgrip, folder, view, event):
 
 
 def false_alarms(said, eventful):
-    """Returns the alarms without an event that explains them, with their day."""
+    """Returns the alarms that no event explains, each with its day."""
     found = []
     for finger in said["fingers"]:
         for alarm in finger["alarms"]:
@@ -203,7 +206,7 @@ def false_alarms(said, eventful):
 
 
 def warnings(said):
-    """Returns the warnings of the rig, which are not alarms."""
+    """Returns the warnings about the rig, which do not count as alarms."""
     told = [f"shared {one['number']} on day {day_of(one['noticed'])}, {one['change']:+.3g}" for one in said["shared_changes"]]
     for finger in said["fingers"]:
         told += [f"unclear {finger['finger']} {one['number']} on day {day_of(one['noticed'])}" for one in finger["unclear"]]
@@ -216,7 +219,8 @@ TOGETHER = {True: View(True, FINGERS), False: View(False, FINGERS)}
 
 
 def judge_life(softgrip, folder, eventful):
-    """Returns the results of a life in every view: false alarms, warnings, slopes."""
+    """Returns the results of a life for each selection of fingers, with and without temperature: false alarms,
+    warnings and slopes."""
     notes = NOTES if eventful else []
     told = {}
     for temperature, together in TOGETHER.items():

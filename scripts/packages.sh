@@ -14,7 +14,7 @@ for section in "$@"; do
   wanted+=("${names[@]}")
 done
 
-# Include packages that others provide: node of other archives provides npm.
+# Counts packages that another package provides. For example, nodejs from other archives provides npm.
 provided=" $(dpkg-query -W -f='${Status} ${Provides}\n' | sed -n 's/^install ok installed //p' | sed 's/([^)]*)//g' |
   tr ',\n' '  ') "
 missing=()

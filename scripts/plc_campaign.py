@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Grips through softgrip-plc while client, gateway and daemon are killed at random: plc_campaign.py [--grips N] [--seed S]
 
-Every command is counted where it is executed: in the daemon's events and on the emulated board. Exit code 6 if a
-command was executed twice, if an accepted command was not executed, or if a refused command was executed. The output
-lists the outcomes of the commands and the delay from the client's write to the output of the board (p50, p99, max).
+The script counts every execution of a command in the daemon's events and on the emulated board. The exit code is 6 in
+three cases: a command was executed twice, an accepted command was not executed, or a refused command was executed.
+The output lists the outcomes of the commands and the delay from the client's write to the output of the board (p50,
+p99, max).
 """
 
 import argparse
@@ -21,8 +22,8 @@ import plc  # noqa: E402
 OUTCOMES = {plc.ACCEPTED: "accepted", plc.REFUSED: "refused", plc.UNKNOWN: "unknown"}
 ERROR = 5
 RESULTS = {plc.HOLDING: "HOLDING", plc.NO_PART: "NO PART", plc.PART_LOST: "PART LOST", ERROR: "ERROR"}
-FREE_STROKE = 4  # the recipe
-# The share of disturbed grips: one in three.
+FREE_STROKE = 4  # number of the recipe free_stroke
+# Share of the grips that are disturbed: one in three.
 DISTURBED = 1 / 3
 
 
@@ -32,7 +33,8 @@ class Campaign(bench.BenchTest):
     def setUp(self):
         super().setUp()
         self.random = random.Random(self.seed)
-        # Without this, a finger whose programs were killed during a grip would need one or two minutes to come to rest.
+        # After a kill during a grip, the finger creeps. Without this change of the model, the finger would
+        # need one or two minutes to come to rest.
         self.creep_faster()
         self.board = self.emulator("--object", "stone")
         self.rig_path = self.rig(self.board.port)
@@ -60,7 +62,7 @@ class Campaign(bench.BenchTest):
         self.addCleanup(self.master.close)
 
     def disturb(self):
-        """Kills and restarts one of the three programs."""
+        """Kills and restarts the client, the gateway or the daemon."""
         victim = self.random.choice(("master", "gateway", "daemon"))
         self.counts[f"{victim} restarted"] += 1
         if victim == "daemon":
@@ -70,12 +72,13 @@ class Campaign(bench.BenchTest):
             self.gateway.kill()
             self.start_gateway()
         if victim in ("master", "gateway"):
-            # A PLC writes its block in every cycle. A restarted program begins with a counter without a command.
+            # A PLC writes its registers in every cycle. A restarted client begins with the counter of the
+            # gateway and gives no command.
             self.start_master(synchronise=victim == "master")
         return victim
 
     def starts(self):
-        """Returns the sequences that the running daemon has started since the last call."""
+        """Returns the number of sequences that the running daemon has started since the last call."""
         count = len(plc.started(self.softgripd))
         new, self.started_before = count - self.started_before, count
         return new
@@ -90,17 +93,19 @@ class Campaign(bench.BenchTest):
             time.sleep(self.random.choice((0, 0, 0.002, 0.01, 0.05, 0.5, 3)))
             victim = self.disturb()
         if victim in ("master", "gateway"):
-            # A restarted client does not repeat a command. It knows the outcome only if the gateway did not restart.
+            # A restarted client does not repeat its command. If the gateway has restarted, too, the outcome
+            # of the command is unknown.
             bench.wait_for("a daemon", lambda: self.master.read("state") != plc.NO_DAEMON_STATE)
         outcome = self.outcome_of(counter, victim)
-        # Sequences of a daemon that was killed must not be counted any more.
+        # The sequences of a daemon that was killed cannot be counted.
         executed = self.starts() if daemon is self.softgripd else None
         self.judge(outcome, executed, victim)
         self.come_to_rest()
 
     def outcome_of(self, counter, victim):
         if victim == "gateway":
-            # The new gateway cannot know whether the old one executed the command, so it must not execute it.
+            # The restarted gateway cannot know if the previous gateway has executed the command. So it must
+            # not execute the command.
             for _ in range(5):
                 self.master.write("command_counter", counter, plc.START, 1)
             if self.master.done(counter) != (plc.REFUSED, plc.FIRST_AFTER_START):
@@ -124,7 +129,8 @@ class Campaign(bench.BenchTest):
             self.wrong.append(f"refused and carried out ({victim})")
 
     def wait_for_result(self):
-        """Until the fingers move, the result is that of the previous grip. Fingers that do not rest never move."""
+        """Waits for the result of a grip. Before the fingers move, the gateway still has the result of the previous
+        grip. If the fingers are not at rest, the grip never begins."""
         self.master.wait("state", plc.RESYNCHRONISING, plc.RUNNING)
         self.master.wait("state", plc.RUNNING, plc.IDLE, plc.FAULTED)
         self.master.wait("result", *RESULTS)
@@ -133,14 +139,15 @@ class Campaign(bench.BenchTest):
         return result
 
     def stroke(self):
-        """Lets the next daemon learn the state of a finger after a grip whose daemon was killed."""
+        """Runs a stroke without a part. A daemon that was restarted after a kill during a grip learns the state of
+        the finger from this stroke."""
         self.counts["free strokes"] += 1
         self.master.command(plc.START, recipe=FREE_STROKE)
         self.master.wait("state", plc.RESYNCHRONISING, plc.RUNNING)
         self.master.wait("state", plc.IDLE)
 
     def come_to_rest(self):
-        """Vents, measures the delay to the board, and waits until the rig is idle again."""
+        """Vents, measures the delay from the command to the board, and waits until the rig is idle."""
         self.master.synchronise()
         bench.wait_for("a daemon", lambda: self.master.read("state") not in (plc.NO_DAEMON_STATE, 1))
         held = min(self.board.commands_kpa())
@@ -163,7 +170,7 @@ class Campaign(bench.BenchTest):
         began = time.monotonic()
         for number in range(self.grips):
             if number % 3:
-                # Some commands arrive while the gripper holds a part.
+                # Sends some of the commands while the gripper holds a part.
                 self.master.command(plc.START, recipe=1)
                 result = self.wait_for_result()
                 self.come_to_rest()

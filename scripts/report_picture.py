@@ -24,7 +24,7 @@ def softgrip(build, *arguments):
 
 
 def diagnosed(build, folder):
-    """Returns (verdict, SVG texts of the first figures)."""
+    """Diagnoses the logs of the demo. Returns (verdict, SVG texts of the first figures)."""
     logs = []
     for signal in ("tp1", "steps", "sp2"):
         logs.append(folder / f"{signal}.csv")

@@ -1,4 +1,5 @@
-# To be sourced: starts and stops an emulated rig and a daemon. The calling script sets these variables:
+# A file to source. Its functions start and stop an emulated rig and a daemon. The calling script sets these
+# variables:
 #   build=BUILD_DIR  work=EMPTY_FOLDER  runs=FOLDER_FOR_RECORDINGS
 softgrip=$build/tools/softgrip softgripd=$build/daemon/softgripd emulator=$build/tools/softgrip-rig
 daemon_pid= rig_pid=
@@ -6,7 +7,8 @@ daemon_pid= rig_pid=
 stop_daemon() { if [ -n "$daemon_pid" ]; then kill "$daemon_pid" 2>/dev/null; wait "$daemon_pid" 2>/dev/null; fi; daemon_pid=; }
 stop_rig() { if [ -n "$rig_pid" ]; then kill "$rig_pid" 2>/dev/null; wait "$rig_pid" 2>/dev/null; fi; rig_pid=; }
 
-# start_rig [OPTION_OF_SOFTGRIP_RIG ...]: starts two fingers like those of the bench on a free port
+# start_rig [OPTION_OF_SOFTGRIP_RIG ...]  starts softgrip-rig on a free port with two fingers of the model
+# bench_twin
 start_rig() {
   "$emulator" --model config/models/bench_twin.yaml --rig config/rig_tcp.yaml --tcp 0 "$@" >"$work/rig.log" 2>&1 &
   rig_pid=$!
@@ -15,9 +17,10 @@ start_rig() {
   [ -n "$port" ] || { echo "softgrip-rig did not start:" >&2; cat "$work/rig.log" >&2; return 1; }
 }
 
-# start_daemon [SED_EXPRESSION ...]: starts the example rig on this port, changed by the expressions. softgrip-rig is an
-# ordinary process and may respond late on a busy computer. Therefore this bus tolerates 0.28 s without a response, which
-# is within the board's watchdog time. The example rig tolerates 25 ms.
+# start_daemon [SED_EXPRESSION ...]  starts the daemon with the example rig file on this port; the sed
+# expressions change the rig file. softgrip-rig is an ordinary process and may respond late on a busy
+# computer. Therefore this rig file allows 0.28 s without a response, which is shorter than the time-out of
+# the board's watchdog. The example rig file allows 25 ms.
 start_daemon() {
   cp -r config/boards config/models config/sequences "$work/"
   local edits=(-e "s#port: 1502#port: $port#" -e "s#directory: /tmp/softgrip-runs#directory: $runs#"

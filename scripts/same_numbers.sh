@@ -13,7 +13,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 differs=0
 
-compare() {  # WHAT FILE
+compare() {  # compare NAME FILE
   if cmp -s "$work/other/$2" "$work/this/$2"; then
     echo "$1: the same"
   else
@@ -44,7 +44,7 @@ for side in other this; do
     "${build[$side]}/tools/softgrip" diagnose --model "$config/models/zhang2025.yaml" --data "${logs[@]}" \
       --out "$hidden" --no-closed-loop --json >"$hidden.json" 2>"$hidden.err" || true
   done
-  # Only the text of the heading has changed.
+  # Removes the first line, because its text differs between versions although the results are the same.
   "${build[$side]}/bench/tracking_study" | tail -n +2 >study.txt
 done
 

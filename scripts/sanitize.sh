@@ -12,8 +12,8 @@ cd "$(dirname "$(realpath "$0")")/.."
 . scripts/ctest.sh
 
 only_build=false
-without='^python\.test_fuzz$'  # of the first form, which does not build the module
-# sanitized PRESET TEST_PROGRAM ...
+without='^python\.test_fuzz$'  # the default form of this script does not build the Python module
+# sanitized PRESET TEST_PROGRAM ...  builds the test programs with a sanitizer preset and runs them
 sanitized() {
   local preset=$1 reports=$PWD/build/$1/reports failed=0
   shift

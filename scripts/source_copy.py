@@ -1,4 +1,5 @@
-"""Copies the sources for a separate build: tracked files, and new files that git does not ignore."""
+"""Copies the sources for a separate build. Copies the files that git tracks, and new files that git does not
+ignore."""
 
 import pathlib
 import shutil
@@ -8,7 +9,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[1]
 
 
 def copy_sources(folder):
-    """Copies the sources into `folder`, which is created."""
+    """Creates `folder` and copies the sources into it."""
     listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=SOURCE, check=True,
                             capture_output=True, text=True).stdout
     for name in filter(None, listed.split("\0")):

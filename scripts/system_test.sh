@@ -27,7 +27,7 @@ trap 'rm -rf "$drive"' EXIT
 
 bash scripts/packages.sh build package guest
 cp $vm/drive/* "$drive/"
-# Two packages of the same programs. The second one is the upgrade.
+# Builds two packages of the same programs. The guest installs the second package as an upgrade of the first.
 for revision in 1 2; do
   bash scripts/package.sh "$work/packages" "$revision" >"$work/package.log" 2>&1 || { cat "$work/package.log" >&2; exit 1; }
   package=$(tail -n 1 "$work/package.log")

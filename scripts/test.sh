@@ -27,14 +27,14 @@ $quick || bash scripts/mcap_reader.sh
 . scripts/ctest.sh
 started=$SECONDS
 say() { printf '\n== %s (%d s)\n' "$*" $((SECONDS - started)); }
-# The last lines of the output, with the omitted tests.
+# Prints the last lines of the output, which contain the skipped tests.
 end() {
   if [ -s build/mcap/unreachable ]; then printf '\nNOT TESTED: MCAP by its own reader, for %s\n' "$(cat build/mcap/unreachable)"; fi
   say "done"
   exit 0
 }
 
-# Other versions interpret .clang-format differently.
+# Other versions of clang-format interpret .clang-format differently.
 if clang-format --version 2>/dev/null | grep -q 'version 14\.'; then
   say "format"
   git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
@@ -51,11 +51,11 @@ if $quick; then
   exit 0
 fi
 
-# Runs at the same time as the tests, most of which wait.
+# The sanitizer build runs at the same time as the tests, because most tests wait.
 mkdir -p build
 without='recipe|campaign'
 if $all; then without=''; fi
-set -m  # separate process groups, so that each can be ended completely
+set -m  # starts each job in a separate process group, so that a signal can end the whole group
 chrt --idle 0 bash scripts/sanitize.sh build </dev/null >build/sanitize.log 2>&1 &
 sanitized=$!
 start_computing_tests release "$without"
@@ -64,7 +64,7 @@ trap 'kill -- -$sanitized -$computing 2>/dev/null || true' EXIT
 say "test: in real time"
 failed=false
 run_real_time_tests release "$without" || failed=true
-# Runs at the same time as the rest of the computing tests.
+# The package is built at the same time as the remaining tests that compute.
 say "package"
 bash scripts/package.sh | tail -n 1
 say "sanitizers"

@@ -8,7 +8,7 @@
 
 --seeds counts per cause, strength and kind of columns; --clean, --pairs and --triples count per kind of columns. The
 campaign can be resumed: the outcome of every world is one line of DIR/textbook.jsonl, and worlds in this file are not
-run again. At any time, the finished worlds are a fair sample of the planned ones. --page writes the tables, and the
+run again. At any time, the finished worlds are a fair sample of all planned worlds. --page writes the tables, and the
 pictures next to them; --most-minutes 0 writes it from the finished worlds. --variation X lets the runs vary
 (tests/blind/variation.h). The page states it.
 """
@@ -34,18 +34,18 @@ KEYS = ("causes", "strength", "seed", "make", "columns", "given", *varying.KEYS)
 
 
 def groups_of(ids, size, count, rng):
-    """Returns sets of causes without a pair that gives almost the same readings."""
+    """Returns sets of causes. No set contains two causes that give almost the same readings."""
     possible = [group for group in itertools.combinations(ids, size)
                 if not any(len(twins & {*group}) > 1 for twins in TWINS)]
     return rng.sample(possible, min(count, len(possible)))
 
 
 def worlds(args, ids, makes):
-    """Returns all planned worlds in an order in which every part is a fair sample. A world does not depend on the other
-    worlds."""
+    """Returns all planned worlds. They are ordered so that the first worlds are a fair sample of all, however many
+    they are. A world does not depend on the other worlds."""
     planned = []
     for columns in args.columns:
-        # Without measured pressure, a leak has the effect of a smaller gain.
+        # Without a measured pressure, a leak looks like a smaller gain of the finger.
         visible = [cause for cause in ids if cause != "leak" or columns == "pressure"]
         kinds = [([], 0, args.clean)]
         kinds += [([cause], strength, args.seeds)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Tracking of textbook fingers in closed loop over the network: the identified model's feedforward compared with PID alone
-and with the paper's scheme.
+"""Measures how well controllers track a reference with textbook fingers over the network. Compares three controllers:
+the feedforward of the identified model, PID alone, and the scheme of the paper.
 
     scripts/textbook_control.py --work DIR [--build build/release] [--fingers 10] [--side-by-side 5] [--page PAGE.md]
                                 [--frequencies-hz 0.05 0.1 0.2 0.5]
@@ -27,11 +27,11 @@ import sys
 import results_page
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-NOISE_MM = 0.04  # of the fingers' sensor
+NOISE_MM = 0.04  # RMS noise of the displacement sensors [mm]
 SENSITIVITIES = (2, 1.6, 1.3, 1.15)
 PIDS = {f"pid_{sensitivity:g}".replace(".", "_"): ("auto", "none", sensitivity) for sensitivity in SENSITIVITIES}
 OTHERS = {"identified": ("auto", "full_model", 2), "paper": ("bouc_wen", "bouc_wen", 2)}
-SCHEMES = PIDS | OTHERS  # channel: (model, feedforward, largest sensitivity)
+SCHEMES = PIDS | OTHERS  # maps the channel name to (model, feedforward, largest sensitivity)
 TRIAL_HZ = (0.2,)
 RIG = """name: textbook
 rate_hz: 200
@@ -82,7 +82,7 @@ def write_rig(work, port, gains):
 
 
 def tuned(softgrip, work):
-    """Returns the gains of every scheme, as keys of `pid` in a rig file."""
+    """Returns the controller gains of every scheme, as the key `pid` of a rig file."""
     gains = {}
     for name, (model, feedforward, sensitivity) in SCHEMES.items():
         write_rig(work, 1, {name: START})
@@ -97,8 +97,8 @@ def cycles_at(hz):
 
 
 def errors_mm(recording, names, frequencies_hz):
-    """Returns the root mean square of reading minus reference by (frequency, scheme), without the first cycle. A
-    reading is compared with the reference of its own time, which is age_s before the time of its row."""
+    """Returns the RMS [mm] of reading minus reference by (frequency, scheme), without the first cycle. The time of a
+    reading is age_s before the time of its row; the reference is that of the same time."""
     rows = {}
     with open(recording / "run.csv", encoding="ascii") as file:
         for row in csv.DictReader(file):
@@ -119,7 +119,7 @@ def errors_mm(recording, names, frequencies_hz):
 
 
 def followed(build, work, finger, span_mm, gains, frequencies_hz):
-    """Returns the errors of several controllers on equal fingers that run in parallel."""
+    """Runs several controllers in parallel, each on its own copy of the same finger. Returns their errors."""
     make, seed = finger
     mean_mm, amplitude_mm = 0.45 * span_mm, 0.25 * span_mm
     low = f"  - move: {{displacement_mm: {mean_mm - amplitude_mm:.3f}, speed_mm_per_s: 5, settle_s: 3, on_contact: ignore}}\n"
@@ -145,7 +145,7 @@ def span_of(work):
 
 
 def follow(build, work, finger, frequencies_hz):
-    """Processes one finger, from its campaign to its errors."""
+    """Runs all steps for one finger: campaign, identification, and control. Returns the errors."""
     make, seed = finger
     work.mkdir(parents=True, exist_ok=True)
     run(build / "tests/blind/textbook/textbook-world", "--seed", seed, "--make", make, "--out", work / "logs", "--truth",
@@ -162,7 +162,7 @@ def follow(build, work, finger, frequencies_hz):
 
 
 def beyond_noise(error_mm):
-    """Returns the error without the noise of the sensor, but at least 10 % of this noise."""
+    """Returns the error without the noise of the sensor. The result is at least 10 % of this noise."""
     return math.sqrt(max(error_mm**2 - NOISE_MM**2, (NOISE_MM / 10)**2))
 
 

@@ -1,5 +1,5 @@
-"""The page of the textbook campaign: found, wrong and missed by make, cause, strength and columns, with two
-pictures."""
+"""Writes the page of the textbook campaign. Tables and two pictures show the found, wrong and missed causes by make,
+cause, strength and columns."""
 import collections
 import json
 import math
@@ -80,7 +80,8 @@ def columns_text(columns):
 
 
 def clean_table(rows):
-    """Returns per make and columns the held-out error and the named causes of worlds without an effect."""
+    """Returns, for each make and each set of columns, the held-out error and the named causes of worlds without a
+    hidden effect."""
     lines = []
     for make in sorted({r["make"] for r in rows}):
         for columns in sorted({r["columns"] for r in rows}, reverse=True):
@@ -98,7 +99,7 @@ def clean_table(rows):
 
 
 def split_table(rows, key, text=str):
-    """Returns the found and wrong causes of worlds with effects, split by `key` and strength."""
+    """Returns the found and wrong causes of worlds with hidden effects, grouped by `key` and strength."""
     strengths = sorted({r["strength"] for r in rows if r["causes"]}, reverse=True)
     lines = []
     for value in sorted({r[key] for r in rows}):
@@ -110,7 +111,7 @@ def split_table(rows, key, text=str):
 
 
 def cause_table(rows):
-    """Returns the outcomes per cause that was hidden alone."""
+    """Returns the outcomes of worlds with one hidden cause, by cause."""
     singles = [r for r in rows if len(r["causes"]) == 1]
     strengths = sorted({r["strength"] for r in singles}, reverse=True)
     lines = []
@@ -173,7 +174,7 @@ recorded, it is the input of the finger (`--drive measured`), and the valve is j
 
 
 def write(path, results, planned, command, variation, version):
-    """Writes the page. `variation`: the sentences on run-to-run variation."""
+    """Writes the page. `variation` contains the sentences about the run-to-run variation."""
     path = pathlib.Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     bars_path, confusion_path = (path.with_name(f"{path.stem}-{what}.svg") for what in ("outcomes", "confusion"))
@@ -181,7 +182,8 @@ def write(path, results, planned, command, variation, version):
     rows_path = path.with_suffix(".jsonl")
     rows_path.write_text("".join(sorted(json.dumps(r) + "\n" for r in results)))
     bars_path.write_text(blind_page.bars(rows))
-    # The picture omits the causes of the finger's own physics, because they are almost always named correctly.
+    # The picture leaves out the causes that a finger has even without a hidden effect, because they are
+    # almost always named correctly.
     plain = [{**r, "named": [], "rivals": []} for r in rows]
     for r, full in zip(plain, rows):
         for name, rivals in zip(full["named"], full["rivals"]):

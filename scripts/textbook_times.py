@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Measures the duration of `softgrip diagnose` on three logs of 8,000 to 13,000 samples each.
+"""Measures how long `softgrip diagnose` takes for three logs of 8,000 to 13,000 samples each.
 
     scripts/textbook_times.py [--build build/release] [--worlds 24] [--threads 2] [--first-seed 1000] [--page PAGE.md]
 
-The worlds are the first of a campaign of scripts/textbook_campaign.py, read at 200 Hz: every make, half of them with
-recorded pressure (`--drive measured`), without an effect and with one, two and three effects. The diagnoses run one
-after the other with everything that a user gets: refit, search, held-out logs, intervals, the closed loop and the
-report. Run nothing else at the same time.
+The worlds are the first worlds of a campaign of scripts/textbook_campaign.py, sampled at 200 Hz. They contain every
+make. Half of them have a recorded pressure (`--drive measured`). They have zero to three hidden effects. The
+diagnoses run one after the other with everything that a user gets: refit, search, held-out logs, intervals, the
+closed loop and the report. Run nothing else at the same time.
 """
 import argparse
 import os
@@ -42,7 +42,7 @@ def processor_s():
 
 
 def timed(build, threads, world):
-    """Returns the world with wall_s, processor_s, samples and the seconds of the stages."""
+    """Returns a copy of the world with wall_s, processor_s, samples and the duration [s] of each stage."""
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         logs, _ = trial.make_logs(build, work, world, "--rate-hz", "200", *trial.hiding(world))
@@ -68,7 +68,7 @@ def summary(rows):
 
 
 def shares(rows):
-    """Returns the share of each stage in the total time."""
+    """Returns the share of each stage in the total duration."""
     stages = {stage for row in rows for stage in row["stages_s"]}
     total = sum(r["wall_s"] for r in rows)
     took = {stage: sum(r["stages_s"].get(stage, 0) for r in rows) for stage in stages}

@@ -8,7 +8,7 @@ build/tidy remembers the result of a clean source until the source, a header of 
 compiler command, .clang-tidy or the version of clang-tidy changes. If the build compiles the files of a folder as one
 and more than a few of them are due, clang-tidy also checks them as one, in a tenth of the time. The compiler then
 checks one by one that each file includes the headers that it needs. The environment may set JOBS and BUILD_DIR
-(default: all cores, build/release). Exit code 1 if there are findings.
+(default: all cores, build/release). The exit code is 1 if there are findings.
 """
 
 import concurrent.futures
@@ -26,7 +26,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 BUILD = ROOT / os.environ.get("BUILD_DIR", "build/release")
 CACHE = ROOT / "build/tidy"
 FEW = 3
-# A test may copy objects, and it may sample a curve from 0 to 1 in steps of 0.1.
+# Checks that tests are exempt from, because a test may copy objects and may count from 0 to 1 in steps of
+# 0.1.
 OFF_IN_TESTS = "-performance-*", "-clang-analyzer-security.FloatLoopCounter"
 
 
@@ -36,15 +37,15 @@ def sources(places):
 
 
 def commands():
-    """Returns the compiler arguments by source, without precompiled headers and GCC warnings, which clang does not
-    know."""
+    """Returns the compiler arguments of each source. Precompiled headers and the GCC warnings that clang does not
+    know are removed."""
     if not (BUILD / "compile_commands.json").exists():
         subprocess.run(["cmake", "--preset", "release", "-B", BUILD], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     found = {}
     for entry in json.loads((BUILD / "compile_commands.json").read_text()):
         words = shlex.split(entry["command"])
         while words and not words[0].endswith("++"):
-            words.pop(0)  # a launcher, such as ccache
+            words.pop(0)  # removes a compiler launcher, such as ccache
         kept = [word for i, word in enumerate(words)
                 if word != "-Winvalid-pch" and not word.endswith("cmake_pch.hxx")
                 and not (word == "-include" and words[i + 1].endswith("cmake_pch.hxx"))]
@@ -53,7 +54,8 @@ def commands():
     for room, files in rooms.items():
         for name in files:
             found[name] = alike(found[room], name)
-    # A source that only another build compiles, such as a fuzz target, gets the arguments of a neighbour.
+    # A source that this build does not compile, such as a fuzz target, gets the compiler arguments of a
+    # source in the same folder.
     for name in sources(["."]):
         if name not in found and not other_library(name, found):
             near = max(found, key=lambda other: len(os.path.commonprefix([name, other])))
@@ -62,14 +64,15 @@ def commands():
 
 
 def other_library(name, found):
-    """Returns true if the file is for another version of a library than the installed one. The build then uses its
-    twin."""
+    """Returns True if the file is for a version of a library that is not installed. In this case, the build uses the
+    file for the installed version."""
     twin = re.sub(r"_([12])\.cpp$", lambda match: f"_{3 - int(match[1])}.cpp", name)
     return name not in found and twin != name and twin in found
 
 
 def files_of(room):
-    """Returns the files that a unity source of CMake includes."""
+    """Returns the files that a unity source of CMake includes, that is, a source that compiles several files as
+    one."""
     included = re.findall(r'^#include "([^"]+)"', (ROOT / room).read_text(), re.MULTILINE)
     return [os.path.relpath(name, ROOT) for name in included]
 
@@ -79,7 +82,7 @@ def alike(entry, name):
 
 
 class Keys:
-    """Returns a checksum of everything on which a result depends."""
+    """Returns a checksum of all files and settings on which the result for a source depends."""
 
     def __init__(self, found):
         self.commands = found
@@ -88,7 +91,7 @@ class Keys:
         self.common = version + (ROOT / ".clang-tidy").read_text() + " ".join(OFF_IN_TESTS)
 
     def file(self, name):
-        """Returns (checksum, included headers of the project)."""
+        """Returns (checksum, headers of the project that the source includes)."""
         if name not in self.files:
             text = (ROOT / name).read_bytes()
             beside = os.path.dirname(name)
@@ -112,7 +115,8 @@ class Keys:
 
 def run_clang_tidy(source, in_tests, *off):
     off += OFF_IN_TESTS if in_tests else ()
-    # Named explicitly, because clang-tidy does not find it from a folder outside the sources.
+    # The configuration file is named explicitly, because clang-tidy does not find it for a source outside the
+    # project folder.
     options = [f"--config-file={ROOT / '.clang-tidy'}", *([f"--checks={','.join(off)}"] if off else [])]
     run = subprocess.run(["clang-tidy", "-p", CACHE, "--quiet", *options, source], cwd=ROOT, capture_output=True, text=True)
     return run.returncode == 0, run.stdout + ("" if run.returncode == 0 else run.stderr)
@@ -128,7 +132,7 @@ def is_of_tests(name):
 
 
 def looks(due, found, rooms):
-    """Returns (sources, records that they are clean), the longest first."""
+    """Returns (sources, records), beginning with the longest source. A record states that a source is clean."""
     together, alone = [], set(due)
     for room, files in rooms.items():
         of_room = [name for name in files if name in alone]
@@ -171,7 +175,8 @@ def main():
                     due[name].touch()
                 continue
             failed += 1
-            # A finding in a header is reported once per source that includes it.
+            # A finding in a header occurs once for each source that includes the header. It is reported only
+            # once.
             findings = re.split(r"\n(?=\S+:\d+:\d+: (?:error|warning): )", "\n" + text)
             print("\n".join(one for one in findings if one not in told).strip() or names[0], flush=True)
             told |= set(findings)

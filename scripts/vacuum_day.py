@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Draws the pressures of the vacuum rig during a day: vacuum_day.py [--out docs/pictures/vacuum_day.svg]
 
-The rig of config/vacuum, from -40 to 60 kPa, runs on the emulated board: start, grip, vent, stop, faults, a pause
-longer than the board's watchdog time, and a killed daemon. Each event occurs while a vacuum is held and must end at the
-rest pressure of 0 kPa without overshoot. Otherwise the exit code is 6. Needs a release build (SOFTGRIP_BUILD).
+The rig of config/vacuum with pressures from -40 to 60 kPa runs on the emulated board. The events of the day are a
+start, a grip, a vent, a stop, faults, a pause that is longer than the time-out of the board's watchdog, and a kill of
+the daemon. Each event occurs while a vacuum is held. After each event, the pressure must go to the rest pressure of 0
+kPa without overshoot. Otherwise the exit code is 6. Needs a release build (SOFTGRIP_BUILD).
 """
 
 import argparse
@@ -28,7 +29,7 @@ WIDTH, HEIGHT, LEFT, TOP, BOTTOM = 1500, 520, 60, 150, 40
 
 class Day(test_vacuum.Vacuum):
     def runTest(self):
-        """The base class must not run as a test."""
+        """Exists only to replace the base class, which must not run as a test."""
 
     def begin(self):
         self.setUp()
@@ -66,7 +67,7 @@ class Day(test_vacuum.Vacuum):
         self.softgripd.wait_for_event("grip_result", since=since, code="HOLDING", channel="left")
 
     def to_rest(self, what):
-        """Begins a period in which the command must go to rest and never beyond it."""
+        """Begins a period in which the command must go to the rest pressure and must never pass it."""
         since = time.monotonic() - self.began
         try:
             bench.wait_for("rest", lambda: self.samples and abs(self.samples[-1][1]) <= SETTLED_KPA, 15)
@@ -88,7 +89,7 @@ class Day(test_vacuum.Vacuum):
         self.hold()
         self.mark(name)
         self.softgripd.result(name)
-        if name == "stop":  # it holds what is held
+        if name == "stop":  # after a stop, the outputs keep the vacuum until a release
             self.softgripd.wait_for_state("idle")
             time.sleep(0.5)
             self.mark("release")
@@ -100,7 +101,7 @@ class Day(test_vacuum.Vacuum):
         self.mark(kind)
         self.ask(f"fault {kind}")
         if kind == "ignored_write":
-            time.sleep(1)  # nothing is written while the vacuum is held
+            time.sleep(1)  # while the vacuum is held, the daemon writes no outputs, so it does not notice the fault
             self.softgripd.ask("vent")
             self.softgripd.wait_for_state("faulted")
             self.ask(f"clear {kind}")
@@ -109,7 +110,7 @@ class Day(test_vacuum.Vacuum):
         if self.softgripd.status()["state"] == "faulted":
             code = self.softgripd.status()["fault"]["code"]
             self.mark(code)
-            self.softgripd.ask("vent")  # a fault of a reading holds what is held
+            self.softgripd.ask("vent")  # after a fault of a reading, the outputs keep the vacuum until a vent
         self.to_rest(kind)
         self.ask(f"clear {kind}")
         bench.wait_for("an acknowledged fault", lambda: self.softgripd.ask("acknowledge")["ok"] or
@@ -164,7 +165,8 @@ class Day(test_vacuum.Vacuum):
 
 
 def labels(marks):
-    """Keeps one of several labels within a second. Starts have no label, because they are visible."""
+    """Joins labels that are closer together than 1.3 s. Starts get no label, because they are visible in the
+    curve."""
     found = []
     for at, text in marks:
         if text == "start" and found:

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Measures the duration of a vent under attack: vent_times.py [--times 20] [--page] [--only WORD]
+"""Measures how long a vent takes while hostile clients load the daemon: vent_times.py [--times 20] [--page] [--only
+WORD]
 
 Repeats every test of Hearing (tests/system/test_hearing.py) that vents during an attack, each time with its own rig and
 daemon. Prints the longest and the median time from the client's line to outputs below 1 kPa. --page writes the table
@@ -36,7 +37,7 @@ ATTACKS = (
 
 
 def repeated(name, times):
-    """Returns the duration of every vent [s], and the number of runs in which the test failed."""
+    """Returns the duration of every vent [s], and the number of runs in which a test failed."""
     waited, wrong = [], 0
     for _ in range(times):
         test_hearing.Hearing.waited_s.clear()

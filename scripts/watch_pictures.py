@@ -3,8 +3,9 @@
 
     scripts/watch_pictures.py [--build build/release] [--out docs/pictures]
 
-The emulator replaces the board. At 80 columns, a part is held. At 60 columns, a sensor is disconnected and connected
-again meanwhile. The text on the terminal is written as SVG with the colours of the terminal.
+The emulator replaces the board. The recording with 80 columns shows a part that is held. In the recording with 60
+columns, a sensor is disconnected and later reconnected. The text on the terminal is written as SVG with the colours
+of the terminal.
 """
 import argparse
 import html
@@ -24,7 +25,7 @@ COLOURS = {"default": INK, "green": "#57c785", "brown": "#e0af4f", "red": "#ff6b
 
 
 def runs(row, columns):
-    """Returns neighbouring cells with the same style as (column, text, colour, bold)."""
+    """Joins neighbouring cells with the same style. Returns (column, text, colour, bold) of each group."""
     found = []
     for column in range(columns):
         cell = row[column]
@@ -48,7 +49,8 @@ def svg(screen, title):
         for column, text, colour, bold in runs(screen.buffer[number], screen.columns):
             kept = text.rstrip()
             x = MARGIN_PX + column * CELL_PX[0]
-            # Every run of cells has its width, so that a missing font does not shift the columns.
+            # The SVG states the width of every group of cells, so that another font does not shift the
+            # columns.
             lines.append(f'<text x="{x:g}" y="{y:g}" fill="{colour}" textLength="{len(kept) * CELL_PX[0]:g}" '
                          f'lengthAdjust="spacingAndGlyphs"{" font-weight=" + chr(34) + "bold" + chr(34) if bold else ""}>'
                          f"{html.escape(kept)}</text>")

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks that browsers do not slow the loop: compares minutes with and without a crowd of clients of softgrip-web.
+"""Checks that browsers do not slow down the control loop. Compares minutes with and without many clients of
+softgrip-web.
 
     scripts/web_load.py [--build build/release] [--pairs 5] [--seconds 60] [--rate-hz 1000] [--browsers 30] [--slow 16]
 
@@ -47,7 +48,7 @@ class Daemon:
 
 
 class Crowd:
-    """All sockets of a loaded minute, in one thread."""
+    """The sockets of all clients in a loaded minute. One thread serves all of them."""
 
     def __init__(self, port, browsers, slow):
         self.port, self.wanted, self.slow = port, browsers, slow
@@ -131,7 +132,7 @@ def quantile(bins, share):
 
 
 def usage_of(pid):
-    """Returns the resident memory [kB] and the processor time [s]."""
+    """Returns the resident memory [kB] and the processor time [s] of a process."""
     fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return bench.resident_kib(pid), (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 

@@ -41,13 +41,14 @@ TEXT = (COMMENT, STRING, PROSE)
 WRITTEN = (COMMENT, PROSE)
 EVERYWHERE = (COMMENT, STRING, CODE, PROSE)
 
-# Finite verbs that mark a sentence as complete. The list is short: it decides only whether "Of ..." is a fragment.
+# Finite verbs that mark a sentence as complete. The list may be short, because the check only uses it to
+# decide if a sentence that begins with "Of" is a fragment.
 VERB = re.compile(r"\b(is|are|was|were|has|have|had|does|do|did|can|could|may|might|must|will|would|should|shall)\b")
-LONGEST_SENTENCE = 35  # words
+LONGEST_SENTENCE = 35  # longest sentence [words]
 SAMPLE = 60
 
-# Keys and columns that programs read. Most are deprecated and have a successor (CHANGELOG.md); they are written until
-# the next version of their schema.
+# Keys and columns that programs read. Most of them are deprecated and have a successor (CHANGELOG.md). Until
+# the next version of their schema, the programs still write them.
 PUBLIC_NAMES = {
     "deficit_mm", "doubts", "levelling", "levelling_growing_per_kpa", "levelling_per_kpa", "levelling_shrinking_per_kpa",
     "mended", "misfit", "rate_dependent_levelling", "slipped_cycles", "slips", "slips_took_long", "slips_woken_late", "staircase",
@@ -73,7 +74,7 @@ class Rule:
         self.paths = re.compile(paths) if paths else None
 
     def find(self, text):
-        """Matches of the rule in one text, as (offset, excerpt)."""
+        """Yields the matches of the rule in one text, each as (offset, excerpt)."""
         if self.unit == "text":
             return [(m.start(), m.group(0)) for m in self.pattern.finditer(text)]
         found = []
@@ -98,7 +99,7 @@ def word(words, *channels, advice, hit, miss, name=None, paths="", soft=False):
 
 
 RULES = [
-    # Sentence patterns.
+    # Rules about sentence patterns.
     Rule("what-clause", r"What\b[^?]*$", WRITTEN, "name the subject: 'The reading ...', not 'What was read ...'",
          "What is slow counts less.", "What is the noise?", unit="sentence", flags=0),
     Rule("whether-fragment", r"Whether\b[^?]*$", WRITTEN, "'Returns true if ...'", "Whether the valve sticks.",
@@ -115,7 +116,7 @@ RULES = [
     Rule("long-sentence", long_sentence, WRITTEN, "split it; one idea per sentence", "a " * 40, "a short one",
          unit="sentence", soft=True),
 
-    # Actors and verbs.
+    # Rules about actors and verbs.
     word("nobody|somebody|whoever|whosoever|whomever", COMMENT, STRING, PROSE, name="no-actor",
          advice="name the actor: the operator, a client, another Modbus client", hit="nobody knows", miss="no client"),
     word("whatever|whichever", COMMENT, STRING, PROSE, name="whatever", advice="'all', 'any', 'regardless of'",
@@ -144,7 +145,7 @@ RULES = [
     word(r"nothing but|none but|next to (?:nothing|none)|save for|no less than|not without", COMMENT, STRING, PROSE,
          name="litotes", advice="only, almost no, at least", hit="nothing but noise", miss="nothing changed"),
 
-    # Private words.
+    # Rules about private words of the project.
     word(r"wrong way(?: first)?", COMMENT, STRING, PROSE, name="wrong-way",
          advice="inverse response (initial response opposite to the command)", hit="moves the wrong way first",
          miss="a wrong value"),
@@ -196,7 +197,7 @@ RULES = [
     word(r"foreign", COMMENT, STRING, PROSE, name="foreign", advice="external (file, log)", hit="a foreign log",
          miss="foresight"),
 
-    # Soft habits.
+    # Soft rules about habits.
     word(r"beside", COMMENT, STRING, PROSE, name="beside", advice="next to, in addition to, compared with",
          hit="beside it", miss="besides", soft=True),
     word(r"says?|said|saying", COMMENT, STRING, PROSE, name="say", advice="specifies, states, reports, shows",
@@ -210,13 +211,15 @@ RULES = [
 ]
 
 
-# ------------------------------------------------------------------------------------------------- reading the files
+# ------------------------------------------------------------------------------------------- Reading the
+# files
 
 class Text:
-    """A piece of one channel, with the source line of each of its characters."""
+    """A piece of text of one channel. The class knows the source line of each character."""
 
     def __init__(self, channel, text, lines):
-        self.channel, self.text, self.starts = channel, text, lines  # lines: sorted (offset, line number)
+        # `lines` is a sorted list of (offset, line number).
+        self.channel, self.text, self.starts = channel, text, lines
 
     def line(self, offset):
         return self.starts[bisect.bisect_right(self.starts, (offset, float("inf"))) - 1][1]
@@ -248,7 +251,7 @@ DIRECTIVE = re.compile(r"^[ \t]*#[^\n]*", re.M)
 
 
 def cpp_texts(source):
-    """Texts of a C++ file: comment blocks, joined string literals, code."""
+    """Yields the texts of a C++ file: comment blocks, joined string literals, and code."""
     source = DIRECTIVE.sub(lambda m: " " * len(m.group(0)), source)
     comments, strings, texts, code, last = Joiner(COMMENT), Joiner(STRING), [], [], 0
     previous_comment_line = -2
@@ -284,7 +287,8 @@ def cpp_texts(source):
 
 
 def markdown_texts(source):
-    """Texts of a Markdown file: paragraphs, list items, table cells and headings; fenced and inline code is left out."""
+    """Yields the texts of a Markdown file: paragraphs, list items, table cells and headings. Code in fences and
+    inline code are left out."""
     texts, prose, fenced = [], Joiner(PROSE), False
     for number, row in enumerate(source.splitlines(), 1):
         if row.lstrip().startswith("```"):
@@ -310,7 +314,8 @@ def markdown_texts(source):
 
 
 def sentences(text):
-    """(offset, sentence) of a text; a sentence ends at . ! ? : ; before a capital, or at the end."""
+    """Yields (offset, sentence) for each sentence of a text. A sentence ends at . ! ? : ; before a capital letter, or
+    at the end of the text."""
     start = 0
     for end in list(re.finditer(r"[.!?:;][\"')]*\s+(?=[\"'(]?[A-Z])", text)) + [None]:
         stop = end.start() + 1 if end else len(text)
@@ -328,17 +333,18 @@ def room_of(name):
 
 
 def word_at(text, offset):
-    """The name that contains a character, or "" if the word is a part of a sentence."""
+    """Returns the name in the code that contains a character, or "" if the word is part of a sentence."""
     start = re.search(r"\w*$", text[:offset]).start()
     name = re.match(r"\w*", text[start:]).group(0)
     rest = text[start + len(name):]
     return name if "_" in name or name == text.strip() or rest.startswith(('"', ":", "[", "`")) else ""
 
 
-# ---------------------------------------------------------------------------------------------------------- reporting
+# ----------------------------------------------------------------------------------------- Reporting the
+# findings
 
 def check(rules, rooms):
-    """Findings (path, line, rule, excerpt) and the number of sentences per room and channel."""
+    """Returns the findings (path, line, rule, excerpt) and the number of sentences per room and channel."""
     findings, totals = [], collections.Counter()
     for name in tree.names():
         if not name.endswith((".cpp", ".h", ".md")) or rooms and room_of(name) not in rooms:
@@ -360,7 +366,7 @@ def check(rules, rooms):
 
 
 def print_sample(seed):
-    """Draws comments, strings and sentences of pages, for a reader who did not write them."""
+    """Selects comments, strings and sentences of pages at random, for a reader who has not written them."""
     drawn = {channel: [] for channel in TEXT}
     for name in tree.names():
         if not name.endswith((".cpp", ".h", ".md")):
@@ -417,7 +423,7 @@ def check_commits(range_):
 
 
 def against_budgets(counts, budgets):
-    """Sentences about the rooms that exceed their budgets, and about budgets that exceed the counts."""
+    """Returns sentences about rooms that have more findings than their budget, and about rooms that have fewer."""
     counts = collections.Counter(counts)
     wrong = [f"{room}: {count} findings, budget {budgets.get(room, 0)}. Rewrite the new texts; list the findings with: "
              f"scripts/words_check.py --room '{room}'" for room, count in sorted(counts.items()) if count > budgets.get(room, 0)]
@@ -427,7 +433,8 @@ def against_budgets(counts, budgets):
 
 
 def write_budgets(counts, file):
-    """Refuses counts with a higher sum. Within the sum a room may rise, because a file can move to another room."""
+    """Refuses counts with a larger sum than the stored budgets. A single room may have a larger count, because a file
+    can move to another room."""
     total, budget = sum(counts.values()), sum(json.loads(file.read_text()).values()) if file.exists() else math.inf
     if total > budget:
         return [f"{file}: not written. {total} findings, but the sum of the budgets is {budget} and must not rise."]
@@ -494,5 +501,7 @@ def main():
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # `words_check.py | head` ends quietly
+    # If the reader of the output ends early, as in `words_check.py | head`, the program ends without an error
+    # message.
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     sys.exit(main())

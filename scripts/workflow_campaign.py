@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Runs the workflow on many small logs: on the local cores, on a local Slurm, after a kill, and as a plain loop.
+"""Measures the workflow with many small logs. Runs it on the local cores, on a local Slurm, after a kill, and as a
+plain loop.
 
     scripts/workflow_campaign.py --work DIR [--rows 1000] [--cores 2] [--batch 25] [--page docs/results/workflow-campaign.md]
 
@@ -26,7 +27,7 @@ SAMPLES = 500
 
 
 def make(args, program):
-    """Creates the logs and their table."""
+    """Writes the logs and the table of the workflow."""
     args.work.mkdir(parents=True, exist_ok=True)
     twin = (ROOT / "config/models/bench_twin.yaml").read_text()
     rng = random.Random(1)
@@ -70,8 +71,8 @@ def rows_of(out):
 
 
 def killed(args, out):
-    """Kills a run halfway. Returns its duration until then, the duration of the rest, and the number of rows that ran
-    twice."""
+    """Kills a run when half of its rows are done. Returns the time until then, the duration of the rest, and the
+    number of rows that ran twice."""
     shutil.rmtree(out, ignore_errors=True)
     began = time.monotonic()
     child = subprocess.Popen([str(word) for word in command(args, out)], start_new_session=True, stdout=subprocess.DEVNULL)
@@ -86,7 +87,7 @@ def killed(args, out):
 
 
 def models(folders):
-    """Returns a hash over the models of all rows, and their number."""
+    """Returns a hash over the models of all rows, and the number of models."""
     digest, count = hashlib.sha256(), 0
     for number, folder in enumerate(folders):
         model = folder / "model.yaml"

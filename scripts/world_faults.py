@@ -1,4 +1,5 @@
-"""Inserts faults into a copy of the code, one at a time, and counts the seeds until a world detects each."""
+"""Inserts faults into a copy of the code, one at a time. Counts how many seeds are needed until a simulated world
+detects each fault."""
 
 import os
 import re
@@ -16,8 +17,9 @@ GAP_OF_BUS = ("daemon/loop/bus.cpp", "if (watchdog_ == 0 ||", "if (watchdog_ >= 
 GAP_BY_HAND = ("tools/commissioning/motion_session.cpp", "if (fault == control::FaultCode::board_watchdog_tripped) {",
                "if (fault == control::FaultCode::board_watchdog_tripped) return std::nullopt;\n  if (false) {")
 
-# Each fault: description, file, the text to replace (which must occur once) and its replacement. Optional: the
-# simulated time of a world [s] and its tool. The default is the daemon alone for 60 s.
+# Each fault has a description, a file, the text to replace (which must occur once) and its replacement.
+# Optional values are the simulated time of a world [s] and the tool that it runs. The default is the daemon
+# alone for 60 s.
 FAULTS = (
     ("the duration of a gap in the communication is not compared with the board's watchdog time", *GAP_OF_BUS),
     ("after a silence of the loop, its commands are written at once", "daemon/loop/bus.cpp",
@@ -95,7 +97,8 @@ def build():
 
 
 def seeds_until_found(seconds, tool):
-    """Returns the first seed that detects the fault and the violated property, or None."""
+    """Returns the first seed that detects the fault, and the property that is violated. Returns None if no seed
+    detects the fault."""
     first, count = 1, 20
     while first <= MOST_SEEDS:
         done = run(["build/release/tests/world/softgrip-world", "--first", first, "--count", count, "--jobs", os.cpu_count(),
@@ -108,7 +111,7 @@ def seeds_until_found(seconds, tool):
 
 
 def main():
-    """Selects the faults whose description contains one of the arguments, or all faults without arguments."""
+    """Returns the faults whose description contains one of the arguments. Without arguments, returns all faults."""
     chosen = [fault for fault in FAULTS if any(word in fault[0] for word in sys.argv[1:] or [""])]
     for _, name, old, *_ in chosen:
         if (SOURCE / name).read_text().count(old) != 1:
