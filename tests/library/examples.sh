@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the library into a folder, moves the folder, builds examples/cpp against it with find_package and one example
-# with pkg-config, and runs them: examples.sh BUILD
+# Installs the library into a folder and moves the folder. Then builds examples/cpp with find_package and one
+# example with pkg-config, and runs the examples: examples.sh BUILD
 set -euo pipefail
 build=$(realpath "$1")
 . "$(dirname "$0")/example_runs.sh"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Checks man pages with groff and mandoc: man_pages.sh FOLDER. Any warning of either is a failure.
+# Checks man pages with groff and mandoc: man_pages.sh FOLDER. The check fails if groff or mandoc prints a
+# warning.
 set -euo pipefail
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 count=0

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Lets systemd check the files in systemd/ without starting anything: unit.sh verify|exposure|users|folders|rules UNIT SOURCE
-# UNIT is the configured unit whose ExecStart= exists; SOURCE the folder systemd/.
+# Checks the files in systemd/ with the tools of systemd, without starting a service: unit.sh
+# verify|exposure|users|folders|rules UNIT SOURCE. UNIT is the configured unit, whose ExecStart= exists.
+# SOURCE is the folder systemd/.
 set -euo pipefail
 unit=$2 source=$3
 # The largest accepted exposure level of systemd-analyze, 1.5 of 10, in tenths.

@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# Boots the guest of prepare.sh with a folder as its second drive. The guest executes `run` of the folder and powers off.
+# Boots the guest system of prepare.sh. A folder is its second drive. The guest runs the file `run` in this
+# folder and powers off.
 #   boot.sh WORK FOLDER LOG
-# The output of `run` goes to the standard output and to LOG, the guest's console to LOG.console. The disk is not changed.
-# TCG emulates one processor, so neither KVM nor root is needed, and its clock counts instructions (8 ns each), not time:
-# the guest does not notice what the host does meanwhile, and sleeping takes no time.
+# The output of `run` goes to standard output and to LOG. The console of the guest goes to LOG.console. The
+# disk is not changed. QEMU emulates one processor, so neither KVM nor root is needed. The clock of the guest
+# counts instructions (8 ns each). So the load of the host does not affect the guest, and sleeping takes no
+# time.
 set -euo pipefail
 work=$(realpath "$1") folder=$(realpath "$2") log=$3
 kernel=$(cat "$work/release")

@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# Prepares the guest of the system test: Debian 12 with the PREEMPT_RT kernel, systemd and simulated GPIO lines.
+# Prepares the guest system of the system test. The guest has Debian 12 with the PREEMPT_RT kernel, systemd
+# and simulated GPIO lines.
 #   prepare.sh WORK PACKAGE.deb
-# WORK then holds release, kernel/, gpio/, root.tar, disk.ext4 and initrd.gz. Existing files are not made again;
-# the root file system is made again if the dependencies of the package have changed. Needs root and Debian's archive.
+# After that, WORK contains release, kernel/, gpio/, root.tar, disk.ext4 and initrd.gz. Existing files are
+# kept. Only the root file system is replaced if the dependencies of the package have changed. Needs root and
+# access to the Debian archive.
 set -euo pipefail
 work=$(realpath -m "$1")
 package=$(realpath "$2")
