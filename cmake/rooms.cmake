@@ -106,7 +106,7 @@ softgrip_room(sysid/diagnosis/report
   USES base model model/file sysid/logs sysid/pages sysid/fitting sysid/identification sysid/diagnosis/causes
        sysid/diagnosis/evidence sysid/diagnosis/gauge sysid/diagnosis/verdict
   LIBRARIES nlohmann_json::nlohmann_json)
-# Recorded grips as indicators, their charts, and the content of an alarm.
+# Health analysis: recorded grips become indicators and their charts, and changed indicators become alarms.
 softgrip_room(sysid/health
   USES base document model model/file control/elements sysid/logs sysid/recordings sysid/pages sysid/fitting sysid/diagnosis/causes
        sysid/changes sysid/diagnosis/experiments
