@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Compares the binary interface (ABI) of libsoftgrip.so with the stored one, library/libsoftgrip.abi:
+# Compares the binary interface (ABI) of libsoftgrip.so with the stored interface, library/libsoftgrip.abi:
 #   scripts/abi.sh [BUILD]            exit 1: an incompatible change without a new SONAME, or a new SONAME that is not stored
 #   scripts/abi.sh [BUILD] --renew    stores the interface of the build; refused for an incompatible change without a new SONAME
-#   scripts/abi.sh [BUILD] --renew --unreleased    stores it anyway: for a SONAME of which no package has been released
-# BUILD: default build/release. Exit 77: abidiff is missing, or the processor is not the one of the stored interface. Added
-# functions and types are compatible. A new field of a result is not: compiled programs have its old size. A new SONAME is
-# SOVERSION in cmake/library.cmake, the name in library/exported.map, and the names of the packages in packaging/deb.
+#   scripts/abi.sh [BUILD] --renew --unreleased    is not refused; for a SONAME of which no package has been released
+# BUILD: default build/release. Exit 77: abidiff is missing, or the stored interface is for another type of processor.
+# Added functions and types are compatible. A new field of a result is incompatible, because compiled programs use the old
+# size. To set a new SONAME, change SOVERSION in cmake/library.cmake, library/exported.map and packages in packaging/deb.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 build=$here/build/release renew=false unreleased=false

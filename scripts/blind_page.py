@@ -57,7 +57,7 @@ def interval_by_seed(hits):
 
 
 def summary(results):
-    """Returns rows (measure, target, value with its interval, number of worlds)."""
+    """Returns the rows of the table: (measure, target, value with its interval, number of worlds)."""
     singles = [r for r in results if len(r["causes"]) == 1 and not is_outside(r["causes"][0])]
     clean = [r for r in results if not r["causes"]]
     outside = [r for r in results if r["causes"] and is_outside(r["causes"][0])]

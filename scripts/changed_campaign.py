@@ -7,11 +7,12 @@
                                 [--page docs/results/changed-campaign.md]
 
 --seeds counts per family, cause, strength and kind of columns. The worlds are from both families (tests/blind,
-tests/blind/textbook), with and without measured pressure. The later day has another input, another zero (up to 0.5 mm)
-and another temperature (up to 4 degrees; the same if the hidden cause is the temperature). The script can be resumed,
-and it can be stopped at any time with a fair sample: the outcome of every world is one line of DIR/changed.jsonl.
---variation X lets the runs vary (tests/blind/variation.h). --closed-loop records the later logs in closed loop.
---baseline-runs 1 3 6 gives the same fingers these numbers of healthy logs. The page states these options.
+tests/blind/textbook), with and without measured pressure. On the day of the later logs, the input, the zero (by up to
+0.5 mm) and the temperature (by up to 4 degrees) differ from those of the healthy logs. If the hidden cause is the
+temperature, the temperature is the same. The script can be stopped and continued. The outcome of every world is one
+line of DIR/changed.jsonl, and the finished worlds are always a fair sample. --variation X lets the runs vary
+(tests/blind/variation.h). --closed-loop records the later logs in closed loop. --baseline-runs 1 3 6 gives the same
+fingers these numbers of healthy logs. The page states these options.
 """
 import argparse
 import collections

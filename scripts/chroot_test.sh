@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Builds a clean clone of HEAD and runs its quick tests in a minimal chroot of a Debian release, as on a new computer:
+# Clones HEAD and runs a command in the clone, in a minimal chroot of a Debian release, as on a new computer:
 #   scripts/chroot_test.sh bookworm|trixie [COMMAND ...]     default: bash scripts/test.sh --quick
-# The packages that scripts/package.sh built, if any, are copied to build/ of the clone: tests/library/installed_examples.sh.
-# build/chroot keeps the bare chroot, the downloaded packages and the folder of the last run (RELEASE.root). Packages
-# come from the archive of this computer's apt. Needs root. Mounts and processes end with the script.
+# Packages that scripts/package.sh has built are copied to build/ of the clone, for tests/library/installed_examples.sh.
+# build/chroot keeps the bare chroot, the downloaded packages and the folder of the last run (RELEASE.root). apt uses the
+# package archive of this computer. Needs root. When the script ends, its mounts and processes end, too.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 release=${1:-}

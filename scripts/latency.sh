@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Compares the wake-up latency and overruns of softgripd at 1 kHz over Modbus TCP on loopback with cyclictest. Both have
-# the same priority and processor and run alternately: latency.sh [ROUNDS [SECONDS_PER_TURN]]
-# Needs a built tree (build/release, or BUILD=...), cyclictest (rt-tests) and the right to SCHED_FIFO.
+# Measures the wake-up latency and the overruns of softgripd, and compares them with cyclictest. softgripd
+# runs at 1 kHz over Modbus TCP on the loopback interface. Both programs have the same priority and processor
+# and run alternately: latency.sh [ROUNDS [SECONDS_PER_TURN]] Needs a built tree (build/release, or
+# BUILD=...), cyclictest (rt-tests) and the right to use SCHED_FIFO.
 set -euo pipefail
 rounds=${1:-3}
 turn_s=${2:-20}

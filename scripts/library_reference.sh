@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the reference of the public C++ headers with Doxygen; a warning is an error: scripts/library_reference.sh [OUT_DIR]
-# OUT_DIR: default build/reference. Prints the path of its first page.
+# Builds the reference of the public C++ headers with Doxygen. A warning counts as an error:
+# scripts/library_reference.sh [OUT_DIR] OUT_DIR: default build/reference. Prints the path of its first page.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 out=$(realpath -m "${1:-build/reference}")

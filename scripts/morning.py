@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Writes a page with the output of softgrip for common faults of a rig, command by command.
+"""Writes a how-to page about common faults of a rig. The page shows the commands and the output of softgrip.
 
     scripts/morning.py [--build build/release] [--page docs/how-to/a-morning.md | --check docs/how-to/a-morning.md]
 
-The emulator replaces the board, and the faults are injected into it. Times of day are shown as hh:mm:ss, and measured
-numbers are rounded. --check repeats the page and compares the sentences, regardless of their numbers.
+The emulator replaces the board and simulates the faults. Times of day are shown as hh:mm:ss, and measured numbers are
+rounded. --check repeats the page and compares the sentences, regardless of their numbers.
 """
 import argparse
 import difflib
@@ -74,7 +74,7 @@ def sentences(page):
 
 
 def play():
-    """Returns the text of the page."""
+    """Runs the commands and returns the text of the page."""
     import bench
 
     class Morning(bench.BenchTest):

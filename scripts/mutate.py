@@ -3,10 +3,12 @@
     scripts/mutate.py [--per-file N] [--seed S] [--jobs J] [--out FILE] [--again REPORT] [FILE ...]
 
 Without files, it uses the sources of control/, the bus and the loop. A mutant inverts a comparison, a sign, a logical
-connective, a constant or a condition. The seed selects the places. The mutant and its dependents are built in a copy in
-build/mutants, and the tests of its folder run until one fails. The output is the score per folder and every survivor
-with its line. A survivor means a missing test or an equivalent change: docs/results/mutants-and-branches.md lists both. --again judges
-only the survivors of an earlier report, with the tests that were added since.
+connective, a constant or a condition. A mutant is the code with one defect. The seed selects the places of the
+defects. The script builds each mutant in a copy of the sources in build/mutants, and runs the tests of its folder
+until one fails. It prints the share of detected mutants for each folder, and every mutant that no test has detected
+(a survivor) with its line. For a survivor, a test is missing, or the change has no effect.
+docs/results/mutants-and-branches.md lists the survivors of both kinds. --again judges only the survivors of an
+earlier report, with the tests that were added since.
 """
 
 import argparse

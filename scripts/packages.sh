@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the missing packages of the given sections of packages.txt: packages.sh build [tests ...]
+# Installs the packages of the given sections of packages.txt that are not installed yet: packages.sh build
+# [tests ...]
 set -euo pipefail
 here=$(dirname "$(realpath "$0")")
 

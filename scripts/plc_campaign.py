@@ -164,7 +164,7 @@ class Campaign(bench.BenchTest):
         bench.wait_for("vented outputs", lambda: max(self.board.commands_kpa()) < 0.5)
 
     def check_recordings(self):
-        """Removes the unfinished recordings of killed daemons."""
+        """Deletes the incomplete recordings of daemons that were killed."""
 
     def runTest(self):
         began = time.monotonic()

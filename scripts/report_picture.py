@@ -3,8 +3,8 @@
 
     scripts/report_picture.py [--build build/release] [--out docs/pictures/diagnosis.svg]
 
-Simulates the demo's logs, diagnoses the published structure on them (a minute or two), and puts verdict, error budget,
-forest plot, block diagram and errors below each other, as in the report.
+Simulates the logs of the demo and diagnoses the published model on these logs, which takes one or two minutes. The
+picture shows verdict, error budget, forest plot, block diagram and errors in the order of the report.
 """
 import argparse
 import html

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Compares the results of another version with those of this one. Both builds carry out the same work at the same time:
+# Compares the results of another version with the results of this version. Both builds do the same work at the same time:
 #   same_numbers.sh OTHER_CHECKOUT OTHER_BUILD [BUILD]
-# Two recordings in virtual time and three simulations must be identical, and so must the figures of the control study and
-# the causes in three diagnoses. The other checkout provides the configuration, because an older rig file still loads.
-# Exit code 1 if a recording, a simulation or the study differs. The diagnoses are only printed next to each other.
+# Two recordings in virtual time, three simulations, and the figures of the control study must be identical. The causes in
+# three diagnoses are printed next to each other. The other checkout provides the configuration, because this version can
+# still read older rig files. The exit code is 1 if a recording, a simulation or the study differs.
 set -euo pipefail
 [ $# -ge 2 ] || { sed -n '2,6s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 root=$(dirname "$(dirname "$(realpath "$0")")")

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Builds tests with the sanitizers and runs them:
-#   scripts/sanitize.sh        tests of code that parses external bytes with AddressSanitizer and UndefinedBehaviorSanitizer,
-#                              tests of code with threads with ThreadSanitizer: the part of scripts/test.sh
-#   scripts/sanitize.sh all    every test program and the Python module with the first two, all tests of the daemon with the third
+#   scripts/sanitize.sh        tests of code that parses external bytes, with AddressSanitizer and UndefinedBehaviorSanitizer;
+#                              tests of code with threads, with ThreadSanitizer. scripts/test.sh runs this form.
+#   scripts/sanitize.sh all    every test program and the Python module with the first two, all daemon tests with the third
 #   scripts/sanitize.sh build  builds the programs of the first form without running them
-# Tests that run other programs of the system are omitted. No report of a sanitizer is ignored, because reports are files in
-# build/PRESET/reports. tests/support/lsan.supp lists memory that other libraries keep until the process ends.
+# Tests that run other programs of the system are skipped. Reports are files in build/PRESET/reports, so no report is missed.
+# tests/support/lsan.supp lists memory that other libraries keep until the process ends.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 . scripts/build.sh
@@ -37,7 +37,8 @@ case ${1:-} in
   "" | build)
     [ -z "${1:-}" ] || only_build=true
     sanitized asan-ubsan base_test drivers_test emulator_test
-    sanitized tsan base_test daemon_test daemon_process_test  # the drivers start no threads
+    # Other tests are left out here, because the drivers start no threads.
+    sanitized tsan base_test daemon_test daemon_process_test
     ;;
   all)
     without='^$'

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# The system test: builds the package, boots a Debian 12 guest with the PREEMPT_RT kernel in QEMU, installs the package in
-# it and runs the steps of tests/system/vm/drive/steps.py.
+# Runs the system test: builds the package, boots a Debian 12 guest with the PREEMPT_RT kernel in QEMU, installs the package
+# in the guest and runs the steps of tests/system/vm/drive/steps.py.
 #   scripts/system_test.sh [--latency] [--seed N] [--work DIR] [--log FILE]
-#   --latency   measures instead the wake-up latency of softgripd and cyclictest in a guest whose clock counts instructions
-# DIR (default $SOFTGRIP_GUEST, else build/guest) keeps the guest. Its first preparation downloads about 250 MB. Needs
-# root for Debian packages and for the guest's root file system, but no KVM. The exit code is 0 if every step passed.
+#   --latency   measures the wake-up latency of softgripd and cyclictest instead; the clock of the guest counts instructions
+# DIR (default $SOFTGRIP_GUEST, else build/guest) keeps the guest. The first preparation of the guest downloads about 250 MB.
+# Needs root for Debian packages and for the guest's root file system, but no KVM. The exit code is 0 if every step passed.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 work=${SOFTGRIP_GUEST:-build/guest} log= seed= latency=false

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Installs the packages of the tests, builds, and runs the tests: the release build with every test. While these compute,
-# it builds the Debian package. AddressSanitizer and UndefinedBehaviorSanitizer check code that parses external bytes, and
-# ThreadSanitizer checks code with threads. clang-tidy checks the sources that differ from the main branch of origin.
+# Installs the packages that the tests need, makes the release build and runs all of its tests. At the same
+# time, builds the Debian package. Then checks code that parses external bytes with AddressSanitizer and
+# UndefinedBehaviorSanitizer, and code with threads with ThreadSanitizer. clang-tidy checks the sources that
+# differ from the main branch of origin.
 #   scripts/test.sh            all of this
 #   scripts/test.sh --quick    the release build and the tests that take at most a moment each
 #   scripts/test.sh --all      hours: also the tests with the labels campaign (more blind worlds, the binary interface of

@@ -127,7 +127,7 @@ def cause_table(rows):
 
 
 def wrong_table(rows):
-    """Lists every world in which a wrong cause is named."""
+    """Lists every world for which a wrong cause was reported."""
     lines = [("+".join(r["causes"]) or "nothing", f"{r['strength']:g}", r["make"], columns_text(r["columns"]), r["seed"],
               ", ".join(r["wrong"]), ", ".join(name for name in r["named"] if name not in r["wrong"]), r["verdict"])
              for r in rows if r["wrong"]]

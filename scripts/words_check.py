@@ -226,7 +226,7 @@ class Text:
 
 
 class Joiner:
-    """Joins fragments into one Text and keeps their line numbers."""
+    """Joins pieces of text to one Text and keeps their line numbers."""
 
     def __init__(self, channel):
         self.channel, self.parts, self.starts, self.size = channel, [], [], 0

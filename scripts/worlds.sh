@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Runs the whole daemon in seeded worlds: loop, bus, board with watchdog, clients, recorder, pauses and other Modbus clients
-# in one thread on one simulated clock (tests/world). Reports a seed with a violation, its smallest set of incidents, and
-# the trace.
+# Runs the whole daemon in simulated worlds (tests/world). Each seed gives one world, which runs in one thread
+# with a simulated clock. A world contains the loop, the bus, a board with watchdog, clients, the recorder,
+# pauses and other Modbus clients. If a world violates a requirement, the script reports the seed, the
+# smallest set of incidents that causes the violation, and the trace.
 #   scripts/worlds.sh [SEEDS [SECONDS [FIRST]]]      default: 10000 seeds of 60 s from seed 1
 #   scripts/worlds.sh tools [SEEDS [SECONDS [FIRST]]]   also calibrate, doctor, run, baseline, the experiments of
 #                                                    investigate and softgrip-plc, in turn; default: 2000 seeds
