@@ -27,7 +27,7 @@ int after_a_day_asleep(int (*body)()) {
     const std::string text = "boottime 86400 0\n";
     if (offsets < 0 || write(offsets, text.data(), text.size()) < 0) _exit(no_such_namespace);
     close(offsets);
-    // The new time namespace contains only the children of this process, so the test runs in a child.
+    // Only the children of this process are in the new time namespace, so the test runs in a child process.
     const pid_t inner = fork();
     if (inner == 0) _exit(body());
     int status = 0;

@@ -122,7 +122,7 @@ TEST_F(FileWritingTest, AFolderInThePlaceOfTheFileIsAnError) {
   EXPECT_EQ(count(), 2U);
 }
 
-/// Limits the size of files to 1000 bytes, so that a write fails as on a full disk.
+/// Limits the size of files to 1000 bytes. A larger write then fails, like on a full disk.
 class SmallFiles {
  public:
   explicit SmallFiles(void (*handler)(int)) : handler_(std::signal(SIGXFSZ, handler)) {

@@ -1,4 +1,4 @@
-"""Tests bench/foreign.py as a user calls it. A program that answers immediately replaces softgrip."""
+"""Tests bench/foreign.py as a user calls it. A small program replaces softgrip and answers immediately."""
 import contextlib
 import importlib.util
 import io

@@ -1,4 +1,4 @@
-"""Tests bench/foreign/log_reading.py with valid and broken logs of other formats."""
+"""Tests bench/foreign/log_reading.py with valid and broken logs from other sources."""
 import math
 
 from foreign_case import SAMPLES, ForeignCase, kpa, log_text, mm

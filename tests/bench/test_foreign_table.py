@@ -1,4 +1,5 @@
-"""Tests bench/foreign/log_table.py: the values it reads from a table, and its messages about mistakes."""
+"""Tests bench/foreign/log_table.py: the values that it reads from a table, and its messages about mistakes in a
+table."""
 from foreign_case import BENCH, ForeignCase
 
 import log_table

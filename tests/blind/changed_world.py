@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Runs one world of changed_worlds.csv: changes a finger, diagnoses it and judges the answer. The exit code is 0 if the
-outcome is one of the expected outcomes.
+"""Runs one simulated world of changed_worlds.csv. Changes the finger, diagnoses the change and judges the diagnosis.
+The exit code is 0 if the outcome is one of the expected outcomes (OUTCOME).
 
     changed_world.py --build BUILD FAMILY CAUSE STRENGTH SEED COLUMNS OUTCOME[|OUTCOME]
 """

@@ -56,9 +56,10 @@ def intervals(family, cause, diagnosis, truth):
 
 
 def judge(cause, diagnosis):
-    """Returns the judgement of a diagnosis. For an unchanged world: unchanged, false_alarm or unexplained. Otherwise:
-    first, twin (an indistinguishable cause is first), listed (a later cause or an alternative), missed (no change
-    reported), unnamed (unexplained change) or wrong."""
+    """Returns the judgement of a diagnosis. If the finger has not changed, the judgement is unchanged, false_alarm or
+    unexplained. Otherwise it is one of these: first (the true cause is first), twin (an indistinguishable cause is
+    first), listed (the true cause is a later cause or an alternative), missed (no change reported), unnamed (a change
+    without a cause) or wrong."""
     named = [c["id"] for c in diagnosis["causes"]]
     if cause == "none":
         return "false_alarm" if named else diagnosis["verdict"]

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Runs one world of fixed_worlds.csv: hides an effect, diagnoses the logs and judges the answer. The exit code is 0 if
-the outcome is one of the expected outcomes.
+"""Runs one simulated world of fixed_worlds.csv. Hides an effect in the world, diagnoses its logs and judges the
+diagnosis. The exit code is 0 if the outcome is one of the expected outcomes (OUTCOME).
 
     fixed_world.py --build BUILD CAUSE[+CAUSE] STRENGTH SEED OUTCOME[|OUTCOME]
 """

@@ -59,6 +59,7 @@ def investigate_world(build, folder, world, gauge=True):
 
 
 def is_indistinguishable(result):
-    """Returns True if no command and no gauge check can separate any of the remaining sets of causes."""
+    """Returns True if sets of several causes remain, and no command and no gauge check can separate the causes of any
+    set."""
     left = [set(one) for one in result.get("after", []) if len(one) > 1]
     return bool(left) and all(any(one <= twins for twins in INDISTINGUISHABLE) for one in left)

@@ -130,7 +130,8 @@ def run_world(build, folder, world):
 
 
 def library(build):
-    """Returns (ids of the library, ids outside the library) of the effects that the worlds can hide."""
+    """Returns two lists of the effects that a world can hide: the ids in the catalogue of causes, and the ids outside
+    of it."""
     ids = subprocess.run([pathlib.Path(build) / "tests/blind/blind-world", "--list"], check=True, capture_output=True,
                          text=True).stdout.split()
     return [i for i in ids if not is_outside(i)], [i for i in ids if is_outside(i)]

@@ -1,6 +1,6 @@
 #pragma once
-// Differences between runs of an unchanged finger, for both families of simulated fingers. A diagnosis must
-// not report any of these differences as a cause.
+// Random differences between runs of an unchanged finger, for both families of simulated fingers. A diagnosis
+// must not report any of these differences as a cause.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,13 +15,13 @@ inline constexpr double gain_share = 0.01;
 inline constexpr double temperature_c = 2;
 inline constexpr double supply_share = 0.02;
 
-/// The variation of one run. The default is a run without variation.
+/// The random variation of one run. The default values mean no variation.
 struct Run {
   double offset_share = 0;  // offset that is added to every reading, as a share of the span
-  double gain = 1;          // factor of the displacement
+  double gain = 1;          // factor on the displacement
   double warmer_c = 0;
-  double supply = 1;     // factor of the supply pressure
-  double amplitude = 1;  // factor of the commands, at most 1
+  double supply = 1;     // factor on the supply pressure
+  double amplitude = 1;  // factor on the commands, at most 1
   double rate_hz = 0;    // sample rate [Hz]; 0: the default rate of the family
   // A pulse before the recording begins. It leaves creep and hysteresis in the first readings.
   double pulse_share = 0, pulse_s = 0,
@@ -40,14 +40,15 @@ void list_runs(std::ostream& out, double strength, std::uint64_t seed, std::size
 /// without variation it is 0.
 std::size_t first_kind(double strength, std::uint64_t seed, std::size_t kinds);
 
-/// Resamples values to another rate, with linear interpolation.
+/// Resamples values to a different sample rate with linear interpolation.
 std::vector<double> resampled(const std::vector<double>& values, double from_hz, double to_hz);
 
-/// Returns the pressures of the pulse and of the rest after the pulse, sampled at `rate_hz`. Returns an empty
-/// list if the run has no pulse.
+/// Returns the unrecorded pressures before a run, sampled at `rate_hz`. They consist of a pulse and a rest.
+/// The list is empty if the run has no pulse.
 std::vector<double> pulse(const Run& run, double working_kpa, double rate_hz);
 
-/// A proportional-integral controller with a static feedforward, as on a rig without a model.
+/// A proportional-integral controller with a static feedforward. A rig without a model uses such a
+/// controller.
 class Controller {
  public:
   /// `mm_per_kpa` is the gain of the finger that the controller assumes.

@@ -13,11 +13,12 @@ struct Campaign {
   std::uint64_t seed = 1;
   std::size_t runs = 3;
   double variation = 0;  // strength of the run-to-run variation (variation.h)
-  double span_mm = 0;    // span of the finger; required with a variation
+  double span_mm = 0;    // span of the finger [mm]; required if variation is above 0
 };
 
-/// Draws logs with three kinds of commands in turn: triangles with many amplitudes, rates and minor loops;
-/// steps with holds and a rest; sines over a decade of rates with sharp steps, a rest and a repetition.
+/// Draws logs with three kinds of commands in turn. The first kind consists of triangles with many
+/// amplitudes, rates and minor loops. The second kind consists of steps with holds and a rest. The third kind
+/// consists of sines over a decade of rates, sharp steps, a rest and a repetition.
 std::vector<LogInput> draw_campaign(const Campaign& campaign);
 
 /// Returns a log with a given command. Its temperature and supply pressure continue where those of the

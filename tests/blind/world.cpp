@@ -96,7 +96,7 @@ class Rig {
       double offset_mm = 0)
       : base_(base), n_(n), memory_(memory), gain_(gain), offset_mm_(offset_mm), random_(seed) {}
 
-  // Simulates one integration step, in which the command changes linearly from `from` to `to`.
+  // Simulates one integration step. The command changes linearly from `from` to `to`.
   void step(double from, double to, double temperature, double supply, double dt) {
     const double wanted = valve(from, to, supply, dt);
     const double share_before = std::max(0.0, pressure_ - n_.threshold_kpa);
@@ -223,8 +223,8 @@ class Rig {
     moved_mm_ = y;
   }
 
-  // Simulates a person who touches the finger at random times. Each touch is a step of random size that
-  // decays.
+  // Simulates a person who touches the finger at random times. Each touch changes the displacement by a step
+  // of random size, which then decays.
   double bumps() {
     if (memory_.campaign_s >= next_bump_s_) {
       next_bump_s_ = memory_.campaign_s + 4 + 10 * uniform_(random_);

@@ -10,19 +10,20 @@
 
 namespace blind {
 
-/// The actuator without effects. Pressures in kPa, displacement in mm, time in s.
+/// The parameters of the actuator without hidden effects. Pressures are in kPa, displacements in mm, times in
+/// s.
 struct Base {
   double alpha = 0.35;           // mm/kPa
   double beta = 0.20;            // mm/kPa
   double gamma = 0.03;           // 1/kPa
   double eta = 0.05;             // 1/kPa
-  double instantaneous = 0.003;  // 1/k0, mm/kPa
+  double instantaneous = 0.003;  // 1/k0 in mm/kPa
   double fast_gain = 0.25, fast_tau = 0.4;
   double slow_gain = 0.056, slow_tau = 13.7;
 };
 
-/// The parameters of a hidden effect by name. A map assigns them to the id of the effect, which is the id of
-/// a cause or one of outside_ids().
+/// The parameters of a hidden effect by name. The map Effects contains them by the id of the effect. This is
+/// the id of a cause in the catalogue or an id of outside_ids().
 using Effect = std::map<std::string, double>;
 using Effects = std::map<std::string, Effect>;
 
@@ -35,10 +36,10 @@ struct Sensor {
 /// The inputs of one log, one value per sample of the command.
 struct LogInput {
   double rate_hz = 100;
-  std::vector<double> command_kpa;  // the command is linear between samples
+  std::vector<double> command_kpa;  // command [kPa], linear between samples
   std::vector<double> temperature_c;
   std::vector<double> supply_kpa;
-  // Run-to-run variation (variation.h).
+  // Variation of this run, see variation.h.
   double gain = 1, offset_mm = 0;
   std::size_t unrecorded = 0;  // number of samples at the start that are not recorded
   // Closed loop: from the first recorded sample on, a controller follows the reference. `noise_mm` is the
@@ -47,21 +48,22 @@ struct LogInput {
 };
 
 struct LogOutput {
-  std::vector<double> command_kpa;      // the command that was played
+  std::vector<double> command_kpa;      // the command that was played [kPa]
   std::vector<double> pressure_kpa;     // true pressure at the actuator
-  std::vector<double> displacement_mm;  // before noise and quantisation
+  std::vector<double> displacement_mm;  // displacement before noise and quantisation [mm]
 };
 
-/// Simulates the logs of one campaign in order. Every log starts at rest; largest load, age and drift
-/// continue from log to log. `step_s` is the integration step; it must divide the sample period.
+/// Simulates the logs of one campaign in order. Every log starts at rest. The largest load, the age and the
+/// drift of the finger continue from log to log. `step_s` is the integration step [s]; the sample period must
+/// be a multiple of it.
 std::vector<LogOutput> simulate(const Base& base, const Effects& effects, const std::vector<LogInput>& logs,
                                 std::uint64_t seed, double step_s = 0.0005);
 
-/// Settings of a gauge check, in which an operator holds the sensor's target at known positions, one after
-/// the other, and reads the sensor.
+/// Settings of a gauge check. An operator holds the target of the sensor at known positions, one after the
+/// other, and averages the readings of the sensor.
 struct GaugeWork {
-  double placing_mm = 0.01;  // standard deviation of the target's true position
-  double every_s = 20;       // time between two positions
+  double placing_mm = 0.01;  // standard deviation of the true target position [mm]
+  double every_s = 20;       // time between two positions of the gauge check [s]
   double rate_hz = 100;
   std::size_t samples = 200;  // number of readings that are averaged at each position
 };
@@ -71,11 +73,11 @@ struct GaugeWork {
 std::vector<std::vector<double>> held_at(const Effects& effects, const std::vector<double>& positions_mm,
                                          double start_s, std::uint64_t seed, const GaugeWork& work);
 
-/// Removes the unrecorded samples of a log.
+/// Removes the samples of a log that are not recorded.
 void drop_unrecorded(LogInput& in, LogOutput& out);
 
-/// Returns the largest displacement of the actuator without effects while the pressure rises to
-/// `pressure_kpa` and falls again.
+/// Returns the largest displacement of the actuator without effects during a pressure rise to `pressure_kpa`
+/// and the following fall.
 double span_mm(const Base& base, double pressure_kpa);
 
 /// Returns white noise. The seed determines the values.
@@ -88,7 +90,7 @@ std::vector<double> measured(const std::vector<double>& clean, double rms, doubl
 const std::vector<std::string>& library_ids();
 const std::vector<std::string>& outside_ids();
 
-/// Returns the parameters of an effect at amplitude 0 < s <= 1, where 1 is the largest physical size. The
+/// Returns the parameters of an effect. Amplitude `s` is between 0 and 1; 1 is the largest physical size. The
 /// parameters that do not depend on the amplitude are drawn from the seed. `span_mm` and `campaign_s` are the
 /// displacement span and the duration of the campaign.
 Effect draw_effect(const std::string& id, double s, std::uint64_t seed, double span_mm, double campaign_s);

@@ -1,4 +1,5 @@
-// Tests that the shipped configurations are accepted without a warning and are consistent with each other.
+// Tests that the check accepts the shipped configurations without a warning, and that these configurations
+// are consistent with each other.
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -154,7 +154,7 @@ rig::RigReading edited(const std::string& name, const std::vector<std::pair<std:
   return rig::read_rig_so_far(document::parse(shipped(name), text, problems), problems);
 }
 
-/// Two converters with the same name and one with another name, in a folder tree like /sys of this computer.
+/// A folder tree like /sys that contains three converters. Two of them have the same name.
 class Converters : public ::testing::Test {
  protected:
   Converters() {
@@ -168,8 +168,8 @@ class Converters : public ::testing::Test {
     std::filesystem::create_directory_symlink(folder, root_ / node);
     std::ofstream(folder / "name") << name << "\n";
   }
-  /// Returns the problems of the shipped rig if the converters of its two valves are named `first` and
-  /// `second`.
+  /// Returns the problems of the shipped rig file. The converters of its two valves are renamed to `first`
+  /// and `second`.
   [[nodiscard]] std::string problems_of(const std::string& first, const std::string& second) const {
     Problems problems;
     const auto reading = edited("rig_iio.yaml",
@@ -401,7 +401,7 @@ TEST(RigFile, ARateBeyondTheBusBudgetIsRefusedUnlessAccepted) {
   EXPECT_TRUE(rig->accept_over_budget);
 }
 
-/// Calls `use(owner, index, path)` for every entry of every map below `node`.
+/// Calls `use(owner, index, path)` for each entry of all maps below `node`.
 using Use = std::function<void(Node&, std::size_t, const std::string&)>;
 void for_each_entry(Node& node, const std::string& path, const Use& use) {
   for (std::size_t i = 0; i < node.entries.size(); ++i) {

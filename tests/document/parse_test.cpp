@@ -1,4 +1,4 @@
-// Tests which texts the parser accepts, and the line and column of each error.
+// Tests which texts the parser accepts. For each error, tests the line and the column in the message.
 
 #include <gtest/gtest.h>
 #include <pthread.h>
@@ -117,7 +117,7 @@ TEST(Parse, BytesMustBeUtf8AndPrintable) {
   EXPECT_EQ(problems_of(std::string("a: \0b\n", 6)),
             (Lines{"1:4: the text contains the control character \\x00"}));
   EXPECT_EQ(problems_of("a: \x1b[31m\n"), (Lines{"1:4: the text contains the control character \\x1b"}));
-  // The YAML parser treats U+0004 as the end of the file, so it would ignore the text after it.
+  // The YAML parser treats U+0004 as the end of the file, so it would ignore the text after this character.
   EXPECT_EQ(problems_of("a: 1\n\x04: 2\n"), (Lines{"2:1: the text contains the control character \\x04"}));
   EXPECT_EQ(problems_of("\xEF\xBB\xBF"
                         "a: 1\n"),
@@ -255,7 +255,8 @@ TEST(ParseFile, StopsReadingAtTheBound) {
   const ScratchFolder scratch;
   const std::string path = scratch.path() + "/large.yaml";
   std::ofstream(path) << "a: 1\n";
-  std::filesystem::resize_file(path, std::uintmax_t{1} << 40U);  // a sparse file, larger than any memory
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 40U);  // a sparse file that is larger than any
+                                                                 // memory
   Problems problems;
   static_cast<void>(parse_file(path, problems));
   EXPECT_EQ(lines_of(problems),

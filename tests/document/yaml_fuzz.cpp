@@ -1,5 +1,5 @@
-// Fuzz target: parses arbitrary bytes, calls every getter and formats every message. Run it with the
-// arguments -dict=yaml.dict corpus/.
+// Fuzz target: parses arbitrary bytes, calls every getter and formats every message. The arguments are
+// -dict=yaml.dict corpus/.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,8 @@ using softgrip::document::MapReader;
 using softgrip::document::Node;
 using softgrip::document::Problems;
 
-/// Aborts if a tree exceeds the bounds, a map has two equal keys, or a position is outside the text.
+/// Aborts in three cases: a tree exceeds its limits, a map has two equal keys, or a position is outside the
+/// text.
 void check(const Node& node, int depth, std::size_t& nodes) {
   if (++nodes > softgrip::document::Bounds{}.nodes || depth > softgrip::document::Bounds{}.depth)
     std::abort();

@@ -45,7 +45,7 @@ class LibraryAndCommand : public testing::Test {
   ~LibraryAndCommand() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  /// Runs `softgrip` and returns its output. The test fails if the exit code is not 0.
+  /// Runs `softgrip` and returns its output. The test fails if the exit code of the program is not 0.
   std::string run(const std::string& arguments) const {
     const std::string output = path("output");
     const std::string command =

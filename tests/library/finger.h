@@ -15,7 +15,7 @@ namespace softgrip {
   return Model::load(std::string(SOFTGRIP_SOURCE_DIR) + "/config/models/bench_twin.yaml");
 }
 
-/// A sampled signal.
+/// A signal with its sample times.
 struct Course {
   std::vector<double> time_s;
   std::vector<double> value;

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs the packages of scripts/package.sh, builds the C++ examples with the commands of docs/how-to/library-cpp.md, and runs
-# them and the Python examples. For a machine that has nothing else of softgrip, such as a chroot:
+# Installs the packages that scripts/package.sh has built. Builds the C++ examples with the commands of
+# docs/how-to/library-cpp.md, and runs the C++ and Python examples. Needs a machine without any other part of
+# softgrip, such as a chroot:
 #   scripts/chroot_test.sh bookworm bash tests/library/installed_examples.sh
 set -euo pipefail
 . "$(dirname "$0")/example_runs.sh"

@@ -40,7 +40,7 @@ bool is_random(std::size_t type) {
   return type == block_type<SensorNoise>() || type == block_type<Outliers>();
 }
 
-/// Returns surroundings in which every block has an effect.
+/// Returns surroundings (temperature, supply pressure, time and others) in which every block has an effect.
 Surroundings around(double time_s) {
   return {time_s, 450 + 40 * std::sin(0.3 * time_s), 24 + 3 * std::cos(0.2 * time_s)};
 }
@@ -145,8 +145,8 @@ TEST(EveryBlock, StepsInHalvesAsInOne) {
                                              block_type<Backlash>(),
                                              block_type<SensorLag>()};
   for_every_block([&](std::size_t type) {
-    // A clock offset uses the slope of the last step, so two half steps differ from one step.
-    // clock_offset_test.cpp tests this error.
+    // The clock offset uses the slope of the last step, so two half steps give a different result than one
+    // step. clock_offset_test.cpp tests this error.
     if (is_random(type) || type == block_type<ClockOffset>()) return;
     const double tolerance_mm = std::ranges::count(approximate, type) == 0 ? 1e-8 : 2e-4;
     Chain<double> whole(twin_with(type)), halves(twin_with(type));

@@ -20,7 +20,7 @@ constexpr int most_parameters = 20;
 using Jet = ceres::Jet<double, most_parameters>;
 constexpr double dt = 5e-3;
 
-// Returns surroundings in which every block has an effect.
+// Returns surroundings (temperature, supply pressure, time and others) in which every block has an effect.
 Surroundings around(double time_s) {
   Surroundings s;
   s.time_s = time_s;

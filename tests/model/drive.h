@@ -17,7 +17,7 @@ Block make(std::initializer_list<double> values, double sample_time_s = 0) {
   return Block(std::span<const double>(list), Preparation{sample_time_s, 1});
 }
 
-/// Returns the output segments of a pressure or displacement block for one input segment.
+/// Applies one input segment to a pressure or displacement block. Returns the output segments.
 template <class Block>
 std::vector<Segment<double>> pass(Block& block, const Segment<double>& in, const Surroundings& around = {}) {
   std::vector<Segment<double>> out;

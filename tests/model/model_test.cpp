@@ -113,7 +113,8 @@ TEST(Model, SaysWhatIsWrong) {
   EXPECT_EQ(validate(Model{}).size(), 1u);  // one error: the model has no element
   Model model = preset("bench_twin");
   model.blocks.push_back({lag, {0.1}});
-  EXPECT_EQ(validate(model).size(), 2u);  // two errors: the block is repeated and in the wrong order
+  EXPECT_EQ(validate(model).size(), 2u);  // two errors: the block exists twice, and the blocks are in the
+                                          // wrong order
   model = preset("zhang2025");
   model.blocks[0].values[4] = 1.5;
   EXPECT_EQ(validate(model).size(), 1u);

@@ -16,7 +16,8 @@ namespace {
 // p is not integrated.
 struct Problem {
   const Physics& physics;
-  double from_s = 0, from_kpa = 0, slope = 0;  // the delayed command on the current linear segment
+  double from_s = 0, from_kpa = 0, slope = 0;  // time and value at the start of the current linear segment of
+                                               // the delayed command, and its slope
 
   [[nodiscard]] double command(double t) const { return from_kpa + slope * (t - from_s); }
 };

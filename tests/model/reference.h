@@ -1,7 +1,7 @@
 #pragma once
-// Reference solution: SUNDIALS CVODE integrates the continuous equations, with no formula from model/. The
-// equations contain the delay and the lag of the valve, the Bouc-Wen element and the Kelvin-Voigt element.
-// They contain no other block of the chain.
+// Computes a reference solution. SUNDIALS CVODE integrates the continuous equations. The code uses no formula
+// from model/. The equations contain the delay and the lag of the valve, the Bouc-Wen element and the
+// Kelvin-Voigt element. They contain no other block of the chain.
 
 #include <functional>
 #include <vector>
@@ -17,8 +17,8 @@ struct Physics {
   std::vector<double> k, c;
 };
 
-/// Returns the displacement at the times i * sample_time_s. The command is piecewise linear between the given
-/// samples and starts from rest at 0. The relative tolerance is 1e-12.
+/// Returns the displacement at the times i * sample_time_s. The command is linear between its samples. The
+/// finger starts at rest with the command 0. The relative tolerance is 1e-12.
 [[nodiscard]] std::vector<double> integrate(const Physics& physics, const std::vector<double>& command_kpa,
                                             double sample_time_s);
 

@@ -36,7 +36,7 @@ def command(*arguments):
 
 
 def plain(report, *without):
-    """Returns the result without the values that differ from call to call."""
+    """Returns the result without the values that differ between two calls, such as durations."""
     return {key: value for key, value in report.items() if key not in without}
 
 
@@ -236,7 +236,7 @@ class HostileArguments(unittest.TestCase):
            np.array(["2020-01-01", "2020-01-02"], dtype="datetime64[s]"), "a\0b", [0, 1e-320]]
 
     def refused(self, call):
-        """Calls the function with each bad value. Returns the number of refused values."""
+        """Calls the function with each invalid value. Returns how many of the values the function refused."""
         count = 0
         for bad in self.BAD:
             try:

@@ -1,9 +1,11 @@
-"""Every function of the package with random arguments, from several threads at a time: exceptions of the package, never a crash.
+"""Calls every function of the package with random arguments, from several threads at a time. A call may raise an
+exception of the package but must never crash.
 
     test_fuzz.py --seed 7 --calls 1000 [--threads 4]      in this process; prints the seed
 
-The test runs this in a child process, so that it sees a crash. Needs the folder python of a build (SOFTGRIP_BUILD), which has
-the extension module. In a build with AddressSanitizer, LD_PRELOAD names its library.
+The test runs these calls in a child process, so that it can detect a crash. Needs the folder python of a build
+(SOFTGRIP_BUILD), which contains the extension module. For a build with AddressSanitizer, LD_PRELOAD must name the
+library of AddressSanitizer.
 """
 
 import argparse
@@ -250,7 +252,7 @@ class Column:
 
 
 def bad_paths(chance):
-    """Paths to which nothing can be written. All others stay untouched by this test."""
+    """Returns paths to which no file can be written. The test must not write to any other path."""
     return [one for one in texts(chance) if not isinstance(one, (str, pathlib.Path))] + ["", "a\0b", "\ud800", "x" * 300_000, ".."]
 
 

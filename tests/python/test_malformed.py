@@ -1,5 +1,5 @@
-"""Tests lines that softgripd never sends. Each line must raise a ProtocolError or have no effect, and must never raise
-one of Python's own exceptions."""
+"""Tests the package with lines that softgripd never sends. Each line must raise a ProtocolError or have no effect. It
+must never raise a built-in exception of Python."""
 
 import json
 import random

@@ -33,7 +33,7 @@ def change(path, hunk):
 
 
 class Tree:
-    """A copy of the source tree in `folder`, with its own build."""
+    """A copy of the source tree in `folder`. The copy has its own build."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder) / "softgrip"

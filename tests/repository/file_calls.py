@@ -44,7 +44,7 @@ def without_comments_and_strings(text):
 
 
 def calls_in(text):
-    """Returns (name, line) of every call."""
+    """Returns (name of the call, line) for every call in a file."""
     plain = without_comments_and_strings(text)
     for name, pattern in CALLS.items():
         for found in re.finditer(pattern, plain):

@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# A build uses only one of these headers.
+# A build includes only one of these two headers, so they may define the same types.
 ALTERNATIVES = {"drivers/gpio/libgpiod_1.h", "drivers/gpio/libgpiod_2.h"}
 DECLARED = re.compile(r"^(?:struct|class|enum class) (?:\[\[\w+\]\] )?(\w+)(?: final)?(?: :.*)? \{", re.M)
 

@@ -109,8 +109,8 @@ class Judge:
         return word in self.names
 
     def program_exists(self, word):
-        """build/PRESET/path/to/program, or a folder of programs. Deeper paths below build/ are files that programs
-        write."""
+        """Returns True if build/PRESET/path/to/program is a program or a folder of programs. Deeper paths in build/
+        are files that programs write."""
         parts = word.split("/", 2)
         if len(parts) < 3 or self.programs is None:
             return True

@@ -14,8 +14,8 @@ import recipe  # noqa: E402
 
 
 def edits_of_the_cause(folder):
-    """Makes all edits of the page about causes and returns their number. An AssertionError describes the edit that does
-    not fit."""
+    """Makes all edits of the page about causes. Returns the number of edits. If an edit does not fit, an
+    AssertionError describes it."""
     add_a_cause.copy_of(ROOT, folder)
     made = 0
     for language, info, body in add_a_cause.FENCE.findall((ROOT / add_a_cause.PAGE).read_text()):

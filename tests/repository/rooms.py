@@ -33,7 +33,7 @@ def rooms():
 
 
 def included_by(folders):
-    """Returns the folders of the project whose headers the files of `folders` include."""
+    """Returns the folders of the project from which the files in `folders` include headers."""
     folders_included = set()
     for folder in folders:
         for file in [*(source / folder).glob("*.h"), *(source / folder).glob("*.cpp")]:

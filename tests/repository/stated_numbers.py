@@ -26,8 +26,8 @@ def sources(folder):
 
 
 def threads():
-    """Checks the number of threads on the page: the named threads in the sources of softgripd, the first thread, and
-    the thread that writes the log."""
+    """Checks the number of threads that the page states. It must be the number of named threads in the sources of
+    softgripd, plus the main thread and the thread that writes the log file."""
     daemon = [text(name) for name in sources("daemon/")]
     made = {name for one in daemon for name in re.findall(r'\.name = "(softgrip-[a-z]+)"', one)}
     pools = sum(one.count("make_shared<spdlog::details::thread_pool>") for one in daemon)

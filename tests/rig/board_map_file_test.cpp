@@ -125,7 +125,7 @@ struct Mistake {
   std::string from;
   std::string to;
   std::string message;
-  std::string line;  ///< part of the line to which the message must point
+  std::string line;  ///< part of the line that the message must quote
 };
 
 void expect_one_problem(const Mistake& mistake) {

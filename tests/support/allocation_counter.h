@@ -9,7 +9,7 @@ namespace softgrip::test {
 
 /// Starts or stops the count of this thread's allocations. The count is initially stopped.
 void count_allocations(bool on) noexcept;
-/// Returns the number of counted allocations of this thread.
+/// Returns the number of allocations of this thread that have been counted so far.
 [[nodiscard]] std::size_t allocations() noexcept;
 
 /// Returns the number of allocations that `work` makes in this thread.

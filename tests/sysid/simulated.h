@@ -11,7 +11,7 @@
 
 namespace softgrip::sysid {
 
-/// Reads config/models/NAME.yaml.
+/// Reads the model file config/models/NAME.yaml.
 [[nodiscard]] model::Model loaded(const std::string& name);
 
 /// Simulates the response of the model to a signal, sampled at `rate_hz`. The model starts at rest. @param

@@ -247,12 +247,12 @@ class BenchTest(unittest.TestCase):
                 print(f"--- {process.name}\n{process.output()[-2000:]}\n{process.errors()[-6000:]}", file=sys.stderr)
 
     def check_recordings(self):
-        """Checks that all recordings of the test satisfy the guarantees of docs/reliability.md."""
+        """Checks that all recordings of the test have the properties that docs/reliability.md guarantees."""
         for about in sorted((self.folder / "runs").glob("*/run.json")):
             self.assertEqual(recording_check.check(about.parent), [])
 
     def start_rig(self, *arguments):
-        """Starts an emulated rig with a stone between the fingers and its daemon, and waits until the daemon is
+        """Starts an emulated rig with a stone between the fingers. Starts its daemon and waits until the daemon is
         idle."""
         self.board = self.emulator("--object", "stone", *arguments)
         self.rig_path = self.rig(self.board.port)

@@ -26,7 +26,7 @@ def environment(folder):
 
 
 class Lines:
-    """Presses the buttons and reads the lamps."""
+    """Presses the simulated buttons and reads the simulated lamps."""
 
     def __init__(self, folder):
         self.wire = bench.Lines(folder / "gpio/lines")
@@ -47,7 +47,7 @@ class Lines:
         self.wire.file.flush()
 
     def heard(self):
-        """Waits until press_for() has taken effect."""
+        """Waits until softgripd has received the button press of press_for()."""
         for _ in range(2):
             self.wire.file.readline()
 

@@ -35,7 +35,8 @@ def table():
 
 
 def motion_faults():
-    """Returns {command: (code without the board, code with safe outputs)} of the second table of the page."""
+    """Reads the second table of the page. Returns {command: (exit code if the board does not respond, exit code if
+    the outputs are safe)}."""
     rows = (line.strip("|").split("|") for line in PAGE.read_text().splitlines() if line.startswith("| `"))
     return {row[0].strip(" `"): tuple(cell.strip() for cell in row[1:]) for row in rows if len(row) == 3}
 

@@ -87,7 +87,7 @@ def check_recording(folder, what):
 
 
 def check_complete(folder, done, what):
-    """Checks that all requested results exist if the exit code is 0."""
+    """Checks that all requested output files exist if the exit code is 0."""
     about = folder / "run.json"
     if not about.exists() or json.loads(about.read_text())["state"] != "complete":
         raise Failure(f"{what}: exit code 0 without a complete recording\n{done.stderr[-1500:]}")
@@ -102,7 +102,7 @@ def numbers(call, highest):
 
 
 class Scenario:
-    """A folder with the shipped configuration, and a command whose calls fail."""
+    """A folder with the shipped configuration, and a command in whose run the Nth call fails."""
 
     def __init__(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="softgrip_fail_nth_"))
@@ -120,8 +120,8 @@ class Scenario:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def virtual(self, call, nth, from_then_on=False):
-        """Runs softgripd in virtual time. It has one thread in this mode, so the order of the calls is always the
-        same."""
+        """Runs softgripd in virtual time. In this mode, it has one thread, so its calls always have the same
+        order."""
         shutil.rmtree(self.out, ignore_errors=True)
         histograms = self.folder / "histograms"
         histograms.unlink(missing_ok=True)
@@ -165,7 +165,7 @@ class Scenario:
                            call, nth, from_then_on)
 
     def validate(self, call, nth, from_then_on=False):
-        """Runs a command that writes several files into a folder."""
+        """Runs a command that writes several files to a folder."""
         log = self.folder / "log.csv"
         if not log.exists():
             subprocess.run([bench.SOFTGRIP, "simulate", "--model", "config/models/bench_twin.yaml", "--input", "steps",
@@ -190,7 +190,7 @@ class Scenario:
         return path
 
     def real(self, call, nth, from_then_on=False):
-        """Runs softgripd in real time, and checks the board afterwards."""
+        """Runs softgripd in real time. Afterwards, checks the outputs of the board."""
         rig = self.rig()
         shutil.rmtree(self.out, ignore_errors=True)
         done, happened = run([bench.SOFTGRIPD, "--config", rig, "--sequence", self.sequence, "--record", self.out],

@@ -124,7 +124,7 @@ def shipped_rig():
 
 
 class Cell:
-    """One fault in one phase."""
+    """A cell of the matrix: one fault in one phase of a grip."""
 
     def __init__(self, table, name, phase, vacuum=False):
         self.vacuum = vacuum

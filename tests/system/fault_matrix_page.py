@@ -1,4 +1,4 @@
-"""Writes docs/results/fault-matrix.md from the table and the measured values."""
+"""Writes docs/results/fault-matrix.md from the table of faults and the measured values."""
 
 import pathlib
 import sys

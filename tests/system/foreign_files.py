@@ -211,7 +211,7 @@ def recording(path):
 
 
 def exported(file):
-    """Returns the recording as MCAP, written by `softgrip export`."""
+    """Returns an MCAP file of the recording, which `softgrip export` has written."""
     def make(path):
         with tempfile.TemporaryDirectory() as folder:
             run = pathlib.Path(folder) / "run"
@@ -297,7 +297,7 @@ def spreadsheets():
 
 
 def measurements():
-    """Returns .tdms files of LabVIEW."""
+    """Returns .tdms files, the binary format of LabVIEW."""
     times = {"t": tdms.Channel(T, {"unit_string": "s"}), "set": tdms.Channel(COMMAND, {"unit_string": "kPa"}),
              "tip": tdms.Channel(TIP, {"unit_string": "mm"})}
     ramp = [k - 150 for k in range(COUNT)]
@@ -509,7 +509,7 @@ def other_fingers_and_clocks():
 
 
 def signals(stamp):
-    """Returns MCAP recordings with a topic for each signal."""
+    """Returns MCAP files that have a separate topic for each signal."""
     units = "--unit command=kPa --unit displacement=mm"
 
     def of(name, values, late_s=0.0, every=1):

@@ -38,7 +38,7 @@ PARTS = (Part("stone", 12, 0.1), Part("spring", 10, 0.5), Part("screw", 17, 0.05
 
 @dataclasses.dataclass(frozen=True)
 class Trial:
-    part: Part | None  # None: there is no part
+    part: Part | None  # None if there is no part
     fingers: int
     offset_mm: float  # position of the part relative to the position that the recipe expects
     tilt_mm: float  # additional distance of the part from the second finger

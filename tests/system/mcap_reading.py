@@ -9,7 +9,7 @@ MAGIC = b"\x89MCAP0\r\n"
 
 
 class Content:
-    """The bytes of one record, which are read from left to right."""
+    """The bytes of one record. Each call reads the next bytes."""
 
     def __init__(self, data):
         self.data, self.at = data, 0

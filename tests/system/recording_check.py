@@ -1,7 +1,7 @@
 """Checks recordings against the guarantees of docs/reliability.md: recording_check.py RECORDING...
 
-It reads run.csv, run.json, and the rig file to which run.json refers, if this file has not changed. The exit code is 6
-if a recording violates a guarantee; the message contains the row.
+The script reads run.csv and run.json. It also reads the rig file to which run.json refers, if this file has not
+changed since the recording. The exit code is 6 if a recording violates a guarantee; the message states the row.
 """
 
 import argparse
@@ -84,8 +84,8 @@ class Recording:
     # --- Checks that the recording is complete
 
     def check_whole(self):
-        """Checks that every tick has a row of every channel in the same order, that the times increase, and that the
-        number of rows equals the number in run.json."""
+        """Checks that every tick has one row for each channel, in the same order. Also checks that the times
+        increase, and that the number of rows is the number in run.json."""
         for index, row in enumerate(self.rows):
             if row["channel"] != self.names[index % len(self.names)]:
                 self.says(row, f"row {index + 2} is out of order")
@@ -125,8 +125,8 @@ class Recording:
                                f"{self.allowed(name, slew):.6f} are its slew")
 
     def check_return(self, name, before, row, last):
-        """Checks that the return to rest stays within the slew limit. The safe outputs during a fault and at the end
-        are exceptions, because they are written in one step."""
+        """Checks that the return to rest stays within the slew limit. Safe outputs during a fault and at the end of
+        the recording are exempt, because they are written in one step."""
         if name not in self.limits or row["state"] == "faulted" or last:
             return
         for side, slew in ((1, "slew_down_kpa_per_s"), (-1, "slew_up_kpa_per_s")):
@@ -158,7 +158,8 @@ class Recording:
                 self.says(row, f"HOLDING from a reading that is {row['validity']}, while {before['state']}")
 
     def check_events(self):
-        """Checks that the events are in order and that no sequence runs between a fault and its acknowledgement."""
+        """Checks that the events are in order. Also checks that no sequence runs between a fault and the
+        acknowledgement of this fault."""
         faulted = None
         time_s, number = -math.inf, 0
         for event in self.about["events"]:

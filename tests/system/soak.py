@@ -120,7 +120,7 @@ class Soak:
         return events
 
     def one(self, item, sequence, end, result):
-        """Runs one sequence and compares its result with the required one."""
+        """Runs one sequence and checks that it ends with the required result."""
         self.emulator.ask(f"object {item}" if item == "out" else "object back")
         if item != "out":
             self.emulator.ask(f"object {item}")
@@ -145,7 +145,8 @@ class Soak:
         self.read_recordings()
 
     def recover(self):
-        """Counts and acknowledges a fault. The soak test continues and reports it at the end."""
+        """Counts a fault and acknowledges it, so that the test can continue. The verdict at the end reports the
+        fault."""
         if self.daemon.status()["state"] == "faulted":
             bench.wait_for("an acknowledged fault", lambda: self.daemon.ask("acknowledge")["ok"], 30, 0.5)
         self.daemon.wait_for_state("idle")

@@ -66,8 +66,8 @@ class Disturbances:
             self.soak.note(f"{what}: the sequence ended {ended}")
 
     def clients(self):
-        """Connects clients that leave after the answer to their request, before the answer, in the middle of a line, or
-        without a request."""
+        """Connects clients that disconnect at different times: after the answer to their request, before the answer,
+        in the middle of a line, or before any request."""
         self.start()
         for number in range(200):
             client = bench.Lines(self.soak.folder / "softgripd.sock")

@@ -22,7 +22,7 @@ class SocketProxy:
         self.held = set()
         self.refuses = False
         self._lock = threading.Lock()
-        self._pairs = []  # [client or None, daemon or None, bytes to the daemon, bytes to the client]
+        self._pairs = []  # each entry: [client or None, daemon or None, bytes to the daemon, bytes to the client]
         self._wakes, self._waker = os.pipe()
         self._ended = False
         self._listener = socket.socket(socket.AF_UNIX)

@@ -1,4 +1,4 @@
-"""Writes LabVIEW's .tdms files for tests, by the description of the format (TDMS File Format Internal Structure)."""
+"""Writes .tdms files of LabVIEW for tests, by the description of the format (TDMS File Format Internal Structure)."""
 
 import struct
 

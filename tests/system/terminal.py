@@ -61,7 +61,8 @@ class Terminal:
         return "\n".join(self.lines())
 
     def wait_for(self, what, patience_s=30):
-        """Waits until a text is on the screen, or until `what` returns true for the screen. Returns the screen."""
+        """Waits until the text `what` is on the screen. If `what` is a function, waits until what(screen) is true.
+        Returns the screen."""
         shows = what if callable(what) else lambda text: what in text
         end = time.monotonic() + patience_s
         while not shows(text := self.text()):

@@ -27,7 +27,7 @@ class Baseline(bench.BenchTest):
         self.addCleanup(patch.stop)
 
     def simulated(self, *changes):
-        """Writes config/rig.yaml with a left finger that can move freely."""
+        """Writes config/rig.yaml without an object, so that the left finger can move freely."""
         text = (self.folder / "config/rig.yaml").read_text()
         for old, new in ((STONE, ""), *changes):
             self.assertIn(old, text)

@@ -140,7 +140,7 @@ class Online(bench.BenchTest):
         self.assertIn("sequence_finished", kinds)
 
     def live(self, environment, keys):
-        """Runs `softgrip watch` on its own terminal; returns everything that it wrote."""
+        """Runs `softgrip watch` on its own terminal. Returns everything that the program has written."""
         child, terminal = pty.fork()
         if child == 0:
             os.environ.update(environment, TERM="xterm", SOFTGRIP_SOCKET=str(self.softgripd.socket_path))

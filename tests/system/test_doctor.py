@@ -1,4 +1,5 @@
-"""Tests softgrip doctor and calibrate as a technician runs them, with the emulator over TCP."""
+"""Tests softgrip doctor and softgrip calibrate as a technician uses them. The emulator replaces the board, over
+TCP."""
 
 import json
 import os
@@ -182,7 +183,7 @@ class Calibrate(bench.BenchTest):
             stream.close()
 
     def answer_with(self, child, reading):
-        """Answers every question until the program ends. Returns everything that the program printed."""
+        """Answers every question of the program until it ends. Returns everything that the program has printed."""
         said = b""
         while True:
             byte = os.read(child.stderr.fileno(), 1)
@@ -243,7 +244,7 @@ class Calibrate(bench.BenchTest):
         self.softgrip("calibrate", "--rig", rig, *quick, "--gauge-mm", "five", "6", expect=3)
         self.softgrip("calibrate", "--rig", rig, *quick, expect=3)  # standard input gives no answer to the question
         self.softgrip("calibrate", "--rig", rig, "--channel", "left", "--valve", expect=2)
-        self.softgrip("calibrate", "--rig", rig, expect=2)  # --channel is missing
+        self.softgrip("calibrate", "--rig", rig, expect=2)  # the option --channel is missing
         self.assertEqual(max(emulator.commands_kpa()), 0)
 
     QUICK = ("--channel", "left", "--sensor", "--move", "--settle-s", "0.5", "--average-s", "0.3")

@@ -95,7 +95,7 @@ class Page(unittest.TestCase):
 
 
 class Desk(bench.BenchTest):
-    """Tests the commands that work on files."""
+    """Tests the commands that read and write files."""
 
     def setUp(self):
         super().setUp()

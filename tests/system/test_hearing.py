@@ -68,7 +68,8 @@ class Hearing(bench.BenchTest):
         return client
 
     def vents(self, patience_s=5):
-        """Sends a vent request as a new client and checks the answer. Returns the time until the outputs fall [s]."""
+        """Sends a vent request from a new client and checks the answer. Returns the time from the request until the
+        outputs fall [s]."""
         self.assertGreater(min(self.board.commands_kpa()), 10, "there is nothing to vent")
         began = time.monotonic()
         client = self.raw()

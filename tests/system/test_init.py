@@ -1,4 +1,4 @@
-"""Tests softgrip init as a new user runs it, in a terminal and with options."""
+"""Tests softgrip init as a new user runs it, both with questions on a terminal and with options."""
 
 import os
 import pty

@@ -66,7 +66,8 @@ class Investigation(bench.BenchTest):
         self.assertIn(told["why"], page)
 
     def simulated(self, about):
-        """Writes a rig file like config/rig.yaml with this finger. `about` replaces the stones in the file."""
+        """Writes a rig file like config/rig.yaml with this finger. The text `about` replaces the entry `object` (a
+        stone between the fingers)."""
         text = (self.folder / "config/rig.yaml").read_text()
         stone = "\n        object: {position_mm: 12, yielding: 0.1}    # a stone between the fingers"
         self.assertIn(stone, text)

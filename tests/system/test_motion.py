@@ -148,7 +148,7 @@ class Silent(MotionTest):
 
 
 class Blind(MotionTest):
-    """The displacement sensor of the finger that is moved has failed."""
+    """The displacement sensor of the moving finger has failed."""
 
     def test_nothing_rises_without_the_sensor(self):
         self.board.ask("fault blind")

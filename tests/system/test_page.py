@@ -1,4 +1,5 @@
-"""Tests the operator's page in a real browser: grips, lost parts, daemons that end and start, and permissions."""
+"""Tests the operator's page in a real browser. The tests cover grips, lost parts, daemons that end and start, and the
+permissions of users."""
 
 import http.server
 import os

@@ -15,7 +15,7 @@ TWIN = (("models/zhang2025.yaml", "models/bench_twin.yaml"), ("kp_kpa_per_mm: 3.
 
 
 class Virtual(bench.BenchTest):
-    """Tests softgrip run in virtual time."""
+    """Tests a planned feedforward with softgrip run in virtual time."""
 
     def rig_with(self, *changes):
         text = (self.folder / "config/rig_planned.yaml").read_text()
@@ -75,7 +75,7 @@ class Virtual(bench.BenchTest):
 
 
 class Served(bench.BenchTest):
-    """Tests planned feedforward over the socket in real time."""
+    """Tests a planned feedforward with a daemon in real time; the sequence is started over the socket."""
 
     def setUp(self):
         super().setUp()

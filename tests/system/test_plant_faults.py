@@ -17,7 +17,7 @@ FAULTS = """faults:
 
 class PlantFaults(bench.BenchTest):
     def tracking(self, changes=()):
-        """Starts a daemon that tracks a sine with both fingers."""
+        """Starts a daemon with a sequence in which both fingers track a sine."""
         self.emulated = self.emulator("--faults", self.write("faults.yaml", FAULTS))
         daemon = self.daemon(self.rig(self.emulated.port, changes))
         daemon.wait_for_state("idle")

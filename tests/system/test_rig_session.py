@@ -7,7 +7,7 @@ import bench
 
 
 class RigSession(unittest.TestCase):
-    """Tests the use of scripts/rig_session.sh in scripts/demo.sh."""
+    """Tests that scripts/demo.sh can use scripts/rig_session.sh."""
 
     def test_a_rig_and_a_daemon_come_up_and_end(self):
         done = subprocess.run(["bash", "-euc", """

@@ -13,7 +13,7 @@ from serial_rig import RATE_HZ
 
 
 class Line(bench.BenchTest):
-    """Tests the shipped rig on a serial line, which is a pseudo-terminal of the emulator."""
+    """Tests the shipped rig on a serial line. The line is a pseudo-terminal of the emulator."""
 
     def line_rig(self, *changes):
         return serial_rig.rig_file(self.folder, RATE_HZ, *changes)

@@ -1,4 +1,5 @@
-"""Tests version 1 of the socket API: identity and permissions of a client, dry runs, and events without gaps."""
+"""Tests version 1 of the socket API: the identity and the permissions of a client, dry runs, and that a client
+receives all events."""
 
 import json
 import time

@@ -1,4 +1,4 @@
-"""Tests softgrip tune and softgrip study as a user sees them, with options for short runs."""
+"""Tests softgrip tune and softgrip study as a user sees them. The options are chosen so that the runs are short."""
 
 import json
 import re

@@ -6,7 +6,7 @@ import bench
 
 class Wire(bench.BenchTest):
     def holding(self, *emulator_arguments, changes=()):
-        """Starts a daemon that holds a stone with both fingers."""
+        """Starts a daemon and waits until both fingers hold a stone."""
         self.rig_process = self.emulator("--object", "stone", *emulator_arguments)
         self.rig_file = self.rig(self.rig_process.port, changes)
         daemon = self.daemon(self.rig_file)

@@ -1,5 +1,5 @@
-"""Tests every connection fault of the emulator. Short faults must cause no stop, and lasting faults must latch with
-their code."""
+"""Tests every connection fault that the emulator can simulate. A short fault must not stop the sequence. A lasting
+fault must latch with the correct code."""
 
 import bench
 

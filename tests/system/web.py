@@ -1,4 +1,4 @@
-"""Runs softgrip-web with the other processes of a test."""
+"""Runs a softgrip-web process together with the other processes of a test."""
 
 import json
 import re

@@ -67,7 +67,7 @@ class Fault:
         self.memory = {}  # values that a disturbance keeps from one message to the next
 
     def touch(self):
-        """Returns True if this message must be changed."""
+        """Returns True if the fault must change this message."""
         if self.left <= 0:
             return False
         self.left -= 1
@@ -75,7 +75,7 @@ class Fault:
         return True
 
     def differs(self):
-        """Records that a message has been changed."""
+        """Records that the fault has changed a message."""
         if self.first_touch is None:
             self.first_touch = time.monotonic()
 
@@ -216,7 +216,7 @@ def inserted(session, fault, request):
 
 
 def other_function(session, fault, request):
-    """Sends a well-formed answer to a different request."""
+    """Replies with a valid answer to a different request."""
     if not fault.touch():
         return False
     reply = session.ask_board(request)
@@ -307,7 +307,7 @@ def changed_words(session, fault, request, change):
 
 
 def corrupted_value(session, fault, request):
-    """Changes one bit of the left finger's displacement."""
+    """Changes one bit of the reading of the left finger's displacement."""
     def change(words):
         words[0] ^= 1 << fault.key("bit", 14)
     return changed_words(session, fault, request, change)
@@ -377,7 +377,7 @@ def changed_write(session, fault, request, change):
 
 
 def asymmetric(session, fault, request):
-    """Changes the value for the left output, but not the value for the right output."""
+    """Changes the value for the left output. The value for the right output stays unchanged."""
     def change(words):
         words[0] = min(4095, round(words[0] + fault.key("by_kpa", 10) * RAW_PER_KPA))
     return changed_write(session, fault, request, change)

@@ -16,7 +16,7 @@ STYLES = (f'<styleSheet xmlns="{MAIN}"><numFmts count="3"><numFmt numFmtId="164"
 
 
 class Cell:
-    """The content of a cell: its attributes and its elements."""
+    """The content of a cell: the attributes of its XML element and the elements in it."""
 
     def __init__(self, inside, attributes=""):
         self.inside, self.attributes = inside, attributes

@@ -24,7 +24,7 @@ THERMOMETER_NOISE_C = 0.2
 
 @dataclasses.dataclass(frozen=True)
 class Finger:
-    """The simulated changes of a finger."""
+    """Describes how a simulated finger differs from the healthy finger."""
     gain: float = 1
     zero_mm: float = 0
     leak: float = 0  # share of the pressure that a leak removes
@@ -40,7 +40,7 @@ class Grip:
     sequence: str = "pick_stone"
     part_mm: float = 12  # position of the part [mm]
     temperature_c: float = 20
-    thermometer: bool = False  # the rig has one thermometer for all channels
+    thermometer: bool = False  # true: the rig has one thermometer for all channels
 
 
 class Rig:

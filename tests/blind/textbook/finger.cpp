@@ -11,8 +11,8 @@ namespace {
 constexpr std::array<double, 3> prony_tau_s{0.3, 6, 120};
 constexpr std::size_t plays = 10, slips = 8;
 
-// Returns the nominal stress of incompressible Mooney-Rivlin rubber with C2 = C1/4 in uniaxial tension,
-// divided by the initial slope of the stress.
+// Returns the nominal stress in uniaxial tension of incompressible Mooney-Rivlin rubber with C2 = C1/4. The
+// stress is divided by its initial slope.
 double rubber_stress(double stretch) noexcept {
   return 2 * (0.8 + 0.2 / stretch) * (stretch - 1 / (stretch * stretch)) / 6;
 }
@@ -124,7 +124,7 @@ double Finger::preisach(double q) noexcept {
   while (memory_.size() >= 2) {
     const double before =
         memory_[memory_.size() -
-                2];  // if the input passes this turning point, the last two turning points are erased
+                2];  // earlier turning point; if the input passes it, the last two turning points are erased
     if (rising ? q < before : q > before) break;
     memory_.resize(memory_.size() - 2);
   }

@@ -12,14 +12,14 @@ namespace textbook {
 inline constexpr double working_kpa = 60;
 
 struct FingerNumbers {
-  std::string make = "play";  // play, maxwell_slip, preisach, hyperelastic_tube, fractional
+  std::string make = "play";  // type of finger: play, maxwell_slip, preisach, hyperelastic_tube or fractional
   double span_mm = 16;        // displacement at working_kpa after all creep has ended
-  double width = 0.1;         // width of the hysteresis; 0: no loops
+  double width = 0.1;         // width of the hysteresis; 0 means no hysteresis
   double curvature = 0.1;
-  double creep = 0.15;           // share of the displacement that creeps
+  double creep = 0.15;           // share of the displacement that comes from creep
   double creep_tilt = 0;         // exponent of the weight tau^creep_tilt of a creep branch with time constant
                                  // tau
-  double envelope = 0.1;         // nonlinearity of the loops (generalised play, Preisach density)
+  double envelope = 0.1;         // nonlinearity of the hysteresis loops (generalised play, Preisach density)
   double longest_creep_s = 1e9;  // creep branches with a longer time constant [s] are left out
 };
 
@@ -56,10 +56,10 @@ class Finger {
 
   FingerNumbers numbers_;
   std::array<double, branches> weight_{}, tau_s_{}, branch_{};
-  double full_ = 1;             // value of raw() at working_kpa after a long hold
+  double full_ = 1;             // output of raw() after a long hold at working_kpa
   std::vector<double> memory_;  // states of the plays, anchors of the slip elements, or turning points of the
                                 // input
-  double input_ = 0;            // input of the relays before this step
+  double input_ = 0;            // input of the hysteresis model before this step
   double balance_ = 0;          // strain of the spring of the Maxwell-slip model
   std::array<double, slices> stretch_{}, thickness_{};
   std::array<std::array<double, 3>, slices> relaxed_{};

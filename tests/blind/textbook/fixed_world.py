@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Runs one world of this folder's fixed_worlds.csv: hides an effect, diagnoses the logs and judges the answer. The exit
-code is 0 if the outcome is one of the expected outcomes and, in a world without an effect, the error of the identified
-structure is within its limit.
+"""Runs one simulated world of the fixed_worlds.csv in this folder. Hides an effect in the world, diagnoses its logs
+and judges the diagnosis. The exit code is 0 if the outcome is one of the expected outcomes (OUTCOME). In a world
+without a hidden effect, the error of the identified structure must also be within its limit.
 
     fixed_world.py --build BUILD CAUSE[+CAUSE] STRENGTH SEED MAKE COLUMNS OUTCOME[|OUTCOME]
 """

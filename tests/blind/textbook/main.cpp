@@ -45,7 +45,7 @@ struct Arguments {
   bool pressure = false, temperature = true, supply = true, list = false, makes = false, closed_loop = false;
 };
 
-// Reads the sample rate. The sample time must be a whole multiple of the valve's time step.
+// Reads the sample rate. The sample time must be a multiple of the time step of the valve simulation.
 double rate(const std::string& value) {
   const double rate_hz = std::stod(value);
   if (rate_hz != 50 && rate_hz != 100 && rate_hz != 200 && rate_hz != 400)

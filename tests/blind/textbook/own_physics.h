@@ -10,9 +10,10 @@
 
 namespace textbook {
 
-/// Returns a map from the id of a cause to the displacement change by this cause [mm RMS], for each cause
-/// that changes the displacement by more than `visible_mm`. The change is computed by removing the mechanism
-/// from the world, or by fitting the competing model, without the results of a diagnosis:
+/// Maps the id of a cause to the displacement change by this cause [mm RMS]. The map contains the causes that
+/// change the displacement by more than `visible_mm`. To compute the change, the function removes the
+/// mechanism from the world or fits a competing model. It does not use the results of a diagnosis. The causes
+/// and the changes that are computed for them:
 ///
 ///   slow_creep             creep slower than `slowest_twin_s`, beyond zero and gain
 ///   hysteresis_shape       the loops as a whole, beyond zero and gain (no make has a Bouc-Wen element)

@@ -59,8 +59,8 @@ void probe_span() {
   }
 }
 
-// Compares an unloading from 55 kPa with and without a minor loop 20 -> 40 -> 20 kPa. After the minor loop,
-// both displacements must be equal.
+// Unloads a finger from 55 kPa, with and without a minor loop 20 -> 40 -> 20 kPa. Prints both displacements
+// after the minor loop, which must be equal.
 void probe_loops() {
   std::puts("make,place,displacement_mm");
   for (const char* make : {"play", "maxwell_slip", "preisach"}) {

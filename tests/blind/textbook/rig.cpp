@@ -58,7 +58,7 @@ Arguments arguments(int argc, char** argv) {
   return a;
 }
 
-/// One finger and its valve. The command is constant during a step of the simulation.
+/// One finger and its valve. During a simulation step, the command is constant.
 class Plant {
  public:
   explicit Plant(const textbook::World& world) : valve_(world.valve), finger_(world.finger) {}

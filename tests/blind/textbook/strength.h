@@ -18,12 +18,12 @@ class Recalibration {
   /// Adds a parameter to the refit. A change of the parameter by one unit changes the displacement by
   /// `change_mm`. The parameter may change by `low` to `high` units.
   void add(std::vector<double> change_mm, double low, double high);
-  /// Returns the RMS [mm] of the unexplained part of `difference_mm`.
+  /// Returns the RMS [mm] of the part of `difference_mm` that the refit cannot explain.
   double left_mm(const std::vector<double>& difference_mm) const;
 
  private:
   struct Direction {
-    std::vector<double> unit;  // unit vector
+    std::vector<double> unit;  // change of the displacement by this parameter, scaled to length 1
     double low, high;
   };
   std::vector<Direction> directions_;

@@ -15,7 +15,7 @@ OUTPUTS_AT, READ_BACK_AT = 256, 24
 
 
 class Master:
-    """Writes outputs and reads inputs with function 23 of Modbus TCP."""
+    """A Modbus TCP client that writes the outputs and reads the inputs with function 23."""
 
     def __init__(self, port):
         self.socket = socket.create_connection(("127.0.0.1", port), timeout=10)

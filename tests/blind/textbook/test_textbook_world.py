@@ -27,7 +27,7 @@ def probe(name):
 
 
 def world(*options, seed=SEED):
-    """Returns the bytes of the logs, in order, and the truth."""
+    """Runs the program. Returns the bytes of its logs, in order, and the truth."""
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         output("--seed", str(seed), "--out", work / "logs", "--truth", work / "truth.json", *options)

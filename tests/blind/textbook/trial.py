@@ -106,7 +106,7 @@ def held_out(build, logs, work, threads):
 
 
 def named_in(diagnosis, judged):
-    """Returns the entries of the ledger for a diagnosis and its judgement."""
+    """Returns the values that the ledger stores for a diagnosis and its judgement."""
     closed_loop = diagnosis.get("closed_loop") or {}
     return {"verdict": diagnosis["verdict"], "named": [c["id"] for c in diagnosis["causes"]],
             "rivals": diagnosis["alternatives"], "partial": [c["id"] for c in diagnosis["partial_causes"]],

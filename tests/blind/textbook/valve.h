@@ -21,11 +21,12 @@ struct ValveNumbers {
   double valve_volume_dm3 = 0.02, finger_volume_dm3 = 0.08;
   double proportional_per_kpa = 0.08, integral_per_kpa_s = 0.25;
   double spool_lag_s = 0.012;
-  double overlap = 0.04;               // share of the spool's travel, in either direction
+  double overlap = 0.04;               // overlap of the spool in each direction, as a share of its travel
   double pilot_hysteresis_kpa = 0.15;  // half the width of the hysteresis of the pilot stage
 };
 
-/// A valve with isothermal chambers, in which V dp/dt = reference pressure x flow.
+/// A valve with isothermal chambers, for which V dp/dt = reference pressure x flow. V is the volume and p the
+/// pressure of a chamber.
 class Valve {
  public:
   explicit Valve(const ValveNumbers& numbers) noexcept : numbers_(numbers) {}
@@ -35,7 +36,7 @@ class Valve {
   double air_kpa_dm3() const noexcept {
     return valve_kpa_ * numbers_.valve_volume_dm3 + finger_kpa_ * numbers_.finger_volume_dm3;
   }
-  /// Sets the pressures, for tests. If `shut` is true, the spool remains closed afterwards.
+  /// Sets the pressures, for tests. If `shut` is true, the spool then stays closed.
   void set(double valve_kpa, double finger_kpa, bool shut) noexcept;
 
  private:

@@ -11,8 +11,8 @@ namespace textbook {
 namespace {
 
 constexpr double valve_step_s = 0.00025;
-constexpr int finger_steps = 5;     // number of steps of the finger per sample
-constexpr double supply_kpa = 200;  // nominal supply pressure (gauge)
+constexpr int finger_steps = 5;     // simulation steps of the finger per sample
+constexpr double supply_kpa = 200;  // nominal supply pressure (gauge) [kPa]
 
 // The parameters of the effects of a world. They are looked up once per world, because the simulation takes
 // millions of steps. The parameters of an effect that the world does not have are 0.
@@ -79,8 +79,8 @@ struct Age {
 class Asked {
  public:
   Asked(const Hidden& hidden, const Log& log) : h_(hidden), log_(log) {}
-  // Returns the setpoint at sample `k`. Must be called in the order of the samples. Later commands are not
-  // used.
+  // Returns the setpoint at sample `k`. The calls must be in the order of the samples. The function does not
+  // use commands of later samples.
   double at(std::size_t k, const std::vector<double>& command) {
     const double place = std::max(0.0, static_cast<double>(k) - h_.transport_delay_delay_s * log_.rate_hz);
     const auto low = static_cast<std::size_t>(place);
@@ -245,7 +245,7 @@ class Body {
   double last_ = 0, friction_ = 0, slow_ = 0, crescent_ = 0, speed_ = 0, moved_ = 0, carried_ = 0, seen_ = 0;
 };
 
-// Adds single wrong readings of the sensor.
+// Replaces single readings of the sensor by wrong readings.
 class WrongSamples {
  public:
   WrongSamples(const Hidden& hidden, std::uint64_t seed) : h_(hidden), random_(seed * 2147483647 + 11) {}

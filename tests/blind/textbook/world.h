@@ -19,7 +19,7 @@ struct Log {
   double rate_hz = 100;
   // The inputs of a log, one value per sample. supply_kpa is a gauge pressure.
   std::vector<double> command_kpa, temperature_c, supply_kpa;
-  // Run-to-run variation (variation.h).
+  // Variation of this run, see variation.h.
   double gain = 1, offset_mm = 0;
   std::size_t unrecorded = 0;  // number of samples at the start that are not recorded
   // Closed loop: from the first recorded sample on, a controller follows the reference. `noise_mm` is the
@@ -35,7 +35,7 @@ struct Answer {
 struct World {
   ValveNumbers valve;
   FingerNumbers finger;
-  bool perfect_valve = false;  // the pressure equals the command
+  bool perfect_valve = false;  // true: the pressure equals the command
 };
 
 World draw_world(const std::string& make, std::uint64_t seed);
@@ -44,12 +44,12 @@ struct Campaign {
   std::size_t runs = 3;
   double rate_hz = 100;
   double variation = 0;  // strength of the run-to-run variation (variation.h)
-  double span_mm = 0;    // span of the finger; required with a variation
+  double span_mm = 0;    // span of the finger [mm]; required if variation is above 0
 };
 
 /// Draws logs with three kinds of commands in turn: triangles, steps, and sums of sines.
 std::vector<Log> draw_campaign(const Campaign& campaign);
-/// Removes the unrecorded samples of a log.
+/// Removes the samples of a log that are not recorded.
 void drop_unrecorded(Log& log, Answer& answer);
 double duration_s(const std::vector<Log>& logs);
 
@@ -60,11 +60,11 @@ std::vector<Answer> simulate(const World& world, const Effects& effects, const s
 
 /// Computes only the pressures at the finger, log by log. This takes most of the time of a simulation. The
 /// result can be used for all effects that do not change the pressure.
-using Pressures = std::vector<std::vector<double>>;  // gauge, kPa
+using Pressures = std::vector<std::vector<double>>;  // gauge pressures [kPa], one list per log
 Pressures simulate_pressures(const World& world, const Effects& effects, const std::vector<Log>& logs);
 bool acts_on_pressure(const Effects& effects);
 
-/// Returns the displacements of all logs for these pressures, concatenated.
+/// Simulates the finger with these pressures. Returns the displacements of all logs in one list.
 std::vector<double> displacements(const World& world, const Effects& effects, const std::vector<Log>& logs,
                                   std::uint64_t seed, const Pressures& pressures);
 std::vector<double> displacements(const World& world, const Effects& effects, const std::vector<Log>& logs,
@@ -74,7 +74,7 @@ std::vector<double> displacements(const World& world, const Effects& effects, co
 /// the duration of the campaign.
 struct Setting {
   World world;
-  double largest_mm = 0;  // largest displacement of the campaign, without effects
+  double largest_mm = 0;  // largest displacement of the campaign without effects [mm]
   double campaign_s = 0;
 };
 

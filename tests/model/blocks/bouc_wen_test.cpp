@@ -13,8 +13,8 @@ namespace {
 
 using Block = BoucWen<double>;
 
-// Parameters alpha, beta, gamma, eta and exponent. eta exceeds |gamma|, so a closed loop cannot produce
-// energy.
+// Parameters alpha, beta, gamma, eta and exponent. eta exceeds |gamma|, so a closed hysteresis loop cannot
+// produce energy.
 const std::vector<std::vector<double>> materials{{0.211, 0.171, 0.016, 0.024, 1},
                                                  {0.35, 0.2, -0.02, 0.05, 1},
                                                  {0.211, 0.171, 0.004, 0.006, 2},

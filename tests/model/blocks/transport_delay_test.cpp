@@ -95,7 +95,7 @@ TEST(TransportDelay, OnTheGridASampleStaysOneSegment) {
 }
 
 TEST(TransportDelay, AHeldOutputArrivesAsJumps) {
-  // With a delay of exactly 3 samples, the jump appears at the start of the fourth sample.
+  // The delay is exactly 3 samples. So the jump must appear at the start of the fourth sample.
   for (const double sample_time : {0.0, 0.1}) {
     Block block = make<Block>({0.3}, sample_time);
     std::vector<double> after;

@@ -42,7 +42,7 @@ class EmulatorTest : public testing::Test {
   static Reply ask(Emulator& emulator, Nanoseconds now, Bytes pdu, std::uint8_t unit = 1) {
     return emulator.serve(now, {7, unit, std::move(pdu)});
   }
-  /// Commands the same pressure for both valves. Returns true if the board responded.
+  /// Commands the same pressure for both valves. Returns true if the board has answered.
   static bool command(Emulator& emulator, Nanoseconds now, double pressure_kpa) {
     const auto raw = static_cast<std::uint16_t>(pressure_kpa / 100 * 4095);
     Bytes pdu{0x10, 0, 10, 0, 2, 4};
@@ -56,7 +56,7 @@ class EmulatorTest : public testing::Test {
     const double volts = word_at(reply.pieces.at(0).bytes, 9) * 20.0 / 65535 - 10;
     return volts / 10 * 50 - 5;
   }
-  /// Resets the watchdog with requests at intervals of at most 0.1 s until the time `until`.
+  /// Sends requests at intervals of at most 0.1 s until the time `until`, so that the watchdog does not trip.
   static void keep_alive(Emulator& emulator, Nanoseconds until) {
     while (emulator.now() < until) {
       (void)ask(emulator, std::min(until, emulator.now() + second / 10), {0x04, 0, 0, 0, 1});

@@ -1,6 +1,6 @@
 #pragma once
-// Runs the emulator in a thread of the test, on free ports or on a pseudo-terminal, and provides the board
-// settings with which a driver connects to it.
+// Runs the emulator in a thread of the test. The emulator uses free ports or a pseudo-terminal. The header
+// also provides the board settings with which a driver connects to the emulator.
 
 #include <string>
 #include <thread>
@@ -17,7 +17,7 @@ struct RunningRigSettings {
   Wire wire = Wire::tcp;                ///< type of connection; on a network, every module is a separate host
   drivers::SerialLine line;             ///< settings of a serial line; RunningRig creates its pseudo-terminal
   std::size_t channels = 2;
-  std::vector<FaultSpec> habits{};  ///< faults that are present from the start
+  std::vector<FaultSpec> habits{};  ///< unusual behaviour of the board that is present from the start
   bool rtu_over_tcp = false;        ///< true: the network connection uses RTU frames
 };
 

@@ -23,7 +23,7 @@ constexpr double test_timeout_s = 0.4;
 const std::filesystem::path folder = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "config/boards";
 
 struct Combination {
-  std::vector<std::string> boards;  // file names without .yaml
+  std::vector<std::string> boards;  // names of the board map files without the ending .yaml
   Wire wire = Wire::tcp;
   std::size_t channels = 2;
 };

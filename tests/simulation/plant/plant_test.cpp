@@ -74,7 +74,7 @@ TEST(Plant, AnObjectStopsTheFingerAndLetsItGoAgain) {
   const double way = free.displacement_mm();
   ASSERT_GT(way, 6);
   EXPECT_NEAR(held.displacement_mm(), 5 + (way - 5) * 0.1, 1e-9);
-  held.set_object(std::nullopt);  // the object is pulled out
+  held.set_object(std::nullopt);  // removes the object from between the fingers
   held.advance(1e-6);
   EXPECT_NEAR(held.displacement_mm(), way, 1e-5);
   held.set_object(PlantObject{.position_mm = 2, .yielding = 0});

@@ -231,7 +231,7 @@ TEST(SimulatedBoard, TheWatchdogVentsAtItsTimeAndHoldsUntilConnect) {
   Rig rig(settings);
   EXPECT_TRUE(rig.board.has_watchdog());
   ASSERT_EQ(rig.run(2, 40, 40), BusStatus::ok);
-  rig.clock.advance(3'000'000'000);  // no requests for 3 s
+  rig.clock.advance(3'000'000'000);  // 3 s pass without a request
   EXPECT_EQ(rig.exchange(40, 40), BusStatus::watchdog_tripped);
   EXPECT_NEAR(rig.board.plant(0).pressure_kpa(), 0, 1e-6);
   EXPECT_EQ(rig.run(1, 40, 40), BusStatus::watchdog_tripped);

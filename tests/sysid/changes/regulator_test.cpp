@@ -15,7 +15,7 @@ namespace {
 using test::record_of;
 using test::rms;
 
-/// Returns a record with an upward step of the command after 0.5 s.
+/// Returns a record in which the command steps up after 0.5 s.
 Record step_record() {
   std::vector<double> command(600, 50.0);
   std::fill(command.begin(), command.begin() + 50, 0.0);

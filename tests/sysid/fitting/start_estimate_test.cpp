@@ -25,7 +25,7 @@ using model::SignalName;
 
 constexpr double noise_mm = 0.05, rate_hz = 50;
 
-/// Returns a finger of play operators, with creep over two decades of time constants and a dead time.
+/// Returns a finger with play operators, a dead time, and creep over two decades of time constants.
 model::Model play_finger() {
   model::Model m;
   m.name = "play_finger";

@@ -89,7 +89,7 @@ TEST(ControlChart, AlarmsAsOftenAsStatedWhereNothingIsWrong) {
   }
 }
 
-// A chart with few points must not alarm more often than a chart with many points.
+// The alarm rate of a chart with few points must not exceed that of a chart with many points.
 TEST(ControlChart, AlarmsNoMoreOftenInItsYouth) {
   Healthy healthy(23, 0, 1);
   const ChartLimits limits = ChartLimits::for_run_length(20000);

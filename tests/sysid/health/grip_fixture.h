@@ -25,7 +25,8 @@ struct GripWorld {
   std::uint64_t seed = 1;
 };
 
-/// Returns a recording of one channel, `left`, at 100 Hz, with commands up to `grip_kpa`.
+/// Returns the recording of a grip with one channel, `left`, sampled at 100 Hz. Its commands go up to
+/// `grip_kpa`.
 [[nodiscard]] Recording grip_of(const GripWorld& world);
 
 /// Largest command of a grip [kPa].

@@ -33,7 +33,7 @@ struct Rig {
   bool thermometer = false;
   double uneven = 1;  ///< factor that scales the effect of the weather on the last finger
   std::vector<std::string> names{"left", "right"};
-  /// Returns the change of an indicator on a day, in the unit of the indicator.
+  /// Returns by how much an indicator has changed on a day, in the unit of the indicator.
   std::function<double(const std::string& finger, HealthNumber number, int day)> becomes =
       [](const std::string&, HealthNumber, int) { return 0.0; };
 
@@ -70,7 +70,7 @@ struct Rig {
   }
 };
 
-/// Returns a rig whose left finger changes its gain by `by` [mm] per day from day `from`.
+/// Returns a rig whose left finger changes on day `from`. From this day on, its gain differs by `by` [mm].
 Rig softening(unsigned seed, double by, int from) {
   Rig rig;
   rig.seed = seed;

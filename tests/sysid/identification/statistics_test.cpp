@@ -47,7 +47,7 @@ TEST(NoiseModel, GapsAndSeveralSeriesDoNotMix) {
   EXPECT_NEAR(fit_noise(autocovariance_of({first, second})).lag1_correlation, 0.8, 0.02);
 }
 
-/// Compares the result with a fine grid search.
+/// Compares the result of the function with a search on a fine grid.
 TEST(BoundedSolve, FindsTheConstrainedMinimum) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;

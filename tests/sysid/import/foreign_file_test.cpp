@@ -11,7 +11,7 @@
 #include "sysid/import/hdf5_table.h"
 #include "sysid/import/mat_table.h"
 
-// tests/system/test_import.py compares the values of MATLAB and HDF5 files with the true values.
+// tests/system/test_import.py tests the values that the import reads from MATLAB and HDF5 files.
 namespace softgrip::sysid::foreign_file_test {
 namespace {
 

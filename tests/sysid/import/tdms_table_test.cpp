@@ -28,7 +28,7 @@ std::string segment(std::uint32_t flags, const std::string& metadata, const std:
          bytes_of(static_cast<std::uint64_t>(metadata.size())) + metadata + raw;
 }
 
-/// Returns the metadata of a channel with `count` values and without properties.
+/// Returns the metadata of a channel that has `count` values and no properties.
 std::string channel(const std::string& path, std::uint32_t type, std::uint64_t count) {
   return text_of(path) + bytes_of(std::uint32_t{20}) + bytes_of(type) + bytes_of(std::uint32_t{1}) +
          bytes_of(count) + bytes_of(std::uint32_t{0});
@@ -121,7 +121,7 @@ TEST(TdmsTable, KeepsTheCompleteSegmentsOfAFileThatIsCutOff) {
                                 (bytes < 28 ? "first bytes" : "metadata") + ": its " + std::to_string(bytes) +
                                 " bytes are left out");
   }
-  // The file ends after 1 of 2 values of the first channel, so 2 rows of this segment are lost.
+  // The file ends after the first of 2 values of the first channel. So both rows of this segment are lost.
   const ForeignTable blocks = cut_at(28 + metadata.size() + 12);
   EXPECT_EQ(blocks.columns[1].values, (std::vector<double>{-7, 8}));
   EXPECT_EQ(notes(blocks), "incomplete rows or blocks of values are left out: 12 bytes");

@@ -34,7 +34,7 @@ std::string archive(const Parts& parts) {
   return read_file(path, std::size_t{64} << 20U).value_or("");
 }
 
-/// Returns a workbook whose sheets contain this XML inside `worksheet`.
+/// Returns a workbook. `sheets` maps the name of a sheet to the content of its XML element `worksheet`.
 Parts book(const std::map<std::string, std::string>& sheets) {
   Parts parts;
   std::string list;

@@ -66,7 +66,7 @@ Log unmeasured(Log log) {
 }
 
 TEST(CommandBefore, WithoutMeasuredPressureTheDisplacementShowsFromWhichEndItCame) {
-  const auto [least, most] = std::pair{20.0, 60.0};  // lowest and highest command of the cosine
+  const auto [least, most] = std::pair{20.0, 60.0};  // lowest and highest command of the cosine [kPa]
   const auto risen = pressure_before_kpa(unmeasured(begun_at_a_step(7)));
   ASSERT_TRUE(risen);
   EXPECT_NEAR(*risen, least, 0.1);

@@ -59,7 +59,7 @@ TEST(MissingExcitation, OtherLogsMayContainIt) {
   EXPECT_EQ(missing_excitation({ramp, triangles}), Missing{});
 }
 
-/// For a vacuum finger, loading means a decrease of the pressure.
+/// For a vacuum finger, loading means that the pressure falls.
 TEST(MissingExcitation, OfAVacuumIsThatOfAPressure) {
   for (const double peak_kpa : {-40.0, 40.0}) {
     EXPECT_EQ(missing_excitation({commanded([&](double t) { return peak_kpa * t / 40; })}),

@@ -51,10 +51,10 @@ LogOptions channel_named(const std::string& channel) {
 struct Bad {
   std::string name;
   std::string text;
-  int line;             ///< line of the first problem
-  int column;           ///< column of the first problem
-  std::string message;  ///< a part of the message
-  std::string hint;     ///< a part of the hint
+  int line;             ///< expected line of the first problem
+  int column;           ///< expected column of the first problem
+  std::string message;  ///< text that the message must contain
+  std::string hint;     ///< text that the hint must contain
   LogOptions options = {};
 };
 

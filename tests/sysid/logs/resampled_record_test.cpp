@@ -124,7 +124,7 @@ TEST(AveragedRecord, ThatIsSparseEnoughStaysAsItIs) {
 }
 
 TEST(AveragedRecord, ACampaignKeepsAboutAsManyReadingsAsWanted) {
-  const std::vector<Record> campaign{parabola(0), parabola(0)};  // each has 4001 readings
+  const std::vector<Record> campaign{parabola(0), parabola(0)};  // each record has 4001 readings
   EXPECT_EQ(averaged_to_count(campaign, 8002, 1).front().size(), 4001U)
       << "the records have no more readings than wanted";
   const std::vector<Record> averaged = averaged_to_count(campaign, 800, 1);

@@ -23,7 +23,7 @@ find_kernel() {
   [ -n "$kernel" ] || { echo "prepare.sh: the archive has no linux-image-rt-amd64" >&2; exit 1; }
 }
 
-# fetch PACKAGE FOLDER: unpacks a package of the archive without installing it
+# fetch PACKAGE FOLDER  downloads a package from the archive and unpacks it into FOLDER without installing it
 fetch() {
   local folder=$2.part
   rm -rf "$folder" && mkdir -p "$folder/download"

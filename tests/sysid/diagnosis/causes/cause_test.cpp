@@ -49,7 +49,7 @@ class Causes : public ::testing::TestWithParam<Cause> {
   const Cause& cause = GetParam();
   const Scales scales = typical_scales();
 
-  /// Calls check(form, start) for every start of every form.
+  /// Calls check(form, start) for every model form of the cause and every start value of the form.
   template <class Check>
   void each_start(Check check) {
     for (const CauseForm& form : cause.forms) {
@@ -94,7 +94,8 @@ TEST_P(Causes, StartWithinWhatAFitMayDo) {
   });
 }
 
-// A form with more than three free parameters can fit almost any curve, so it must be marked as a free form.
+// A form with more than three free parameters can fit almost any curve, so the catalogue must mark the form
+// as free.
 TEST_P(Causes, MoveFewNumbers) {
   each_start([&](const CauseForm& form, const model::BlockSpec& start) {
     std::size_t fitted = 0;

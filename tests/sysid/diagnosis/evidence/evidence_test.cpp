@@ -29,7 +29,8 @@ const ConditionEvidence& of(const ResidualEvidence& evidence, const std::string&
 }
 
 struct FalseAlarms {
-  std::map<std::string, int> below_5_percent;  ///< cases per condition with unadjusted p < 5 %
+  std::map<std::string, int> below_5_percent;  ///< for each condition, the number of cases with an unadjusted
+                                               ///< p-value below 5 %
   double mean_p = 0;
   int any_clear = 0;
   int line = 0;

@@ -39,7 +39,7 @@ Record record_of(std::string name, std::vector<double> drive_kpa, double campaig
   return record;
 }
 
-/// Sets the readings of a record to the prediction of a model plus noise.
+/// Replaces the readings of a record by the prediction of a model with added noise.
 void fill(Record& record, const model::Model& truth, std::uint64_t seed) {
   record.reading_mm = predict(truth, record, rest_starts(truth, {record}).front());
   for (std::size_t i = 0; i < record.size(); ++i) record.reading_mm[i] += noise_mm * normal_at(seed, i);

@@ -75,7 +75,7 @@ double value_of(const NamedCause& named, const std::string& parameter) {
   return NAN;
 }
 
-/// Checks the gauge section in the JSON of a diagnosis.
+/// Checks the section about the gauge check in the JSON of a diagnosis.
 void expect_gauge(const nlohmann::ordered_json& json, const GaugeFile& gauge) {
   EXPECT_EQ(json["file"], "gauge.csv");
   EXPECT_EQ(json["readings"].size(), gauge.readings.size());
@@ -84,7 +84,7 @@ void expect_gauge(const nlohmann::ordered_json& json, const GaugeFile& gauge) {
   EXPECT_EQ(json["hypotheses"].size(), 2U);
 }
 
-/// Expects that the diagnosis proposes a check with a gauge.
+/// Expects that the diagnosis proposes a gauge check as the next experiment.
 void expect_check_proposed(const Diagnosis& before) {
   const NextExperiment next = design_experiment(before, {});
   EXPECT_FALSE(next.best);

@@ -135,8 +135,8 @@ TEST(StickSlip, SeesThatJumpsComeOverAnyDistance) {
   EXPECT_FALSE(find_stick_slip(records, behind(records), noise_mm, 2));
 }
 
-// Returns 80 jumps over a band of 1 kPa, measured with an error of 1 %. Every fifth jump is detected as too
-// short.
+// Returns the distances of 80 jumps of a valve with a stick band of 1 kPa. The distances have an error of 1
+// %. Every fifth jump is detected as too short.
 std::vector<double> partly_short(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> read(1.0, 0.01);

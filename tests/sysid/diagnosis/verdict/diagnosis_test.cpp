@@ -146,7 +146,7 @@ TEST(Diagnosis, AReadingThatLeadsItsCommandIsAClockOffset) {
   EXPECT_GT(diagnosis->recalibrated_rmse_mm, 1.2 * diagnosis->extended_rmse_mm);
 }
 
-/// Returns a log of a finger that was under pressure before the recording began.
+/// Returns a log of a finger that was already under pressure before the recording began.
 Log begun_unsettled(const model::Model& truth, model::SignalName signal, double pulse_kpa,
                     std::uint64_t seed) {
   constexpr double rate_hz = 25;

@@ -35,7 +35,7 @@ struct OwnValve {
   double limit_kpa = 1e9;
   double coupling = 0;
   double leak = 0;   ///< conductance of the leak, divided by the conductance of the line
-  double scale = 1;  ///< scale of the pressure sensor
+  double scale = 1;  ///< scale factor of the pressure sensor
 };
 
 /// Returns the flow of ISO 6358-1, divided by the conductance. The pressures are absolute, and the critical
@@ -266,7 +266,7 @@ TEST(FindInValve, NeedsTheMeasuredPressureOfEveryLog) {
   EXPECT_FALSE(find_in_valve(logs, {given, false, noise_mm, 1})) << "the measured pressure is constant";
 }
 
-/// Returns the displacement that the model predicts from the measured pressure of a log.
+/// Applies the measured pressure of a log to the model. Returns the predicted displacement.
 std::vector<double> displacement_mm(const model::Model& finger, Log log) {
   std::fill(log.displacement_mm.begin(), log.displacement_mm.end(), 0.0);
   RecordOptions options;

@@ -121,7 +121,7 @@ class Lines:
 
     @staticmethod
     def plug_in(name, label):
-        """Adds a chip of two lines. Returns the name and the folder of the chip."""
+        """Adds a simulated GPIO chip with two lines. Returns the name and the folder of the chip."""
         device = pathlib.Path("/sys/kernel/config/gpio-sim") / name
         bank = device / "bank"
         bank.mkdir(parents=True)

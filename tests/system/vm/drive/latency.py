@@ -24,7 +24,7 @@ RIG = CONFIGURATION / "rig_service.yaml"
 
 
 def histogram(lines):
-    """Returns the counts per microsecond from the output of cyclictest."""
+    """Reads the histogram in the output of cyclictest. Returns the count for each latency in microseconds."""
     counts = {}
     for line in lines:
         fields = line.split()
