@@ -1,7 +1,9 @@
 # Runs at build time. Fails if a file of a room (source folder) includes a header of a room that it may not
 # use.
-#   FOLDERS  the room's own folders, by commas      USES   the folders that it may include
-#   FILES    a list of its files, one a line        STAMP  touched when all is well
+#   FOLDERS  folders of the room, separated by commas
+#   USES     folders whose headers the files of the room may include, separated by commas
+#   FILES    a text file with the paths of the files of the room, one per line
+#   STAMP    a file that is touched if all includes are permitted
 cmake_minimum_required(VERSION 3.25)
 string(REPLACE "," ";" own "${FOLDERS}")
 string(REPLACE "," ";" uses "${USES}")

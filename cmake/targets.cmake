@@ -136,8 +136,8 @@ endfunction()
 # warning is normally hidden. It appears if the header is precompiled or if several files are compiled as one.
 set(softgrip_misread_strings -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
 
-# Compiles up to 32 files of a target as one file, which takes 1.4 GB of memory. This is done if headers may
-# be precompiled, so in builds that are made once and not debugged.
+# Compiles up to 32 files of a target as one file, which takes 1.4 GB of memory. The files are combined only
+# if headers may be precompiled, that is, in builds that are made once and not debugged.
 function(softgrip_compile_together target)
   softgrip_may_precompile(may)
   if(may)

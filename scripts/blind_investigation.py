@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Resolves ambiguous diagnoses with `softgrip investigate`, with blind worlds (tests/blind) as the rig.
+"""Resolves ambiguous diagnoses with `softgrip investigate`, with simulated worlds (tests/blind) as the rig.
 
     scripts/blind_investigation.py --work DIR [--build build/release] [--campaign DIR] [--seeds 5] [--strengths 8 2]
                                    [--causes ID ...] [--first-seed 3000] [--page docs/results/blind-investigation.md]

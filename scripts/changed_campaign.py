@@ -45,8 +45,8 @@ def causes_of(build, family, columns):
 
 
 def worlds(args, build):
-    """Returns all planned worlds. They are ordered so that the first worlds are a fair sample of all, however many
-    they are. A world does not depend on the other worlds."""
+    """Returns all planned worlds. For every N, the first N worlds are a fair sample of all worlds. The result of a
+    world does not depend on the other worlds."""
     planned = []
     for family, columns in itertools.product(("textbook", "first"), args.columns):
         kinds = [("none", 0, args.unchanged // 2 // len(args.columns))]

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds the Debian packages, softgrip, libsoftgrip0, libsoftgrip-dev and python3-softgrip, and checks them
-# with lintian: scripts/package.sh [OUT_DIR [REVISION]]. OUT_DIR: default build/. The last line of the output
-# is the path of the first package. The script builds in build/release, like scripts/test.sh.
+# Builds the four Debian packages softgrip, libsoftgrip0, libsoftgrip-dev and python3-softgrip, and checks
+# them with lintian: scripts/package.sh [OUT_DIR [REVISION]]. OUT_DIR: default build/. The last line of the
+# output is the path of the first package. The script builds in build/release, like scripts/test.sh.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 out=$(realpath -m "${1:-build}")

@@ -104,8 +104,8 @@ class Campaign(bench.BenchTest):
 
     def outcome_of(self, counter, victim):
         if victim == "gateway":
-            # The restarted gateway cannot know if the previous gateway has executed the command. So it must
-            # not execute the command.
+            # The restarted gateway cannot know if the previous gateway has executed the command. Therefore
+            # the restarted gateway must not execute this command.
             for _ in range(5):
                 self.master.write("command_counter", counter, plc.START, 1)
             if self.master.done(counter) != (plc.REFUSED, plc.FIRST_AFTER_START):

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Runs one command with Slurm on this computer only. Starts munged, slurmctld and slurmd, runs the command and stops them:
 #   scripts/slurm_here.sh DIR COMMAND...        DIR receives state and logs
-# Needs root, because slurmd starts jobs as their users. It has its own ports, key and socket and does not use /etc/slurm or
-# an existing Slurm. It also works in a container, because it uses no cgroups. CPU affinity limits a job to its cores.
+# Needs root, because slurmd starts jobs as their users. This Slurm has its own ports, key and socket and does not use
+# /etc/slurm. Without cgroups, it also works in a container; CPU affinity limits a job to its cores.
 set -euo pipefail
 here=$(dirname "$(realpath "$0")")
 [ $# -ge 2 ] || { sed -n '2,5s/^# \{0,1\}//p' "$0" >&2; exit 2; }

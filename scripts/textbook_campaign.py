@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Diagnoses worlds of textbook physics (tests/blind/textbook) with and without an effect by `softgrip diagnose`.
+"""Diagnoses simulated worlds with textbook equations (tests/blind/textbook) by `softgrip diagnose`. The worlds have
+or do not have a hidden effect.
 
     scripts/textbook_campaign.py --work DIR [--build build/release] [--clean 100] [--seeds 4] [--pairs 40] [--triples 20]
                                  [--strengths 8 4 2] [--columns pressure command] [--given plain] [--first-seed 1000]
@@ -41,8 +42,8 @@ def groups_of(ids, size, count, rng):
 
 
 def worlds(args, ids, makes):
-    """Returns all planned worlds. They are ordered so that the first worlds are a fair sample of all, however many
-    they are. A world does not depend on the other worlds."""
+    """Returns all planned worlds. For every N, the first N worlds are a fair sample of all worlds. The result of a
+    world does not depend on the other worlds."""
     planned = []
     for columns in args.columns:
         # Without a measured pressure, a leak looks like a smaller gain of the finger.

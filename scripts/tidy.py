@@ -175,8 +175,8 @@ def main():
                     due[name].touch()
                 continue
             failed += 1
-            # A finding in a header occurs once for each source that includes the header. It is reported only
-            # once.
+            # A finding in a header occurs once for each source that includes the header. Each such finding is
+            # reported only once.
             findings = re.split(r"\n(?=\S+:\d+:\d+: (?:error|warning): )", "\n" + text)
             print("\n".join(one for one in findings if one not in told).strip() or names[0], flush=True)
             told |= set(findings)

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Tracks a sine of 6 to 20 mm over Modbus TCP with softgrip-rig at 200 Hz. Repeats this with each type of
-# feedforward and the same PID gains. Prints the tracking errors of both fingers:  tracking.sh [BUILD_DIR]
-# [FREQUENCY_HZ] [CYCLES] The figures include the noise of the readings (0.03 mm) and the resolution of the
-# board (12 bits).
+# Tracks a sine of 6 to 20 mm over Modbus TCP with softgrip-rig at 200 Hz. Repeats the run with each type of
+# feedforward; the PID gains are the same in all runs. Prints the tracking errors of both fingers:
+# tracking.sh [BUILD_DIR] [FREQUENCY_HZ] [CYCLES] The figures include the noise of the readings (0.03 mm) and
+# the resolution of the board (12 bits).
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 build=${1:-build/release} frequency_hz=${2:-0.1} cycles=${3:-3}

@@ -67,7 +67,8 @@ class Day(test_vacuum.Vacuum):
         self.softgripd.wait_for_event("grip_result", since=since, code="HOLDING", channel="left")
 
     def to_rest(self, what):
-        """Begins a period in which the command must go to the rest pressure and must never pass it."""
+        """Begins a period in which the command must go to the rest pressure. The command must never pass this
+        pressure."""
         since = time.monotonic() - self.began
         try:
             bench.wait_for("rest", lambda: self.samples and abs(self.samples[-1][1]) <= SETTLED_KPA, 15)

@@ -71,8 +71,8 @@ def rows_of(out):
 
 
 def killed(args, out):
-    """Kills a run when half of its rows are done. Returns the time until then, the duration of the rest, and the
-    number of rows that ran twice."""
+    """Kills a run when half of its rows are done, and continues it. Returns the time until the kill, the duration of
+    the second run, and the number of rows that ran twice."""
     shutil.rmtree(out, ignore_errors=True)
     began = time.monotonic()
     child = subprocess.Popen([str(word) for word in command(args, out)], start_new_session=True, stdout=subprocess.DEVNULL)

@@ -90,7 +90,7 @@ def run_world(row, args, out):
     world = json.loads(row.get("world"))
     try:
         judged = importlib.import_module(row.get("judge")).run_world(pathlib.Path(args.build), out, world)
-    except Exception as error:  # any error belongs to this world only
+    except Exception as error:  # an error in one world must not affect the other rows
         return {"status": "failed", "error": f"{type(error).__name__}: {error}"[-LONGEST_ERROR:]}
     return {"status": "done", "found": str(judged.get("outcome")), "world": judged}
 

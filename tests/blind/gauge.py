@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Simulates a gauge check of the sensor of a blind world, for `softgrip investigate --gauge-command "gauge.py PROGRAM
-FOLDER WORLD..."`.
+"""Simulates a gauge check of the sensor in a simulated world, for `softgrip investigate --gauge-command "gauge.py
+PROGRAM FOLDER WORLD..."`.
 
     gauge.py BLIND_WORLD FOLDER [option of blind-world ...] POSITIONS_CSV GAUGE_OUT
 

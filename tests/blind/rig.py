@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Simulates a blind world as the rig of `softgrip investigate --rig-command "rig.py PROGRAM FOLDER WORLD..."`.
+"""Provides a simulated world as the rig of `softgrip investigate --rig-command "rig.py PROGRAM FOLDER WORLD..."`.
 
     rig.py BLIND_WORLD FOLDER [option of blind-world ...] COMMAND_CSV LOG_OUT
 

@@ -22,8 +22,8 @@ struct Base {
   double slow_gain = 0.056, slow_tau = 13.7;
 };
 
-/// The parameters of a hidden effect by name. The map Effects contains them by the id of the effect. This is
-/// the id of a cause in the catalogue or an id of outside_ids().
+/// The parameters of a hidden effect by name. The map Effects contains them by the id of the effect. The id
+/// of an effect is the id of a cause in the catalogue or one of outside_ids().
 using Effect = std::map<std::string, double>;
 using Effects = std::map<std::string, Effect>;
 
@@ -55,7 +55,7 @@ struct LogOutput {
 
 /// Simulates the logs of one campaign in order. Every log starts at rest. The largest load, the age and the
 /// drift of the finger continue from log to log. `step_s` is the integration step [s]; the sample period must
-/// be a multiple of it.
+/// be a multiple of `step_s`.
 std::vector<LogOutput> simulate(const Base& base, const Effects& effects, const std::vector<LogInput>& logs,
                                 std::uint64_t seed, double step_s = 0.0005);
 

@@ -117,7 +117,7 @@ class Starts(unittest.TestCase):
         number, sent = session.request("start", {"sequence": "pick"})
         (start_id,) = session.starts
         self.assertEqual(json.loads(sent)["start_id"], start_id)
-        session.forget(number)  # the client does this if an exception ends the wait for the answer
+        session.forget(number)  # The client forgets a request if an exception ends the wait for its answer.
         session.receive(line(id=number, ok=True, result={"request": 5}))
         self.assertEqual(session.starts, {start_id: 5})
         self.assertEqual(session.grip, 5)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Checks that numbers and names in documents agree with the sources. These are the threads, the fingers, the
-simulated worlds, and the files that include Ceres. The figures of README.md must be on the pages to which README.md
-links."""
+"""Checks that numbers and names in documents agree with the sources. Checks the stated numbers of threads, fingers
+and simulated worlds, and the files that are said to include Ceres. The figures of README.md must be on the pages to
+which README.md links."""
 
 import re
 import sys

@@ -1,5 +1,5 @@
-"""Runs a daemon on a simulated rig in which a pause of the machine causes no fault. It is for tests in which clients
-fail, but the rig does not."""
+"""Runs a daemon on a simulated rig in which a pause of the machine causes no fault. This rig is for tests in which
+clients fail but the rig does not fail."""
 
 import re
 

@@ -2,9 +2,9 @@
 machine does other work. The run is disturbed by clients that connect and leave, pauses and a full disk
 (soak_disturbances.py).
 
-scripts/soak.sh runs it. Once a minute it writes a line into soak.csv: memory, descriptors, overruns, dropped rows,
-faults. At the end it prints a verdict. The exit code is 0, or 6 if one of these values has grown, data were lost, or
-a fault occurred.
+scripts/soak.sh runs this program. Once a minute, the program writes a line to soak.csv: memory, descriptors,
+overruns, dropped rows, faults. At the end it prints a verdict. The exit code is 0, or 6 if one of these values has
+grown, data were lost, or a fault occurred.
 """
 
 import argparse

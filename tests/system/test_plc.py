@@ -121,7 +121,7 @@ class Gateway(bench.BenchTest):
         master = self.master(self.gateway())
         self.assertEqual(master.command(9), (plc.REFUSED, plc.NO_SUCH_COMMAND))
         self.assertEqual(master.command(plc.START, recipe=77), (plc.REFUSED, plc.NO_SUCH_RECIPE))
-        # Beyond the range of this register.
+        # The gripping pressure is beyond its range.
         self.assertEqual(master.command(plc.START, recipe=1, squeeze=3000), (plc.REFUSED, 7))
         self.assertEqual(master.command(plc.STOP), (plc.REFUSED, 107))  # R07: there is no sequence to stop
         self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
@@ -177,7 +177,8 @@ class Gateway(bench.BenchTest):
         master.wait("master", 2)
         time.sleep(0.5)  # during this time, the gateway finds no daemon
         master.beat()
-        self.assertEqual(master.read("master"), 2)  # the stored reaction remains even if the client returns
+        # The gateway keeps its reaction to the silence, even if the client returns.
+        self.assertEqual(master.read("master"), 2)
         again = self.daemon(self.rig_path)
         again.wait_for_event("state_changed", client="softgrip-plc")
         master.beat_until(lambda: master.read("master") == 1)

@@ -80,7 +80,7 @@ class Screen(bench.BenchTest):
         self.hold()
         self.softgrip("vent")
         self.softgripd.wait_for_state("idle")
-        self.softgripd.wait_for_event("recording_finished")  # this is the last event of the recording
+        self.softgripd.wait_for_event("recording_finished")  # waits for the last event of the recording
         every = self.softgrip("events", "--json").stdout.splitlines()
         told = [json.loads(line) for line in every]
         self.assertEqual([event["id"] for event in told], sorted(event["id"] for event in told))

@@ -194,8 +194,8 @@ def replayed(session, fault, request):
     session.proxy.note(request)
     if request.function == 4:
         old = fault.memory.setdefault((request.address(), len(reply.pdu)), bytes(reply.pdu))
-        # The daemon cannot notice old sensor readings that differ only by noise. It can notice old outputs
-        # that do not follow its commands.
+        # The daemon cannot notice old sensor readings that differ only by noise. However, it can notice old
+        # outputs that do not follow its commands.
         true = reply.words()
         reply.pdu = bytearray(old)
         if request.address() == OUTPUTS and noticeable(true, reply.words()):

@@ -26,8 +26,8 @@ namespace textbook {
 std::map<std::string, double> own_physics(const World& world, const std::vector<Log>& logs,
                                           std::uint64_t seed, double visible_mm);
 
-/// Time constant [s] above which creep counts as slow. In a model with two creep branches that was identified
-/// from such logs, both branches are faster (10 s in given.yaml).
+/// Time constant [s] above which creep counts as slow. given.yaml has two creep branches that were identified
+/// from logs of a simulated world. Both branches are faster (up to 10 s).
 inline constexpr double slowest_twin_s = 15;
 
 }  // namespace textbook

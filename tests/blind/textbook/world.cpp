@@ -195,8 +195,8 @@ class Body {
       const double below = 1 - std::exp(-(age_.largest_kpa - p) / h_.stress_softening_range_kpa);
       y *= 1 + h_.stress_softening_share * below * age_.largest_kpa / working_kpa;
     }
-    const double per_mm = h_.stiffening_per_mm;  // this factor is 1 at the span, so stiffening keeps the span
-                                                 // of the finger
+    const double per_mm = h_.stiffening_per_mm;  // the factor is 1 at a displacement equal to the span, so
+                                                 // stiffening does not change the span
     return y * (1 + per_mm * span_) / (1 + per_mm * std::max(0.0, y));
   }
   double loaded(double y, double dt) {

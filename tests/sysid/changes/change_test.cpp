@@ -68,8 +68,8 @@ TEST(Change, AReadingThatIsUpdatedTooRarelyIsSampling) {
   EXPECT_NEAR(d.causes[0].size.value, 0.2, 1e-3);
 }
 
-/// Adds an alternating error during 3 of every 5 s. During the other 2 s, adds single errors of twice its
-/// amplitude. The single errors are outliers only if the noise is underestimated.
+/// Adds an alternating error during 3 of every 5 s. During the other 2 s, adds single errors that are twice
+/// as large. The single errors are outliers only if the noise is underestimated.
 std::vector<Log> humming(std::vector<Log> logs) {
   constexpr std::size_t per_s = 50;
   for (Log& log : logs) {
@@ -282,8 +282,8 @@ TEST(Change, ALeakThatARegulatorMakesUpForIsSeenWhereItsPortsOpen) {
   EXPECT_EQ(d.causes[0].id, "leak");
   EXPECT_EQ(d.causes[0].fitted.effect.form, "leak_past_a_regulator");
   EXPECT_EQ(d.causes.size(), 1U) << change_sentence(d);
-  // The pressure reaches 58 kPa, and the leak loses 0.2 of it per second. The simulated leak and the
-  // diagnosis use different laws of flow, so only the order of magnitude can agree.
+  // The pressure reaches 58 kPa, and the leak loses 20 % of the pressure per second. The simulated leak and
+  // the diagnosis use different laws of flow, so only the order of magnitude can agree.
   EXPECT_GT(d.causes[0].size.value, 0.5 * 0.2 * 58);
   EXPECT_LT(d.causes[0].size.value, 2 * 0.2 * 58);
 }

@@ -173,10 +173,10 @@ TEST(EstimatedStart, OfAKnownRestHasNoHysteresisAndNoCreep) {
   EXPECT_FALSE(is_at_rest(estimated_start(finger, unknown), unknown));
 }
 
-/// A log may be cut at any time, also in motion or without pressure between two cycles. The prediction of the
-/// rest may then have a larger error than the prediction of the same readings in the complete log. This
-/// increase of the error may be at most 3 % of the span as RMS over all cuts, and at most 8 % for a single
-/// cut. The model is exact, so only the estimated start causes the increase.
+/// A log may be cut at any time, even during a motion or between two cycles. The prediction of the readings
+/// after the cut may then have a larger error than the prediction of the same readings in the complete log.
+/// This increase of the error may be at most 3 % of the span as RMS over all cuts, and at most 8 % for a
+/// single cut. The model is exact, so only the estimated start causes the increase.
 TEST(EstimatedStart, ALogThatIsCutAnywhereIsPredictedNearlyAsWell) {
   for (const model::Model& finger : fingers()) {
     for (const SignalName signal : {SignalName::tp1, SignalName::sp2}) {

@@ -64,8 +64,8 @@ Log scaled(Log log, double mm) {
   return log;
 }
 
-/// Predicts the rest of a log from its start. Returns the RMS [mm] of the difference between prediction and
-/// true displacement.
+/// Predicts a log without noise from a start at rest. Returns the RMS [mm] of the prediction error after the
+/// first part of the log. `share` is the length of this first part.
 double continuation_rmse_mm(const model::Model& truth, const model::Model& found, SignalName signal,
                             double share) {
   const Log log = simulated(truth, signal, 100, 0, 1);

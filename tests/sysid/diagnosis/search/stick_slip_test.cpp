@@ -80,7 +80,7 @@ TEST(StickSlip, FindsTheBandOfAValveThatSticksAndJumps) {
 TEST(StickSlip, IsFoundBehindALongDelay) {
   constexpr double band_kpa = 3.1, delay_s = 0.35;
   std::vector<Record> early = known_campaign(2);
-  for (Record& r : early) {  // delays the command by `delay_s`, as the valve receives it
+  for (Record& r : early) {  // delays the command by `delay_s`; the valve receives the delayed command
     const std::vector<double> sent = r.drive_kpa;
     const auto samples = static_cast<std::size_t>(std::floor(delay_s / r.sample_time_s));
     const double rest = delay_s / r.sample_time_s - static_cast<double>(samples);

@@ -114,8 +114,8 @@ TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
   EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, false));
 }
 
-/// With the given structure, the data need two causes. With the alternative structure, they need only one of
-/// these causes, because its hysteresis loops explain the rest.
+/// The given structure needs two causes to explain the data. The alternative structure needs only one of
+/// these causes, because its hysteresis loops explain the rest of the error.
 TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore) {
   Found found = found_in(plays());
   ASSERT_TRUE(found.base);

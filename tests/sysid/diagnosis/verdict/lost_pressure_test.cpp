@@ -52,8 +52,8 @@ TEST(FindLostPressure, IsNothingWhereAConstantIsMissing) {
   EXPECT_FALSE(lost_of(logs_of([](double u) { return u - 3; })));
 }
 
-// The pressure stops at 52 kPa. A scale error of the gauge explains half of this error. A leak explains less,
-// because its curve bends in the other direction.
+// The pressure never exceeds 52 kPa, even if the command does. A scale error of the gauge explains half of
+// this difference. A leak explains less, because its curve bends in the opposite direction.
 TEST(FindLostPressure, IsNothingWhereTheHighestPressuresAloneAreMissing) {
   const std::vector<Log> logs = logs_of([](double u) { return std::min(u, 52.0); });
   const MeasuredValve valve(logs, false);

@@ -185,8 +185,8 @@ bool names(const ValveFindings& found, std::string_view cause) {
 
 TEST(FindInValve, NamesALeakAndThatAScaleMayPassForOne) {
   const ValveFindings found = found_in(own_logs({.leak = 0.2}, 91), without_a_valve());
-  // The true share is 0.2 squared. The tolerance covers the different critical pressure ratios of the
-  // simulation and the model.
+  // The true value of the parameter `share` is 0.2 squared. The tolerance covers the different critical
+  // pressure ratios of the simulation and the model.
   const CauseParameter* const share = find(found, "leak", "share");
   ASSERT_NE(share, nullptr);
   EXPECT_NEAR(share->value, 0.04, 0.008);
