@@ -26,8 +26,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 BUILD = ROOT / os.environ.get("BUILD_DIR", "build/release")
 CACHE = ROOT / "build/tidy"
 FEW = 3
-# Checks that tests are exempt from, because a test may copy objects and may count from 0 to 1 in steps of
-# 0.1.
+# The clang-tidy checks that are switched off for tests. A test may copy objects, and it may count from 0 to 1
+# in steps of 0.1.
 OFF_IN_TESTS = "-performance-*", "-clang-analyzer-security.FloatLoopCounter"
 
 

@@ -1,5 +1,5 @@
-"""Makes, diagnoses and judges one world with a changed finger. The fixed worlds of the test suite and the campaign use
-this module.
+"""Simulates one world in which the finger changes, diagnoses the change and judges the diagnosis. The fixed worlds of
+the test suite and the campaign use this module.
 
 A world has these keys: family (`textbook` or `first`), cause (or `none`), strength (1: the option `--strength 8` of
 the generator), seed, columns (`pressure` or `command`), and zero_mm and warmer_c of the later logs. The healthy logs

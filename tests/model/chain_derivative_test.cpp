@@ -70,7 +70,7 @@ void expect_derivatives_agree(const Model& model, SignalName signal) {
     down[k] -= h;
     const std::vector<double> y_up = readings(with_values(model, up), signal, 0);
     const std::vector<double> y_down = readings(with_values(model, down), signal, 0);
-    // At a kink, such as a corner of the signal or the begin of a contact, the two one-sided finite
+    // At a kink, such as a corner of the signal or the start of a contact, the two one-sided finite
     // differences are unequal. The derivative equals one of them.
     double largest = 0;
     double outside = 0;
@@ -178,7 +178,7 @@ TEST(ChainDerivatives, NeutralValuesHaveThem) {
 constexpr double derivative_tolerance = 1e-5;
 
 // Returns by how much the derivative of peek() is outside the interval between its two one-sided finite
-// differences. At a kink (a reversal of the pressure, or the begin of a contact), the two differences are
+// differences. At a kink (a reversal of the pressure, or the start of a contact), the two differences are
 // unequal, and the derivative equals one of them. Close to a kink, neither difference is the slope at p, so
 // the function tries smaller step sizes.
 double outside_of_differences(Chain<double>& chain, double p, const Surroundings& now,

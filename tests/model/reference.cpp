@@ -12,8 +12,8 @@
 namespace softgrip::model::testing {
 namespace {
 
-// Problem with the state vector p, h, x1 .. xn. If the valve has no lag, the pressure equals the command, and
-// p is not integrated.
+// An initial value problem with the state vector p, h, x1 .. xn. If the valve has no lag, the pressure equals
+// the command, and p is not integrated.
 struct Problem {
   const Physics& physics;
   double from_s = 0, from_kpa = 0, slope = 0;  // time and value at the start of the current linear segment of

@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""Checks that only base/files.cpp opens files for reading, and only base/file_writing.cpp writes files.
+"""Checks that the programs open files in base/files.cpp and write files in base/file_writing.cpp.
 
-Every other call in the C++ code of the programs that opens, creates or renames a file must be listed in file_calls.txt
-with its reason:
+Any other call in their C++ code that opens, creates or renames a file must be listed in file_calls.txt with its reason:
 
     PATH: COUNT CALL: REASON
 

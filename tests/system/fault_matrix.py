@@ -216,8 +216,8 @@ class Cell:
         self.seen = self.daemon.events()[-1]["id"]
 
     def find_origin(self):
-        """Computes time.monotonic() at the daemon's time 0. A status can be as old as one tick, so the result is the
-        smallest value of 20 statuses."""
+        """Computes time.monotonic() at the daemon's time 0. A status can be as old as one tick, so the function takes
+        the smallest value that 20 statuses give."""
         self.origin = math.inf
         for n in range(20):
             now_s = self.daemon.status()["time_s"]
@@ -262,8 +262,8 @@ class Cell:
             self.proxy.clear()
 
     def first_other_write(self):
-        """Returns the time of the first write with changed values after the fault began. From this time on, the board
-        ignores the writes."""
+        """The board ignores all writes since the fault began. Returns the time of the first write since then whose
+        values differ from the outputs of the board."""
         before = [words for at, words in self.proxy.writes if at <= self.began][-1:]
         return next((at for at, words in self.proxy.writes
                      if at > self.began and before and wire_proxy.noticeable(words, before[0])), self.began)

@@ -27,7 +27,7 @@ std::map<std::string, double> own_physics(const World& world, const std::vector<
                                           std::uint64_t seed, double visible_mm);
 
 /// Time constant [s] above which creep counts as slow. given.yaml has two creep branches that were identified
-/// from logs of a simulated world. Both branches are faster (up to 10 s).
+/// from logs of a simulated world. Their time constants are smaller; the larger one is 10 s.
 inline constexpr double slowest_twin_s = 15;
 
 }  // namespace textbook

@@ -41,8 +41,8 @@ TEST(PseudoElasticSoftening, GoesTheSameWayBackAndJoinsTheFirstLoading) {
   EXPECT_GT(out[6], out[1]);  // the load of 45 has softened the finger more than the load of 40
 }
 
-// With these parameters, a factor on the pressure would decrease faster than the pressure rises. So the
-// output would fall while the pressure rises.
+// With these parameters, a softening factor on the pressure would decrease faster than the pressure rises. So
+// the output would fall while the pressure rises.
 TEST(PseudoElasticSoftening, RisesWithThePressureWhateverItsNumbers) {
   Block block = make<Block>({0.5, 0.5});
   drive(block, 0, std::vector<double>{50}, 1.0);

@@ -12,8 +12,8 @@
 namespace softgrip::model::testing::rate_dependent_width_test {
 namespace {
 
-// Returns a Bouc-Wen element whose loop becomes wider with the input rate. With the second parameter, its
-// saturation depends on the input rate, too.
+// Returns a Bouc-Wen element whose loop becomes wider with the input rate. If the second parameter is not 0,
+// the saturation of the element also depends on the input rate.
 Model widened(double growth, double levelling = 0) {
   Model model{"widened", "test", {BlockSpec{block_type<BoucWen>(), {0.35, 0.2, 0.03, 0.05, 1}}}};
   model = with_block(model, {block_type<RateDependentWidth>(), {growth, 15.0, 0.08}});

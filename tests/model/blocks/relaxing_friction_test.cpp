@@ -32,7 +32,7 @@ double width(double rate_kpa_per_s) {
 
 TEST(RelaxingFriction, LoopGrowsWithTheRateUpToItsWidth) {
   EXPECT_NEAR(width(0.01), 2 * 0.03 * 0.01,
-              1e-5);  // for a slow input, the friction is viscous: the half width is gain * tau * rate
+              1e-5);  // for a slow input, the friction is viscous, so half the width is gain * tau * rate
   EXPECT_GT(width(10), 2 * width(1.0));
   // For a fast input, the friction is dry. While the pressure rises from 0 to 40 kPa, the state z goes from
   // -turn to turn. At 20 kPa, the state is `middle`.

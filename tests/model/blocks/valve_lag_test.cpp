@@ -27,7 +27,7 @@ TEST(ValveLag, StepAndRampResponsesAreTheTextbookOnes) {
 
 TEST(ValveLag, MeanIsExact) {
   // tau (y1 - y0) = dt (mean(u) - mean(y)) for every input u and output y. Here y0 and y1 are the outputs at
-  // the begin and the end of a step dt.
+  // the start and the end of a step dt.
   Block block = make<Block>({0.05});
   double from = 0;
   for (const double to : {5.0, 9.0, 9.0, 2.0, 1.0, 30.0}) {

@@ -16,7 +16,7 @@ TEST(NextSteps, EveryCauseHasTwoThingsToDoAndPlainWords) {
   for (const CauseWithoutBlock& cause : causes_without_block) ids.push_back(cause.id);
   for (const Cause& cause : all_causes()) {
     // hysteresis_shape can only be the cause of a model error, and pressure_scale is only listed as an
-    // alternative to a leak. Neither can be reported as a change.
+    // alternative to a leak. So a diagnosis of a change never reports them.
     if (cause.id != "hysteresis_shape" && cause.id != "pressure_scale") ids.push_back(cause.id);
   }
   for (const std::string_view id : ids) {

@@ -42,8 +42,8 @@ TEST(HeldOutLosses, OfAModelThatIsOffByAMillimetreAreOneInEveryBlock) {
 TEST(HeldOutLosses, AreThoseOfAFitThatNeverSawTheBlock) {
   const Predicted exact(0);
   const Division division = divide_into_fifths(exact.records);
-  // A "fit" that returns as its offset the number of readings that it finds in the last block of the second
-  // log. If the block is hidden, this number is 0.
+  // This "fit" returns the number of readings that it finds in the last block of the second log, as its
+  // offset. If the block is hidden, this number is 0.
   const Block last = division.blocks.back();
   const BlockLosses losses = held_out_losses(exact.records, division, [&](const std::vector<Record>& rest) {
     double seen = 0;

@@ -103,7 +103,7 @@ TEST(RunningReference, BeyondTheTemperaturesSeenHalfOfWhatTheLineAddsIsDoubted) 
   const double beyond = 10 * reference.slope()->per_c;
   const double z = reference.judge(reference.expected(far_c) + beyond, least, far_c).value_or(0);
   EXPECT_NEAR(z, 2, 0.05);
-  // At a temperature within the range of the reference, the same deviation is more than 10 standard
+  // At a temperature within the range of the reference, this deviation would be more than 10 standard
   // deviations.
   EXPECT_GT(reference.judge(reference.expected(20) + beyond, least, 20).value_or(0), 10);
 }
@@ -111,7 +111,7 @@ TEST(RunningReference, BeyondTheTemperaturesSeenHalfOfWhatTheLineAddsIsDoubted) 
 TEST(RunningReference, AValueWithoutATemperatureIsComparedWithAll) {
   Warm warm(13);
   const RunningReference reference = learnt(warm, 50);
-  const double spread = 0.2;  // a standard deviation of 2 °C times 0.1 per °C
+  const double spread = 0.2;  // standard deviation of the values: 2 °C times 0.1 per °C
   const double z = reference.judge(reference.mean() + 3 * spread, least).value_or(0);
   EXPECT_NEAR(z, 3, 0.6);
 }

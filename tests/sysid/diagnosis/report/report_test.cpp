@@ -78,7 +78,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-/// Returns the left-aligned texts of a drawing through which a line is drawn.
+/// Returns the left-aligned texts that a line of the drawing crosses.
 std::vector<std::string> crossed_words(const std::string& markup) {
   const std::regex words(R"re(<text x="([0-9.]+)" y="([0-9.]+)" text-anchor="start"[^>]*>([^<]+))re");
   const std::regex line(R"re(<path d="M(-?[0-9.]+) ?(-?[0-9.]+)l(-?[0-9.]+) ?(-?[0-9.]+)")re");

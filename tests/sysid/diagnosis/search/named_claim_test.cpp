@@ -16,7 +16,7 @@
 namespace softgrip::sysid::named_claim_test {
 namespace {
 
-/// A case with two runs of bench_twin, a cause that was fitted to these runs, and given errors of the
+/// A case with two runs of bench_twin, a cause that was fitted to these runs, and prescribed errors of the
 /// held-out runs.
 struct Case {
   std::vector<Record> records = known_campaign(2);

@@ -87,8 +87,8 @@ TEST(BestStarts, TheLatencyNearTheHiddenOneComesFirst) {
   EXPECT_NEAR(points.front().model.blocks[*at].values[0], 0.1, 1e-12);
 }
 
-// The form with more parameters has the lower predicted error at every start value. Even so, the search must
-// try every form and every start value.
+// One model of a cause has more parameters and therefore the lower predicted error at every start value. Even
+// so, the search must try every model of the cause and every start value.
 TEST(BestStarts, ShowEveryFormOfACauseAndEveryPlace) {
   const model::Model given = loaded("zhang2025");
   const SearchData data = make_search_data(records_of(model::with_block(given, block("ageing", {4}))), given);

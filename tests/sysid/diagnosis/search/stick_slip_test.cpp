@@ -151,8 +151,8 @@ TEST(StickSlip, JumpsThatWereTakenForShortOnesDoNotMoveTheBand) {
   double sum_kpa = 0;
   constexpr int seeds = 200;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) sum_kpa += band_of_jumps(partly_short(seed)).value_kpa;
-  // The 20 % short jumps must not shift the estimate. The mean of the central 90 % of the jumps would be 2.3
-  // % too low.
+  // The 20 % of the jumps that are too short must not shift the estimate. The mean of the central 90 % of the
+  // jumps would be 2.3 % too low.
   EXPECT_NEAR(sum_kpa / seeds, 1.0, 0.006);
 }
 

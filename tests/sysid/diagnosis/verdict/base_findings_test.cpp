@@ -43,7 +43,7 @@ model::Model plays() {
 struct Found {
   SearchData data;
   BaseQuestion question;
-  Selection plain;  ///< the selection of causes with the given model structure
+  Selection plain;  ///< selection of the causes for the given model structure
   std::optional<BaseFindings> base;
 };
 
@@ -99,8 +99,8 @@ TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
                                    << elastic_share(slack.base->fit.point.model);
 }
 
-/// The given structure leaves a large unexplained error and names no cause. In this case, the alternative
-/// structure needs to reduce the loss only slightly.
+/// With the given structure, a large part of the error remains unexplained, and no cause is named. In this
+/// case, it suffices if the alternative structure reduces the loss slightly.
 TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
   Found found = found_in(plays());
   ASSERT_TRUE(found.base);

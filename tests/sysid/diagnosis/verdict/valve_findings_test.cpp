@@ -298,8 +298,8 @@ TEST(Diagnose, AFingerThatIsExplainedFromTheMeasuredPressureStillHasAValveThatIg
   ASSERT_TRUE(diagnosis->in_valve);
   EXPECT_NE(find(*diagnosis->in_valve, "valve_deadband", "band_kpa"), nullptr);
   EXPECT_NE(verdict_sentence(*diagnosis).find("valve dead band"), std::string::npos);
-  // The daemon sets the command of the valve, so its model must include the valve. This also holds if the
-  // diagnosis used the measured pressure as the input of the finger.
+  // The daemon sets the command of the valve, so the model that it uses must include the valve. This also
+  // holds if the measured pressure was the input of the diagnosis.
   for (const model::Model& model : {diagnosis->recalibrated_model, diagnosis->extended_model}) {
     EXPECT_TRUE(model::position_of<model::TransportDelay>(model)) << model.name;
     EXPECT_TRUE(model::position_of<model::ValveDeadband>(model)) << model.name;
