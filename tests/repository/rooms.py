@@ -1,8 +1,8 @@
 """Compares the rooms (source folders with permitted includes) of cmake/rooms.cmake with the code and with
 docs/explanation/architecture.md.
 
-    rooms.py            fails if a folder with code is no room, if no include needs an arrow, or if the table of the
-                        page differs from rooms.cmake
+    rooms.py            fails if a folder with code belongs to no room, if a room names another room after USES
+                        whose headers it does not include, or if the table of the page differs from rooms.cmake
     rooms.py --write    updates the first and the last column of the page; the content of a room is written by hand
 """
 

@@ -65,8 +65,8 @@ TEST_F(ChangeIntervals, AreWiderWhereHealthyUnitsDifferInTheSameNumber) {
   };
   const double alone = width(intervals_of(later, {delay}, {})[0].numbers.at(0));
   const double between = width(intervals_of(later, {delay}, {unit(0.01, 1), unit(0.02, 1)})[0].numbers.at(0));
-  // The delays of the two healthy runs have the mean square (0.01^2 + 0.02^2) / 2 s^2. Multiplied by 1.5,
-  // this is the variance of the difference between one run and the mean of two runs.
+  // The delays of the two healthy runs are 0.01 s and 0.02 s. Their mean square is 0.00025 s^2. Multiplied by
+  // 1.5, it is the variance of the difference between one run and the mean of two runs.
   const double expected = 2 * 1.96 * std::sqrt(0.00025 * 1.5);
   EXPECT_NEAR(between, std::hypot(alone, expected), 1e-3 * between);
   // A fit to a healthy run that does not reduce the error says nothing about the differences between runs.

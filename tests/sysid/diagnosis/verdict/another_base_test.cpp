@@ -28,8 +28,8 @@ TEST(MayLackABase, NotWhereOneCauseLeavesNothingThatMatters) {
 TEST(MayLackABase, NotWhereItsFormIsALittleOffWhatThereWas) {
   // The cause leaves 0.9 % of the mean square error, like softening in simulated test cases.
   EXPECT_FALSE(may_lack_a_base(left_of(0.3 * noise_mm, 0.3 * noise_mm / std::sqrt(0.009)), noise_mm));
-  // The cause leaves 10 % of the mean square error, like a wrong cause that fits a loop of a different shape
-  // in part.
+  // The cause leaves 10 % of the mean square error. A wrong cause leaves as much if it can only partly
+  // describe a loop of a different shape.
   EXPECT_TRUE(may_lack_a_base(left_of(0.3 * noise_mm, 0.3 * noise_mm / std::sqrt(0.1)), noise_mm));
 }
 
