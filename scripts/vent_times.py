@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Measures how long a vent takes while hostile clients load the daemon: vent_times.py [--times 20] [--page] [--only
-WORD]
+"""Measures how long a vent takes under attack by hostile clients: vent_times.py [--times 20] [--page] [--only WORD]
 
 Repeats every test of Hearing (tests/system/test_hearing.py) that vents during an attack, each time with its own rig and
 daemon. Prints the longest and the median time from the client's line to outputs below 1 kPa. --page writes the table
