@@ -1,6 +1,6 @@
 #pragma once
 // Ends a long computation early. The request to end is stored in the thread budget of the computation. All
-// threads of the computation can read it there, so functions need no argument for it.
+// threads of the computation can read this request there, so no function needs an argument for it.
 
 #include "base/thread_budget.h"
 
@@ -16,7 +16,7 @@ struct WorkCancelled {};
 }
 
 /// Throws WorkCancelled if the computation of the calling thread must end early. The loops of a fit call this
-/// function, so a computation ends within one simulation of the model on its recordings.
+/// function, so the fit ends within the time of one simulation of the model on its recordings.
 inline void end_if_cancelled() {
   if (is_cancelled()) throw WorkCancelled{};
 }

@@ -30,8 +30,8 @@ void MonotonicClock::sleep_until(Nanoseconds due) const noexcept {
 }
 
 Nanoseconds time_asleep() noexcept {
-  // An interruption between the reads makes the difference wrong. Therefore, the quickest of three
-  // measurements is used.
+  // The scheduler can interrupt this thread between two reads of the clocks, which makes the difference of
+  // the clocks wrong. Therefore, the function measures three times and uses the quickest measurement.
   Nanoseconds quickest = std::numeric_limits<Nanoseconds>::max();
   Nanoseconds ahead = 0;
   for (int i = 0; i < 3; ++i) {

@@ -17,23 +17,24 @@ class Clock {
   Clock& operator=(Clock&&) = delete;
   virtual ~Clock() = default;
   [[nodiscard]] virtual Nanoseconds now() const noexcept = 0;
-  /// Returns at `due` or later, never earlier.
+  /// Waits until `due` and returns at that time or later, never earlier.
   virtual void sleep_until(Nanoseconds due) const noexcept = 0;
 };
 
-/// Returns the time of CLOCK_BOOTTIME. This clock cannot be set. Unlike CLOCK_MONOTONIC, it also runs while
-/// the machine is suspended. The board's watchdog runs during this time too, so the daemon must see the
-/// pause.
+/// Returns the time of CLOCK_BOOTTIME. This clock cannot be set. It runs while the machine is suspended, as
+/// the board's watchdog does, so the daemon can detect a suspension. CLOCK_MONOTONIC stops during a
+/// suspension.
 [[nodiscard]] Nanoseconds monotonic_now() noexcept;
 
-/// The clock that monotonic_now() reads, for functions that accept any Clock.
+/// A clock that returns the time of monotonic_now(), for functions with an argument of type Clock.
 class MonotonicClock final : public Clock {
  public:
   [[nodiscard]] Nanoseconds now() const noexcept override;
   void sleep_until(Nanoseconds due) const noexcept override;
 };
 
-/// A clock that changes only when it is set. sleep_until() sets it to the end of the sleep.
+/// A clock for tests, whose time changes only when a test sets it. sleep_until() sets it to the end of the
+/// sleep.
 class VirtualClock final : public Clock {
  public:
   [[nodiscard]] Nanoseconds now() const noexcept override { return now_; }
@@ -45,9 +46,9 @@ class VirtualClock final : public Clock {
   mutable Nanoseconds now_ = 0;
 };
 
-/// Returns the total time for which the machine was suspended: the difference of CLOCK_BOOTTIME and
-/// CLOCK_MONOTONIC, in whole milliseconds [ns]. It is needed because the kernel gives the times of edges on
-/// CLOCK_MONOTONIC.
+/// Returns the total time for which the machine was suspended [ns], rounded to whole milliseconds. This time
+/// is the difference of CLOCK_BOOTTIME and CLOCK_MONOTONIC. It converts the kernel's times of GPIO edges,
+/// which are on CLOCK_MONOTONIC, to CLOCK_BOOTTIME.
 [[nodiscard]] Nanoseconds time_asleep() noexcept;
 
 }  // namespace softgrip

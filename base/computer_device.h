@@ -1,6 +1,6 @@
 #pragma once
-// Finds the device of this computer that a configuration file names. Converters, GPIO chips and serial
-// adapters are found by the same rule.
+// Finds the device of this computer that a configuration file names. The rule is the same for converters,
+// GPIO chips and serial adapters.
 
 #include <filesystem>
 #include <string>
@@ -31,9 +31,9 @@ struct ComputerDevice {
 /// Returns, for example, "iio:device0 (name `mcp4725`, address `1-0060`)".
 [[nodiscard]] std::string text_of(const ComputerDevice& device);
 
-/// Returns the device of an entry of a bus in sysfs (/sys/bus/iio/devices/iio:device0). Its words are its
-/// address on the bus (1-0060, spi0.1) and the serial number of its USB device. They are missing if the entry
-/// is not a symbolic link.
+/// Returns the device for an entry of a bus folder in sysfs (/sys/bus/iio/devices/iio:device0). The words of
+/// the device are its address on the bus (1-0060, spi0.1) and the serial number of its USB device. The result
+/// has no words if the entry is not a symbolic link.
 [[nodiscard]] ComputerDevice device_at(const std::filesystem::path& entry);
 /// Returns the devices of all entries whose name begins with `prefix`, in alphabetical order.
 [[nodiscard]] std::vector<ComputerDevice> devices_in(const std::filesystem::path& bus,
@@ -41,16 +41,16 @@ struct ComputerDevice {
 /// Returns the first line of a file without trailing white space; empty if there is none.
 [[nodiscard]] std::string first_line(const std::filesystem::path& file);
 
-/// The reason why a word does not identify one device.
+/// The reason why a word in a file does not identify exactly one device.
 struct UnclearDevice {
   bool several = false;  ///< true: the word matches several devices; false: it matches none
   std::string message;   ///< lists all devices that match
   std::string hint;      ///< a word that the user can write instead
 };
 
-/// Returns the only device that `word` matches. A word matches the node of a device, one of its words, or the
-/// path of a sysfs folder that contains the device. `kind` is used in messages: "converter", "GPIO chip",
-/// "serial device".
+/// Returns the device that `word` matches if no other device matches it. A word matches the node of a device,
+/// one of its words, or the path of a sysfs folder that contains the device. `kind` is the name of the device
+/// type in messages: "converter", "GPIO chip", "serial device".
 [[nodiscard]] tl::expected<ComputerDevice, UnclearDevice> only_device(
     const std::vector<ComputerDevice>& devices, const std::string& word, std::string_view kind);
 /// Returns the error for a word that matches all devices in `found`. `devices` contains all devices.

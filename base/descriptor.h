@@ -25,7 +25,7 @@ class Descriptor {
     if (number_ >= 0) ::close(number_);
     number_ = -1;
   }
-  /// Releases the ownership. The caller must close the descriptor.
+  /// Returns the descriptor and gives up its ownership: the caller must close it.
   [[nodiscard]] int release() noexcept { return std::exchange(number_, -1); }
   [[nodiscard]] explicit operator bool() const noexcept { return number_ >= 0; }
 

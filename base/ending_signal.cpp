@@ -12,7 +12,8 @@ namespace {
 
 std::atomic<int> noted{0};
 
-/// Offset of the exit code of a process that a signal ended: shells report 128 plus the signal.
+/// Difference between the exit code that shells report for a process ended by a signal and the signal's
+/// number.
 constexpr int shell_offset = 128;
 
 }  // namespace
@@ -41,7 +42,7 @@ void end_by_signal(int signal) noexcept {
   sigaddset(&only, signal);
   pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
   ::raise(signal);
-  // This point is reached only if the default action of the signal does not end a process.
+  // The program reaches this line only if the default action of the signal does not end a process.
   ::_exit(shell_offset + signal);
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 // Stores the signal that requested the end of this process until the process has cleaned up.
 //
-// A shell ends its loop on Ctrl-C only if the running program was ended by the signal. If the program ends
-// with an ordinary exit code, the loop starts the next program.
+// A shell ends its loop on Ctrl-C only if the signal itself ended the running program. If the program instead
+// returned an ordinary exit code, the loop would start the next program.
 
 #include <string>
 
@@ -18,8 +18,8 @@ void note_ending_signal(int signal) noexcept;
 /// Returns "SIGINT", or for example "signal 35" if the signal has no name.
 [[nodiscard]] std::string name_of_signal(int signal);
 
-/// Flushes the standard streams and ends the process by `signal` with its default disposition. Call it when
-/// the outputs are safe and all files are closed.
+/// Flushes the standard streams and ends the process by `signal` with its default disposition. Call this
+/// function after the outputs are safe and all files are closed.
 [[noreturn]] void end_by_signal(int signal) noexcept;
 
 }  // namespace softgrip

@@ -9,9 +9,9 @@
 
 namespace softgrip {
 
-/// Returns the texts of `items` in their order, for example "a, b and c" if `before_last` is " and "; ""
-/// without items. `text_of` returns a std::string or std::string_view for an item, or is a pointer to the
-/// member that contains the text.
+/// Returns the texts of `items` in their order, for example "a, b and c" if `before_last` is " and "; an
+/// empty text if there are no items. `text_of` returns a std::string or std::string_view for an item, or is a
+/// pointer to the member that contains the text.
 template <typename Items, typename TextOf = std::identity>
 [[nodiscard]] std::string enumerated(const Items& items, std::string_view before_last, TextOf text_of = {}) {
   std::string text;

@@ -5,7 +5,7 @@
 
 namespace softgrip {
 
-/// Returns the text of an errno value from a table in the C library.
+/// Returns the description of an errno value from a constant table in the C library.
 [[nodiscard]] inline const char* text_of_errno(int error) noexcept {
   const char* text = ::strerrordesc_np(error);
   return text != nullptr ? text : "unknown error";

@@ -1,4 +1,4 @@
-// Implements the only functions that create files. base/files.h specifies them.
+// Implements the functions of base/files.h that create files. No other code of the project creates files.
 
 #include <fcntl.h>
 #include <sys/random.h>
@@ -34,7 +34,7 @@ Error error_of(int result) {
 /// Returns a name in the folder of `target` that no other process uses and that cannot be guessed.
 std::string temporary_name(const fs::path& target) {
   std::uint64_t number = 0;
-  // If the kernel returns no random number, O_EXCL still prevents two writers from using one file.
+  // If getrandom() fails, O_EXCL in open() still prevents two processes from writing the same file.
   if (::getrandom(&number, sizeof number, GRND_NONBLOCK) < 0) number = static_cast<std::uint64_t>(::getpid());
   char name[48];
   (void)std::snprintf(name, sizeof name, ".softgrip-%016llx.part", static_cast<unsigned long long>(number));
@@ -48,14 +48,14 @@ struct Rights {
   mode_t mode = 0;
 };
 
-/// Sets owner, group and permissions of a file. A failure to change the owner is ignored: without the
-/// permission for this change, the user remains the owner.
+/// Sets owner, group and permissions of a file. A failure to change the owner is ignored: if the process may
+/// not change the owner, the file keeps the user of the process as its owner.
 Error give_rights(int file, const Rights& rights) {
   [[maybe_unused]] const int given = ::fchown(file, rights.owner, rights.group);
   return error_of(::fchmod(file, rights.mode));
 }
 
-/// Creates a file with `contents`. If `rights` is empty, the file has the default permissions of this
+/// Creates a file with `contents`. If `rights` is empty, the file gets the default permissions of this
 /// process.
 Error write_new(int folder, const std::string& name, std::string_view contents,
                 const std::optional<Rights>& rights, Sync sync) {
@@ -65,7 +65,7 @@ Error write_new(int folder, const std::string& name, std::string_view contents,
   Error error = write_all(file.get(), contents);
   if (error == 0 && rights) error = give_rights(file.get(), *rights);
   if (error == 0 && sync == Sync::disk) error = error_of(::fsync(file.get()));
-  // A network file system may report a full disk only here.
+  // On a network file system, close() can be the first call that reports a full disk.
   const Error closed = error_of(::close(file.release()));
   return error != 0 ? error : closed;
 }
@@ -88,7 +88,7 @@ void sync_folder(const fs::path& folder) {
 enum class Existing { replaced, refused };
 
 /// Creates or replaces a file. No other function creates files under their final names. `target` is relative
-/// to `folder`, which may be AT_FDCWD.
+/// to the descriptor `folder`, or to the working directory if `folder` is AT_FDCWD.
 Error put(int folder, const fs::path& target, std::string_view contents, Existing existing,
           const std::optional<Rights>& rights, Sync sync) {
   const std::string temporary = temporary_name(target);

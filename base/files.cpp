@@ -32,7 +32,8 @@ Failure not_regular(mode_t mode) {
   return Failure(std::string("it is ") + kind + ", not a regular file");
 }
 
-/// Opens a regular file for reading. `folder` may be AT_FDCWD.
+/// Opens a regular file for reading. `name` is relative to the descriptor `folder`, or to the working
+/// directory if `folder` is AT_FDCWD.
 tl::expected<RegularFile, std::string> open_at(int folder, const std::string& name, bool through_links) {
   struct ::stat about {};
   // Check the type before opening, because opening alone starts some devices, such as a watchdog timer.
@@ -70,7 +71,8 @@ tl::expected<RegularFile, std::string> open_regular_in(const Descriptor& folder,
 }
 
 tl::expected<std::string, std::string> read_start(const RegularFile& file, std::size_t most) {
-  // The size is only a hint: a file can grow during the read, and files in /proc have size 0.
+  // `file.size` is only a hint for the buffer: a file can grow during the read, and files in /proc have size
+  // 0.
   std::string contents;
   contents.reserve(std::min(file.size, most));
   std::string chunk(std::size_t{1} << 16, '\0');

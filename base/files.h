@@ -28,23 +28,23 @@ struct RegularFile {
 [[nodiscard]] tl::expected<RegularFile, std::string> open_regular_in(const Descriptor& folder,
                                                                      const std::string& name);
 
-/// Returns the next `most` bytes of the file, or fewer at its end. The error is the reason.
+/// Returns the next `most` bytes of the file, or fewer bytes at the end of the file. The error is the reason.
 [[nodiscard]] tl::expected<std::string, std::string> read_start(const RegularFile& file, std::size_t most);
 
 /// Returns the contents of a regular file of at most `bound` bytes. The error is a sentence with the reason.
 [[nodiscard]] tl::expected<std::string, std::string> read_file(const std::string& path, std::size_t bound);
 
-/// Returns true if the path leads to a file or a folder; symbolic links are followed. Unlike the functions of
-/// std::filesystem, is_there() and is_folder() do not throw. They return false for an unreadable folder or an
-/// impossible name.
+/// Returns true if the path leads to a file or a folder; symbolic links are followed. is_there() and
+/// is_folder() do not throw, unlike the functions of std::filesystem. They return false for an unreadable
+/// folder or an invalid name.
 [[nodiscard]] bool is_there(const std::string& path) noexcept;
 [[nodiscard]] bool is_folder(const std::string& path) noexcept;
 
 /// Returns true if both paths lead to the same file (device and inode), through symbolic and hard links.
 [[nodiscard]] bool same_file(const std::string& one, const std::string& other) noexcept;
 
-/// Durability of a written file. The functions below leave `path` unchanged if they return an error. After a
-/// full disk, a signal or a power failure, `path` contains the complete old file or the complete new file.
+/// Durability of a written file. If a function below returns an error, `path` is unchanged. After a full
+/// disk, a signal or a power failure, `path` contains either the complete old file or the complete new file.
 /// The new file is written under another name in the same folder and then renamed. A killed process can leave
 /// a file `.softgrip-*.part`. Errors are sentences.
 enum class Sync {
@@ -53,8 +53,8 @@ enum class Sync {
   disk,  ///< the file is written to the disk before it gets its name
 };
 
-/// Writes a file and creates missing folders. An existing file is replaced; its owner and permissions remain.
-/// A symbolic link is replaced by the file.
+/// Writes a file and creates missing folders. A new file replaces an existing file and gets its owner and
+/// permissions. If `path` is a symbolic link, the new file replaces the link.
 [[nodiscard]] tl::expected<void, std::string> write_file(const std::string& path, std::string_view contents,
                                                          Sync sync = Sync::disk);
 
@@ -66,8 +66,8 @@ enum class Sync {
 /// Writes a new file. An existing file is an error.
 [[nodiscard]] tl::expected<void, std::string> create_file(const std::string& path, std::string_view contents);
 
-/// Writes the file `name` of an open folder with mode 0600. The file is not synchronised to the disk, because
-/// such files are not needed after a restart of the machine.
+/// Writes the file `name` of an open folder with mode 0600. The function does not wait until the file is on
+/// the disk, because such files are not needed after a restart of the machine.
 [[nodiscard]] tl::expected<void, std::string> write_private_file(const Descriptor& folder,
                                                                  const std::string& name,
                                                                  std::string_view contents);

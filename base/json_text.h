@@ -5,12 +5,12 @@
 
 namespace softgrip {
 
-/// Largest depth of nested arrays and objects that parse_json() keeps.
+/// Largest depth of nested arrays and objects; parse_json() omits deeper values.
 inline constexpr int deepest_json = 64;
 
 /// Parses a text with nlohmann's type `Json` (json or ordered_json). Values that are nested deeper than
-/// deepest_json are omitted. The copy and print functions of the library recurse once per level, so a text of
-/// many brackets would exhaust the stack. For invalid JSON, the result is a discarded value, which is not an
+/// deepest_json are omitted: the copy and print functions of the library recurse once per level, so deep
+/// nesting would exhaust the stack. For invalid JSON, the result is a discarded value, which is not an
 /// object, array, text or number.
 template <class Json>
 [[nodiscard]] Json parse_json(std::string_view text) {

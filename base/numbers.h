@@ -7,10 +7,11 @@
 
 namespace softgrip {
 
-/// Returns the shortest text that reads back as the same double ("nan" and "inf" included).
+/// Returns the shortest text that gives the same double when it is converted back; NaN and infinity give
+/// "nan" and "inf".
 [[nodiscard]] std::string shortest(double value);
-/// Returns the same text as shortest(), but without an exponent if the text remains short. Used in messages
-/// about values in files.
+/// Returns the text of shortest(), but without an exponent if the text remains short. Messages show values of
+/// files in this form.
 [[nodiscard]] std::string written(double value);
 /// Returns the number with `digits` significant digits and without trailing zeros. Numbers from 1e-4 to 1e7
 /// have no exponent. Returns "-" for NaN or infinity.

@@ -1,5 +1,5 @@
 #pragma once
-// A periodic schedule of a thread with absolute deadlines.
+// Computes the absolute deadlines of a thread that runs periodically.
 
 #include <cerrno>
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace softgrip {
 
-/// Ticks are due at start + k * period. After an overrun, the schedule continues with the next regular tick:
-/// missed ticks are not repeated in a burst, and the phase of the schedule does not change.
+/// Ticks are due at start + k * period. After an overrun, the schedule continues with the next regular tick.
+/// Missed ticks are not repeated, and the later deadlines remain at start + k * period.
 class PeriodicSchedule {
  public:
   PeriodicSchedule(Nanoseconds start, Nanoseconds period) noexcept : period_(period), due_(start) {}
@@ -34,9 +34,10 @@ class PeriodicSchedule {
   Nanoseconds due_;
 };
 
-/// Returns at `due` of CLOCK_BOOTTIME or later, never earlier.
+/// Waits until `due` on CLOCK_BOOTTIME and returns at that time or later, never earlier.
 inline void sleep_until(Nanoseconds due) noexcept {
-  // std::this_thread::sleep_until() of libstdc++ 12 sleeps for a relative time, which drifts.
+  // std::this_thread::sleep_until() of libstdc++ 12 sleeps for a relative time, so its errors add up to a
+  // drift.
   const timespec time{due / ns_per_s, due % ns_per_s};
   while (clock_nanosleep(CLOCK_BOOTTIME, TIMER_ABSTIME, &time, nullptr) == EINTR) {
   }

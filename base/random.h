@@ -8,7 +8,8 @@
 
 namespace softgrip {
 
-/// The finaliser of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a bijection that randomises its input.
+/// Returns a number whose bits all depend on all bits of `x`, by a bijection: the finaliser of SplitMix64
+/// (Steele, Lea, Flood, OOPSLA 2014).
 [[nodiscard]] constexpr std::uint64_t scattered(std::uint64_t x) noexcept {
   x += 0x9e3779b97f4a7c15ULL;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -16,7 +17,7 @@ namespace softgrip {
   return x ^ (x >> 31);
 }
 
-/// Returns the seed of part `part` of an object with the seed `seed`.
+/// Returns the seed for part number `part` of an object that has the seed `seed`.
 [[nodiscard]] constexpr std::uint64_t derived_seed(std::uint64_t seed, std::uint64_t part) noexcept {
   return scattered(scattered(seed) ^ (part * 0xd1342543de82ef95ULL + 1));
 }

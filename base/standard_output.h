@@ -5,9 +5,9 @@
 
 namespace softgrip {
 
-/// Flushes the standard output at the end of a program. Returns `code` if all output was written. Otherwise
-/// (a full disk, a closed pipe) it prints a message to the standard error and returns `io` in place of
-/// `done`.
+/// Flushes the standard output at the end of a program. Returns `code` if all output was written. If output
+/// was lost (a full disk, a closed pipe), prints a message to the standard error. In this case returns `io`
+/// if `code` is `done`.
 [[nodiscard]] ExitCode with_output_checked(ExitCode code, const char* program) noexcept;
 
 }  // namespace softgrip

@@ -9,8 +9,8 @@ double third_difference_noise(std::span<const double> values) {
   std::vector<double> sizes;
   for (std::size_t i = 3; i < values.size(); ++i)
     sizes.push_back(std::abs(values[i] - 3 * values[i - 1] + 3 * values[i - 2] - values[i - 3]));
-  // 20 is the sum of the squares of the four weights. 0.6745 is the median magnitude of a standard normal
-  // variable.
+  // The third difference has the weights 1, -3, 3 and -1, whose squares add up to 20. The median magnitude of
+  // a standard normal variable is 0.6745.
   return median_of(std::span(sizes)) / (0.6745 * std::sqrt(20.0));
 }
 

@@ -27,8 +27,9 @@ template <class T>
 /// than 4 values.
 [[nodiscard]] double third_difference_noise(std::span<const double> values);
 
-/// Sums for the regression line through pairs of values. Pairs with a value that is not finite are skipped.
-/// The variances and the covariance are multiplied by the square of the number of pairs.
+/// Sums for the regression line through pairs (x, y). Pairs with a value that is not finite are skipped.
+/// variance_x() and covariance() return the variance and the covariance multiplied by the square of the
+/// number of pairs.
 struct PairSums {
   double count = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
 
@@ -43,17 +44,18 @@ struct PairSums {
   }
   [[nodiscard]] double variance_x() const { return count * xx - x * x; }
   [[nodiscard]] double covariance() const { return count * xy - x * y; }
-  /// Returns the slope of y over x by least squares. The result is meaningless if x does not vary.
+  /// Returns the slope of the least-squares line of y over x. The result is meaningless if all x are equal.
   [[nodiscard]] double slope() const { return covariance() / variance_x(); }
-  /// Returns the correlation coefficient; 0 if x or y does not vary.
+  /// Returns the correlation coefficient of x and y; 0 if all x or all y are equal.
   [[nodiscard]] double correlation() const {
     const double product = variance_x() * (count * yy - y * y);
     return product > 0 ? covariance() / std::sqrt(product) : 0;
   }
 };
 
-/// Returns the quantile of Student's t for a two-sided 95 % interval by the Cornish-Fisher expansion
-/// (Abramowitz and Stegun 26.7.5). The error at 3 degrees of freedom is below 1 %.
+/// Returns the factor of the standard error for a two-sided 95 % interval: the 97.5 % quantile of Student's t
+/// distribution. Uses the Cornish-Fisher expansion (Abramowitz and Stegun 26.7.5), whose error at 3 degrees
+/// of freedom is below 1 %.
 [[nodiscard]] double t_quantile(double degrees_of_freedom);
 
 }  // namespace softgrip

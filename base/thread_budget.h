@@ -11,8 +11,8 @@
 namespace softgrip {
 
 /// The number of threads that a task may use. All calls of parallel_for() in the task and in its threads
-/// share this budget: if the last items of an outer loop leave threads idle, the inner loops use these
-/// threads. If each item writes to its own slot, the result does not depend on the number of threads.
+/// share this budget. If an outer loop leaves threads idle at its end, the inner loops use these threads. If
+/// each item writes to its own slot, the result does not depend on the number of threads.
 class ThreadBudget {
  public:
   /// Sets the budget of the calling thread, and of the threads started from it, until the destructor runs. At
@@ -37,7 +37,7 @@ class ThreadBudget {
   /// Returns true if the task must end early.
   [[nodiscard]] bool stop_requested() const noexcept { return stop_.stop_requested(); }
 
-  /// Reserves at most `wanted` more threads and returns the number of reserved threads.
+  /// Reserves at most `wanted` further threads and returns the number of threads that it reserved.
   [[nodiscard]] std::size_t take(std::size_t wanted) noexcept {
     std::ptrdiff_t idle = idle_.load(std::memory_order_relaxed);
     while (idle > 0) {
@@ -47,12 +47,12 @@ class ThreadBudget {
     return 0;
   }
   void give_back(std::size_t threads) noexcept { idle_ += static_cast<std::ptrdiff_t>(threads); }
-  /// Must be called by a thread that continues after it has waited. For a short time, one thread too many may
-  /// compute.
+  /// Counts a thread as computing after it has waited for other threads. Until one of the other threads ends,
+  /// one thread more than the budget allows may compute.
   void go_on() noexcept { --idle_; }
 
-  /// Sets the budget of the calling thread until this thread ends. The thread was started to compute for this
-  /// budget.
+  /// Sets the budget of the calling thread until this thread ends. The calling thread was started to compute
+  /// for this budget.
   static void share(ThreadBudget& budget) noexcept { current_ = &budget; }
 
  private:

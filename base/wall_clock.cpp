@@ -25,7 +25,7 @@ std::string utc_text(Nanoseconds wall, int decimals) {
   strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &parts);
   std::string result(text.data());
   if (decimals > 0) {
-    // The addition of ns_per_s keeps the leading zeros of the nine digits.
+    // Adding ns_per_s gives a number of ten digits, so the leading zeros of the fraction appear in the text.
     const std::string digits = std::to_string(ns_per_s + wall % ns_per_s);
     result += "." + digits.substr(1, static_cast<std::size_t>(decimals));
   }
