@@ -15,8 +15,8 @@ namespace softgrip::document {
 /// U+007F-009F.
 [[nodiscard]] bool is_control(std::string_view character) noexcept;
 
-/// Appends the first character of `text` to `out` in a form that is safe for a terminal, and removes this
-/// character from `text`. Returns the number of columns that the form needs. `text` is not empty.
+/// Moves the first character of `text` to `out`, in a form that is safe for a terminal. Returns the number of
+/// terminal columns of this form. `text` is not empty.
 std::size_t append_visible(std::string& out, std::string_view& text);
 
 }  // namespace softgrip::document

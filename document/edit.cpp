@@ -111,8 +111,8 @@ bool Edit::comment_above(const Node::Entry& entry, std::string_view mark, std::s
 
 std::string Edit::text() const {
   std::vector<Change> changes = changes_;
-  // Changes are applied from the end of the text, so that the offsets of earlier changes remain valid. Two
-  // changes at one place keep their order.
+  // The changes are applied from the end of the text to its beginning, so that each change leaves the offsets
+  // of the others valid. Two changes at the same offset keep their order.
   std::stable_sort(changes.begin(), changes.end(),
                    [](const Change& a, const Change& b) { return a.offset < b.offset; });
   std::string text = document_.text;

@@ -11,28 +11,30 @@
 
 namespace softgrip::document {
 
-/// Returns the entry of a map under a key; nullptr if there is none, or if `node` is nullptr or not a map.
+/// Returns the entry of a map under a key. Returns nullptr if the map has no such key, or if `node` is
+/// nullptr or not a map.
 [[nodiscard]] const Node::Entry* entry_of(const Node* node, std::string_view key) noexcept;
-/// Returns the node that is reached from `node` through the keys of `path`, or nullptr.
+/// Returns the node that the keys of `path` lead to, starting at `node`; nullptr if a key does not exist.
 [[nodiscard]] const Node* below(const Node* node, const std::vector<std::string_view>& path) noexcept;
 
 /// Returns the byte offset of a location in the text. Returns nothing if the location is beyond the end of
 /// the text.
 [[nodiscard]] std::optional<std::size_t> offset_of(std::string_view text, Location at) noexcept;
 
-/// Collects changes and applies them together. If a function cannot edit the layout of the text, it returns
-/// false and adds no change.
+/// Collects changes of a text and applies them together. If a function does not support the layout of the
+/// text, it returns false and adds no change.
 class Edit {
  public:
   explicit Edit(const Document& document) : document_(document) {}
 
-  /// Replaces the numbers of a list one by one.
+  /// Replaces all numbers of a list by the numbers in `numbers`, in the same order.
   bool replace_numbers(const Node& list, const std::vector<std::string>& numbers);
-  /// Adds a key at the end of a map: in a flow map after the last entry, in a block map on its own line. The
-  /// last entry must be a plain word, a number or a list of them in brackets.
+  /// Adds a key at the end of a map. In a flow map, the key follows the last entry; in a block map, it gets
+  /// its own line. The value of the last entry must be a plain word, a number or a list of plain words or
+  /// numbers in brackets.
   bool add_key(const Node& map, std::string_view key, std::string_view value);
-  /// Adds a comment on its own line above the line of `entry`. Replaces a comment on the line above that
-  /// begins with `mark`. Returns false if `entry` is not the first text of its line.
+  /// Adds a comment on its own line above the line of `entry`. If the line above is a comment that begins
+  /// with `mark`, the new comment replaces it. Returns false if text precedes `entry` on its line.
   bool comment_above(const Node::Entry& entry, std::string_view mark, std::string_view comment);
 
   /// Returns the text with all changes.

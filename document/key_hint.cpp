@@ -12,8 +12,8 @@ namespace softgrip::document {
 
 namespace {
 
-/// A unit as it appears in keys. `to_base` is the factor from this unit to the unit that the project uses for
-/// the quantity.
+/// A unit as it appears in keys. `to_base` is the factor from this unit to the project's unit of the same
+/// quantity.
 struct Unit {
   std::string_view name;
   std::string_view quantity;
@@ -49,7 +49,7 @@ std::vector<std::string_view> words_of(std::string_view key) {
   }
 }
 
-/// Writes a number for a hint. A product such as 130 * 0.001 appears without its rounding error.
+/// Returns a number as text for a hint, with at most 9 significant digits: 130 * 0.001 becomes "0.13".
 std::string rounded(double number) {
   std::array<char, 32> buffer{};
   const auto end =
@@ -57,8 +57,8 @@ std::string rounded(double number) {
   return {buffer.data(), end};
 }
 
-/// Returns true if `key` lacks only the unit, as `delay` does for `delay_s`: all words of `candidate` that
-/// `key` does not have are units of the project or `per`.
+/// Returns true if `candidate` is `key` followed by its unit, as `delay_s` is for `delay`. All words that
+/// `candidate` has in addition must be units of the project or `per`.
 bool lacks_unit(std::string_view key, std::string_view candidate) {
   if (candidate.size() <= key.size() + 1 || candidate.substr(0, key.size()) != key ||
       candidate[key.size()] != '_') {
@@ -71,7 +71,8 @@ bool lacks_unit(std::string_view key, std::string_view candidate) {
   });
 }
 
-/// The units of two keys that differ in one word only. Both words are units of the same quantity.
+/// The units of two keys that differ in exactly one word. This word is a unit in both keys, and both units
+/// measure the same quantity.
 struct OtherUnit {
   const Unit* used;
   const Unit* wanted;
@@ -151,7 +152,7 @@ std::string_view unit_at_end(std::string_view key) {
 std::string hint_for_range(std::string_view key, double value, double lower, double upper) {
   const Unit* const wanted = unit_named(words_of(key).back());
   if (wanted == nullptr || key.find("_per_") != std::string_view::npos || value == 0) return {};
-  // Units that are often confused with the unit of the key. Other units are not suggested.
+  // Units that users often write in place of the unit of the key. The function suggests no other units.
   constexpr std::array<std::string_view, 4> usual{"ms", "bar", "m", "ua"};
   for (const std::string_view name : usual) {
     const Unit* const other = unit_named(name);

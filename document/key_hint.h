@@ -18,7 +18,7 @@ struct KeyHint {
 /// Returns the known key that was probably meant, and a hint for the message.
 /// @param key    the unknown key
 /// @param value  the value of the unknown key
-/// @param known  permitted keys that the map does not contain yet
+/// @param known  permitted keys that the map does not contain
 [[nodiscard]] KeyHint hint_for_key(std::string_view key, const Node& value,
                                    const std::vector<std::string>& known);
 
@@ -26,8 +26,9 @@ struct KeyHint {
 /// `speed_mm_per_s`; empty if the key has no unit.
 [[nodiscard]] std::string_view unit_at_end(std::string_view key);
 
-/// Returns a hint such as "did you mean 0.13?" if a number out of range is in the range after conversion from
-/// a related unit. The unit of `key` is the required unit. Returns an empty text if no unit fits.
+/// Returns a hint such as "the unit is seconds: 130 ms would be 0.13" for a number out of range. The hint
+/// exists if the number is in range after it is converted from a related unit to the unit of `key`.
+/// Otherwise, the text is empty.
 [[nodiscard]] std::string hint_for_range(std::string_view key, double value, double lower, double upper);
 
 }  // namespace softgrip::document

@@ -9,7 +9,8 @@
 
 namespace softgrip::document {
 
-/// Bounds of a document. A document that exceeds a bound is refused before it needs much time or memory.
+/// Upper limits for a document. A document that exceeds one of the limits is refused before it needs much
+/// time or memory.
 struct Bounds {
   std::size_t bytes = 256 * 1024;
   std::size_t nodes = 20'000;
@@ -25,9 +26,10 @@ struct Node {
   Location at;
   std::string scalar;          ///< the text of a scalar, unquoted
   bool quoted = false;         ///< the scalar was quoted, so it is a text, never a number
-  std::string stands_for;      ///< name of a parameter with `$`, if the file has the parameter in place of
+  std::string stands_for;      ///< name of the parameter if the file has a parameter with `$` in place of
                                ///< this value; otherwise empty
-  bool refused = false;        ///< the node was already reported or is truncated; it is not checked again
+  bool refused = false;        ///< true: a problem of the node was reported already, or the node is
+                               ///< truncated; it is not checked again
   std::vector<Node> items;     ///< items of a sequence
   std::vector<Entry> entries;  ///< entries of a map in the order of the text, with unique keys
 };
@@ -42,18 +44,19 @@ struct Document {
   std::string file;
   std::string text;
   Node root;
-  /// False if parsing stopped before the end. Readers then do not report missing keys, because the key may be
-  /// in the rest of the text.
+  /// False if parsing stopped before the end of the text. In this case, readers do not report missing keys,
+  /// because these keys may be in the unread rest.
   bool complete = true;
 
-  /// Returns a problem at the location `at`. The problem contains the text of this line.
+  /// Returns a problem at the location `at`. The problem contains the text of the line at `at`.
   [[nodiscard]] Problem problem(Location at, std::string message, std::string hint = {}) const;
 };
 
 /// Parses one YAML document. Adds a problem at the location of each of the following: anchors, aliases, tags,
-/// merge keys, duplicate keys, keys that are not a plain word, directives, several documents, anything beyond
+/// merge keys, duplicate keys, keys that are not a plain word, directives, several documents, exceeded
 /// `bounds`, bytes that are not UTF-8, control characters, tabs as indentation and syntax errors. Returns the
-/// readable part of the document. For duplicate keys, this is the first one. A refused alias has no value.
+/// readable part of the document. If a key occurs twice, the result contains the first entry. An alias is
+/// refused and has no value.
 [[nodiscard]] Document parse(std::string file, std::string text, Problems& problems,
                              const Bounds& bounds = {});
 

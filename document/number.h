@@ -1,6 +1,6 @@
 #pragma once
-// Converts texts to numbers. Only plain decimal numbers are accepted, independent of the locale. The reason
-// for a refusal is explained.
+// Converts texts to numbers. Only plain decimal numbers are accepted, independent of the locale. For any
+// other text, the result contains the reason of the refusal.
 
 #include <cstdint>
 #include <optional>
@@ -11,11 +11,11 @@
 
 namespace softgrip::document {
 
-/// A number, or the reason why the text is not one. Exactly one of `value` and `message` is present.
+/// A number, or the reason why the text is not a number. Exactly one of `value` and `message` is present.
 template <class T>
 struct Parsed {
   std::optional<T> value;
-  std::string message;  ///< to be written after "`key` ": "must be a number, found `fast`"
+  std::string message;  ///< message to be written after the key: "must be a number, found `fast`"
   std::string hint;
 };
 

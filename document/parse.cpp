@@ -16,8 +16,9 @@ namespace softgrip::document {
 
 namespace {
 
-/// Thrown through the parser when a bound is reached. The first event beyond the bound ends the parser. This
-/// also limits the recursion of the parser, because it reports each level before it descends.
+/// Thrown from an event handler of the parser when the document exceeds a limit, to end the parser at this
+/// event. It also limits the recursion of the parser, because the parser reports each level before it
+/// descends to the next one.
 struct Abandoned {};
 
 Location location_of(const YAML::Mark& mark) {
@@ -87,7 +88,7 @@ class TreeBuilder final : public YAML::EventHandler {
   /// Returns the innermost map or sequence that is still open, or nullptr.
   [[nodiscard]] const Node* open_node() const { return frames_.empty() ? nullptr : &frames_.back().node; }
 
-  /// Moves the open nodes of the stack into the tree, after the parser stopped early.
+  /// Moves the incomplete nodes of the stack into the tree after the parser has stopped early.
   void fold() {
     while (!frames_.empty()) {
       const Frame* parent = frames_.size() > 1 ? &frames_[frames_.size() - 2] : nullptr;
@@ -95,15 +96,16 @@ class TreeBuilder final : public YAML::EventHandler {
       if (is_key) {
         frames_.pop_back();
       } else {
-        // It is unknown if the list `[1, 2` is complete. A block list contains complete items only.
+        // After an early stop, a list such as `[1, 2` may lack items, so it is refused. A list in block style
+        // contains complete items only.
         frames_.back().node.refused = frames_.back().flow;
         close();
       }
     }
   }
 
-  /// Marks the last value as refused, because the parser may have read the words of an invalid key as a part
-  /// of this value.
+  /// Marks the value before an invalid key as refused, because the parser may have read the words of this key
+  /// as a part of the value.
   void distrust_last_value() {
     if (frames_.empty() || frames_.back().node.entries.empty()) return;
     frames_.back().node.entries.back().value.refused = true;
@@ -115,7 +117,7 @@ class TreeBuilder final : public YAML::EventHandler {
   struct Frame {
     Node node;
     bool flow = false;       // for a sequence: written as `[...]`
-    bool has_key = false;    // for a map: the key was read and its value comes next
+    bool has_key = false;    // for a map: the key was read; its value is the next event
     bool key_wanted = true;  // for a map: the key was not refused
     std::string key;
     Location key_at;
@@ -127,8 +129,8 @@ class TreeBuilder final : public YAML::EventHandler {
     if (problems_.full()) throw Abandoned{};
   }
 
-  /// Counts a node and refuses its tag and anchor. Must be called for each node. Returns the location of the
-  /// node.
+  /// Counts a node and refuses its tag and anchor. Every event that begins a node must call this function.
+  /// Returns the location of the node.
   Location begin(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
     const Location at = location_of(mark);
     last_at_ = at;
@@ -137,8 +139,8 @@ class TreeBuilder final : public YAML::EventHandler {
       throw Abandoned{};
     }
     if (anchor != 0) refuse(at, "an anchor (`&name`) is not accepted here", "remove it");
-    // The parser reports the tag "?" for a plain node and "!" for a quoted one. A `!` in the text is also
-    // reported as "!".
+    // The parser reports the tag "?" for a plain node and "!" for a quoted node. It reports "!" also for a
+    // node with a `!` in the text, so the text decides.
     const auto position = static_cast<std::size_t>(std::max(mark.pos, 0));
     const bool written = position < document_.text.size() && document_.text[position] == '!';
     if ((!tag.empty() && tag != "?" && tag != "!") || (tag == "!" && written)) {
@@ -148,7 +150,7 @@ class TreeBuilder final : public YAML::EventHandler {
   }
 
   /// Returns false if a quoted text starts at `mark` and is not closed before the end of the file. The parser
-  /// accepts such a text after a line break.
+  /// does not report such a text as an error if it contains a line break.
   [[nodiscard]] bool is_closed(const YAML::Mark& mark) const {
     const std::string& text = document_.text;
     auto position = static_cast<std::size_t>(std::max(mark.pos, 0));
@@ -165,7 +167,7 @@ class TreeBuilder final : public YAML::EventHandler {
     return false;
   }
 
-  /// Returns the location of a missing value: the end of the text before it. The parser would report the
+  /// Returns the location of a missing value: the end of the text before this value. The parser reports the
   /// location of the next token, which may be several lines below.
   [[nodiscard]] Location empty_value_at(const YAML::Mark& mark) const {
     const std::string& text = document_.text;
@@ -254,7 +256,8 @@ class TreeBuilder final : public YAML::EventHandler {
   Location last_at_;
 };
 
-/// Returns the location in the error, or the last location of the parser if the error has none.
+/// Returns the location that the error contains. If the error contains none, returns the last location that
+/// the parser reached.
 Location place_of(const YAML::ParserException& error, const TreeBuilder& builder) {
   return error.mark.is_null() ? builder.last_at() : location_of(error.mark);
 }
@@ -301,8 +304,8 @@ Document parse_file(const std::string& path, Problems& problems, const Bounds& b
   document.file = path;
   document.complete = false;
   const auto file = open_regular(path);
-  // One byte more than allowed is read. If the file is too large, check_text() detects this without the rest
-  // of the file.
+  // Reads one byte more than allowed. If the file is too large, check_text() detects it by this byte, so the
+  // rest of the file need not be read.
   auto text = file ? read_start(*file, bounds.bytes + 1) : tl::unexpected(file.error());
   if (!text) {
     problems.add({path, {}, {}, "the file cannot be read: " + text.error(), {}});

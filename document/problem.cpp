@@ -12,7 +12,8 @@ namespace {
 // Length above which a line is shown only around the column [bytes].
 constexpr std::size_t line_bytes = 100;
 
-/// The part of `line` to show: all of it, or a window around `column` (from 0) at boundaries of characters.
+/// The part of `line` to show: the whole line, or a window around `column` (from 0). The window begins and
+/// ends between two characters.
 struct Window {
   std::size_t begin;
   std::size_t end;
@@ -26,7 +27,8 @@ Window window_of(std::string_view line, std::size_t column) {
   std::size_t begin = column < line_bytes / 2 ? 0 : std::min(column, line.size()) - line_bytes / 2;
   begin = std::min(begin, line.size() - line_bytes);
   std::size_t end = begin + line_bytes;
-  // A text that is not UTF-8 has no boundaries of characters, so the window moves by at most three bytes.
+  // Each end of the window moves to the start of the next character. The move is limited to three bytes,
+  // because a text that is not UTF-8 may have no such start.
   for (int i = 0; i < 3 && inside_character(begin); ++i) ++begin;
   for (int i = 0; i < 3 && inside_character(end); ++i) ++end;
   return {begin, end};
@@ -138,8 +140,8 @@ std::string Problems::format() const {
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
-  // A third of the letters may differ, and at least one letter. With more differences, a typing error is
-  // improbable.
+  // At most a third of the letters may differ, but one different letter is always accepted. With more
+  // different letters, a typing error is improbable.
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t longer = std::max(word.size(), candidate.size());

@@ -29,8 +29,8 @@ struct Problem {
 };
 
 /// All problems of one or several documents, in the order in which they were found. A document with an error
-/// is refused. A document that has only warnings is accepted, and the warnings are shown. The first `most`
-/// errors and the first `most` warnings are stored. Further ones are only counted.
+/// is refused. A document that has only warnings is accepted, and its warnings are shown. The first `most`
+/// errors and the first `most` warnings are stored. All further errors and warnings are only counted.
 class Problems {
  public:
   static constexpr std::size_t most = 200;
@@ -38,21 +38,22 @@ class Problems {
   void add(Problem problem);
   void warn(Problem problem);
 
-  /// These two functions consider errors only, including errors that are not stored.
+  /// empty() and size() consider errors only, including errors that were counted but not stored.
   [[nodiscard]] bool empty() const noexcept { return error_count_ == 0; }
   [[nodiscard]] std::size_t size() const noexcept { return error_count_; }
-  /// Returns true if no further error will be stored, so that a further search is useless.
+  /// Returns true if no further error will be stored, so that a further check of the document is useless.
   [[nodiscard]] bool full() const noexcept { return error_count_ >= most; }
   [[nodiscard]] const std::vector<Problem>& list() const noexcept { return errors_; }
   [[nodiscard]] const std::vector<Problem>& warnings() const noexcept { return warnings_; }
 
   /// Returns a block of lines for each problem: `file:line:col: message` (`file:line:col: warning: message`),
   /// the text of the line, a caret under the column, and the hint. Files are in the order of their first
-  /// problem, and the problems of a file are in the order of their lines. The text ends with a line break
-  /// unless it is empty.
+  /// problem, and the problems of a file are in the order of their lines. The text is empty or ends with a
+  /// line break.
   [[nodiscard]] std::string format() const;
 
-  /// Returns the problems without repetitions. Problems repeat if a file was read more than once.
+  /// Returns the problems without repetitions. The same problem occurs twice if a file was read more than
+  /// once.
   [[nodiscard]] Problems without_repeats() const;
 
  private:
@@ -62,13 +63,14 @@ class Problems {
   std::size_t warning_count_ = 0;
 };
 
-/// Returns the candidate with the smallest edit distance to `word`, or an empty text if none is similar.
+/// Returns the candidate with the smallest edit distance to `word`, or an empty text if no candidate is
+/// similar to `word`.
 [[nodiscard]] std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 /// Returns `text` in a form that is safe for a terminal. Control characters and bytes that are not UTF-8
 /// become \n, \t or \xNN. If `text` is longer than `most` bytes, "..." replaces the rest.
 [[nodiscard]] std::string shown(std::string_view text, std::size_t most = 60);
-/// Returns a name or a value in backticks, as messages show it.
+/// Returns a name or a value in backticks for a message.
 [[nodiscard]] std::string in_backticks(std::string_view word);
 
 }  // namespace softgrip::document

@@ -19,14 +19,15 @@ struct Range {
   double upper = std::numeric_limits<double>::max();
 };
 
-/// Reads one map. Each getter marks its key as known. finish() reports all other keys as unknown, with the
-/// most similar known key. It recognises a known key without its unit (`delay` for `delay_s`) or with another
-/// unit (`delay_ms`). It also reports a missing key, unless an unknown key explains why it is missing.
-/// Getters do not throw. They add a problem and return a harmless value, so that all errors of a document are
-/// found together.
+/// Reads one map. Each getter marks its key as known. finish() reports all other keys as unknown, together
+/// with the most similar known key. This known key may be the unknown key with a unit (`delay_s` for `delay`)
+/// or with another unit (`delay_s` for `delay_ms`). finish() also reports a missing key, unless an unknown
+/// key explains why it is missing. Getters do not throw. They add a problem and return a harmless value, so
+/// that all errors of a document are found together.
 class MapReader {
  public:
-  /// `what` is the name of the map in messages ("channel 'left'"). A node that is not a map is reported once.
+  /// `what` is the name of the map in messages ("channel 'left'"). If the node is not a map, exactly one
+  /// problem is reported.
   MapReader(const Document& document, const Node& node, Problems& problems, std::string what);
   MapReader(const MapReader&) = delete;
   MapReader& operator=(const MapReader&) = delete;
@@ -35,10 +36,12 @@ class MapReader {
   /// Calls finish() if the caller has not called it.
   ~MapReader();
 
-  /// Reads a required number in `range`. If it is missing, not a number, not finite or out of range, adds a
-  /// problem and returns the nearest allowed value (or 0 limited to the range).
+  /// Reads a required number in `range`. If the number is missing, not finite or out of range, or if the
+  /// value is not a number, adds a problem. In these cases, returns the nearest allowed value (or 0 limited
+  /// to the range).
   double number(std::string_view key, Range range);
-  /// Reads a number in `range` under a key that may be absent. A wrong value is reported as for number().
+  /// Reads a number in `range` under a key that may be absent. number() describes the result for a wrong
+  /// value.
   std::optional<double> optional_number(std::string_view key, Range range);
   /// Reads a required whole number in [lower, upper].
   std::int64_t integer(std::string_view key, std::int64_t lower, std::int64_t upper);
@@ -63,7 +66,7 @@ class MapReader {
   std::vector<double> numbers(std::string_view key, std::size_t count, Range range);
   std::optional<std::vector<double>> optional_numbers(std::string_view key, std::size_t count, Range range);
 
-  /// Returns true if the map contains the key. Does not count as reading it.
+  /// Returns true if the map contains the key. The call does not mark the key as known.
   [[nodiscard]] bool has(std::string_view key) const;
   /// Returns true if the map contains the key and its getter found no problem. Use it before a check that
   /// combines the values of several keys.
@@ -76,7 +79,8 @@ class MapReader {
   void report(std::string_view key, std::string message, std::string hint = {});
   /// Reports a warning about the value of a key: the value is permitted but probably not meant.
   void warn(std::string_view key, std::string message, std::string hint = {});
-  /// Reports keys that were not read and required keys that are missing. No getter may be called after it.
+  /// Reports keys that were not read and required keys that are missing. No getter may be called after
+  /// finish().
   void finish();
 
  private:

@@ -16,7 +16,7 @@ std::string opened(const Node* open) {
   return " that starts at " + std::to_string(open->at.line) + ":" + std::to_string(open->at.column);
 }
 
-/// Returns true if a colon in `line` has no space after it, as in `rate_hz:200`.
+/// Returns true if a space is missing after a colon in `line`, as in `rate_hz:200`.
 bool has_glued_colon(std::string_view line) {
   for (std::size_t i = 1; i + 1 < line.size(); ++i) {
     if (line[i] != ':' || std::isspace(static_cast<unsigned char>(line[i + 1])) != 0) continue;
@@ -40,8 +40,8 @@ SyntaxMessage misplaced(const Document& document, const Node* open, Location at,
   return result;
 }
 
-/// Returns a message if a key does not start in the same column as the other keys of its map; otherwise
-/// nothing.
+/// Returns a message if the key at `at` does not start in the same column as the other keys of its map;
+/// otherwise nothing.
 std::optional<SyntaxMessage> misaligned(const Document& document, const Node* open, Location at) {
   if (open == nullptr || open->kind != Node::Kind::map || at.line <= open->at.line) return std::nullopt;
   const std::string_view first = line_of(document.text, open->at.line);
@@ -58,8 +58,8 @@ std::string place(Location at) {
   return std::to_string(at.line) + ":" + std::to_string(at.column);
 }
 
-/// Returns the message for a closing bracket that does not match the opening bracket, or that has no opening
-/// bracket.
+/// Returns the message for a closing bracket that has no opening bracket, or whose opening bracket is of the
+/// other type.
 SyntaxMessage wrong_end(const Document& document, Location at) {
   const std::vector<Bracket> open = open_brackets(document.text, at);
   if (open.empty()) return {"this closing bracket has no opening bracket", ""};
@@ -144,7 +144,7 @@ SyntaxMessage translated(const Document& document, std::string_view said, const 
 
 SyntaxMessage syntax_message(const Document& document, std::string_view said, const Node* open, Location at) {
   SyntaxMessage result = translated(document, said, open, at);
-  // The parser often reports a missing closing bracket several lines below, as another error.
+  // If a closing bracket is missing, the parser often reports a different error several lines below.
   const std::vector<Bracket> brackets = open_brackets(document.text, at);
   if (!result.hint.empty() || brackets.empty()) return result;
   if (result.message.find(" is not closed") != std::string::npos) return result;

@@ -1,5 +1,5 @@
 #pragma once
-// Explains the syntax errors that the YAML parser finds.
+// Explains the syntax errors that the YAML parser reports.
 
 #include <string>
 #include <string_view>
@@ -14,7 +14,7 @@ struct SyntaxMessage {
 };
 
 /// Returns the message and the hint for a syntax error.
-/// @param said  the parser's own message
+/// @param said  the message of the parser
 /// @param open  the innermost map or sequence that is not complete, or nullptr
 /// @param at    where the parser stopped
 [[nodiscard]] SyntaxMessage syntax_message(const Document& document, std::string_view said, const Node* open,

@@ -9,7 +9,7 @@ namespace softgrip::document {
 
 namespace {
 
-/// The first location of one kind of problem, and the number of occurrences.
+/// The first location of one kind of problem, and the number of its occurrences.
 struct Trouble {
   std::optional<Location> first;
   std::string what;
@@ -68,7 +68,8 @@ void for_each_line(std::string_view text, See&& see) {
   }
 }
 
-/// Finds a directive, such as `%YAML 1.2`. Directives precede the document.
+/// Returns the location of a directive, such as `%YAML 1.2`; nothing if there is none. Directives precede the
+/// document.
 std::optional<Location> find_directive(std::string_view text) {
   std::optional<Location> found;
   for_each_line(text, [&](std::string_view line, int number) {
