@@ -22,15 +22,15 @@ namespace py = pybind11;
 namespace softgrip::python {
 namespace {
 
-/// pressure_min, pressure_max, slew_up, slew_down, displacement_min, displacement_max, rest
+/// Limits as (pressure_min, pressure_max, slew_up, slew_down, displacement_min, displacement_max, rest).
 using LimitsTuple = std::tuple<double, double, double, double, double, double, double>;
-/// kp, ki, kd, derivative_filter, setpoint_weight, anti_windup, tracking_time
+/// PID settings as (kp, ki, kd, derivative_filter, setpoint_weight, anti_windup, tracking_time).
 using PidTuple = std::tuple<double, double, double, double, double, std::string, double>;
-/// displacement, pressure, temperature, sampled_at, sequence, validity
+/// A reading as (displacement, pressure, temperature, sampled_at, sequence, validity).
 using ReadingTuple = std::tuple<double, double, double, double, std::uint32_t, std::string>;
-/// position, yielding
+/// An object in the grip as (position, yielding).
 using ObjectTuple = std::pair<double, double>;
-/// model, object, noise, pressure_min, pressure_max, seed
+/// A simulated finger as (model, object, noise, pressure_min, pressure_max, seed).
 using FingerTuple = std::tuple<Model, std::optional<ObjectTuple>, double, double, double, std::uint64_t>;
 
 constexpr std::pair<const char*, Validity> validities[] = {{"valid", Validity::valid},
@@ -92,7 +92,7 @@ py::tuple limited(const LimitsTuple& limits, double wanted_kpa, double last_kpa,
   return py::make_tuple(command.command_kpa, command.saturated, command.slewing, command.invalid);
 }
 
-/// Reasons for which a segment is not appended.
+/// Raises InvalidArgument with the possible reasons if the reference did not append a segment.
 void require_appended(bool appended, const Reference& reference) {
   if (!appended)
     throw InvalidArgument("segment",
@@ -135,7 +135,7 @@ std::unique_ptr<SimulatedBoard> board_of(const std::vector<FingerTuple>& fingers
   return std::make_unique<SimulatedBoard>(std::move(all), tick_s);
 }
 
-/// The readings of an exchange. Without success, the word of its status and its reason.
+/// Returns the readings of an exchange. If the exchange fails, returns the name of its status and the reason.
 py::tuple exchanged(SimulatedBoard& board, const std::vector<double>& commands_kpa, double deadline_s) {
   if (commands_kpa.size() != board.channels())
     throw InvalidArgument("commands", std::to_string(commands_kpa.size()) + " values, but there are " +

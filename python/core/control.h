@@ -1,11 +1,12 @@
 #pragma once
-// softgrip._core: limits, PID, controller and simulated board.
+// Binds limits, PID, controller and simulated board to the Python module softgrip._core.
 
 #include <pybind11/pybind11.h>
 
 namespace softgrip::python {
 
-/// Adds the classes to the module. Their functions take microseconds and keep the GIL.
+/// Adds the classes to the module. Their functions need microseconds, so they keep the global interpreter
+/// lock (GIL).
 void add_control(pybind11::module_& module);
 
 }  // namespace softgrip::python

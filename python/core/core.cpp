@@ -1,5 +1,6 @@
-// softgrip._core: the functions of the library for the Python package, with NumPy arrays. The package checks
-// the types of arguments and converts the results to typed objects (python/softgrip/models.py).
+// Binds the functions of the C++ library, with NumPy arrays, to the Python module softgrip._core. The Python
+// package checks the types of arguments and converts the results to typed objects
+// (python/softgrip/models.py).
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -18,7 +19,7 @@ namespace {
 
 using Array = py::array_t<double, py::array::c_style>;
 
-/// The values of an array, which must live as long as the result.
+/// Returns a view of the values of an array. The array must exist as long as the view is used.
 std::span<const double> span_of(const Array& array) {
   return {array.data(), static_cast<std::size_t>(array.size())};
 }
@@ -27,7 +28,7 @@ std::vector<double> vector_of(const Array& array) {
   return {array.data(), array.data() + array.size()};
 }
 
-/// An array that owns the values: nothing is copied.
+/// Returns a NumPy array that takes over the values without a copy.
 template <class Value>
 py::array_t<Value> array_of(std::vector<Value> values) {
   auto owner = std::make_unique<std::vector<Value>>(std::move(values));
@@ -93,7 +94,7 @@ py::object interval_of(const std::optional<Interval>& interval) {
   return py::make_tuple(interval->lower, interval->upper);
 }
 
-/// Keyword arguments of softgrip.Estimate.
+/// Returns the keyword arguments of the Python class softgrip.Estimate for each estimate.
 py::list dicts_of(const std::vector<Estimate>& estimates) {
   py::list all;
   for (const Estimate& one : estimates) {
@@ -109,7 +110,7 @@ py::list dicts_of(const std::vector<Estimate>& estimates) {
   return all;
 }
 
-/// Keyword arguments of softgrip.Prediction.
+/// Returns the keyword arguments of the Python class softgrip.Prediction for each prediction.
 py::list dicts_of(std::vector<Prediction> predictions) {
   py::list all;
   for (Prediction& one : predictions) {
@@ -128,7 +129,7 @@ py::list dicts_of(std::vector<Prediction> predictions) {
   return all;
 }
 
-/// Keyword arguments of softgrip.Cause.
+/// Returns the keyword arguments of the Python class softgrip.Cause for each cause.
 py::list dicts_of(const std::vector<Cause>& causes) {
   py::list all;
   for (const Cause& one : causes) {
@@ -302,7 +303,7 @@ py::object optional_of(const std::optional<Value>& value) {
   return value ? py::cast(*value) : py::none();
 }
 
-/// Keyword arguments of softgrip.FingerHealth.
+/// Returns the keyword arguments of the Python class softgrip.FingerHealth.
 py::dict dict_of(FingerHealth finger) {
   py::list indicators, alarms, suspects;
   for (HealthIndicator& one : finger.indicators) {
@@ -370,7 +371,7 @@ py::dict judged(const std::vector<std::string>& recordings, const std::string& b
   return dict;
 }
 
-/// Raises an exception of softgrip.errors.
+/// Raises the exception of softgrip.errors that has this name.
 void raise(const char* name, const py::tuple& arguments) {
   const py::object type = py::module_::import("softgrip.errors").attr(name);
   PyErr_SetObject(type.ptr(), type(*arguments).ptr());

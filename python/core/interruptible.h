@@ -1,6 +1,6 @@
 #pragma once
-// Runs a long computation that Python can watch and stop. Progress goes to a callback, and a signal such as
-// Ctrl-C stops the computation.
+// Runs a long computation for Python. A Python callback receives its progress, and a signal such as Ctrl-C
+// stops it.
 
 #include <pybind11/pybind11.h>
 
@@ -20,7 +20,8 @@ namespace softgrip::python {
 /// Time between two checks for signals.
 inline constexpr std::chrono::milliseconds signal_check{50};
 
-/// Calls a Python function from any thread. An exception of the function is stored and stops the computation.
+/// Calls a Python function from any thread. If the function raises an exception, stores the exception and
+/// stops the computation.
 class Callback {
  public:
   Callback(pybind11::object function, std::stop_source stop)
@@ -36,7 +37,8 @@ class Callback {
       stop_.request_stop();
     }
   }
-  /// Throws the exception of the function, if there was one. The caller must hold the GIL.
+  /// Throws the stored exception of the Python function, if there is one. The caller must hold the global
+  /// interpreter lock (GIL).
   void rethrow() {
     if (failure_) throw pybind11::error_already_set(*failure_);
   }
@@ -47,10 +49,11 @@ class Callback {
   std::unique_ptr<pybind11::error_already_set> failure_;
 };
 
-/// Returns work(), which runs in a separate thread without the GIL. Meanwhile this thread checks for signals:
-/// if Python's handler raises (Ctrl-C), the work is stopped and the exception is passed on.
+/// Runs work() in a separate thread without the global interpreter lock (GIL) and returns its result. During
+/// this time, the calling thread checks for signals. If Python's signal handler raises an exception (Ctrl-C),
+/// the work is stopped and the exception is thrown here.
 /// @param progress  a Python function, or None
-/// @param options   its `progress` and `stop` are set before work() begins
+/// @param options   options of work(); this function sets their `progress` and `stop`
 template <class Options, class Work>
 auto interruptible(const pybind11::object& progress, Options& options, Work work) {
   using Result = decltype(work());

@@ -1,5 +1,5 @@
 #pragma once
-// Words of arguments, as the package has them.
+// Converts the text values of Python arguments to C++ enumerations.
 
 #include <initializer_list>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace softgrip::python {
 
-/// One of a few words of an argument.
+/// Returns the enumeration value for a text argument that permits only a few words.
 template <class Value>
 Value chosen(const char* argument, const std::string& word,
              std::initializer_list<std::pair<const char*, Value>> words) {

@@ -1,4 +1,4 @@
-"""Holds a part, and watches the events at the same time for its loss.
+"""Holds a part, and at the same time watches the daemon's events for the loss of the part.
 
     guard_grip.py [SOCKET] [--sequence pick_stone] [--for-s 2]
 """
@@ -23,7 +23,7 @@ async def grip(path: Optional[str], sequence: str, hold_s: float) -> int:
             await gripper.start(sequence)
             await gripper.wait_until(softgrip.Result.HOLDING, timeout_s=60)
             try:
-                # The loss of the part during this time ends the wait at once.
+                # If the part is lost during this time, the wait ends at once.
                 await gripper.wait_until(softgrip.Result.PART_LOST, timeout_s=hold_s)
                 print("the part is lost")
                 return 1

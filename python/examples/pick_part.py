@@ -1,4 +1,4 @@
-"""A robot program: checks a grip, grips, carries the part away and releases it. It handles a failed grip.
+"""Shows a robot program: it checks a grip, grips, carries the part away and releases it. It handles a failed grip.
 
     pick_part.py [SOCKET] [--sequence hand_over] [--squeeze-kpa 4]
 """
@@ -10,7 +10,7 @@ import softgrip
 
 
 def carry_away() -> None:
-    """Moves the robot. A placeholder in this example."""
+    """Moves the robot. This example contains only a placeholder."""
 
 
 def main() -> int:
@@ -20,7 +20,7 @@ def main() -> int:
     parser.add_argument("--squeeze-kpa", type=float, default=4.0)
     arguments = parser.parse_args()
 
-    # Leaving the block stops the sequences that it started and that may still run, also after an exception.
+    # At the end of the block, also after an exception, the sequences that it started are stopped if they may still run.
     with softgrip.Gripper(arguments.socket, name="pick_part") as gripper:
         gripper.check(arguments.sequence, squeeze_kpa=arguments.squeeze_kpa)
         gripper.start(arguments.sequence, squeeze_kpa=arguments.squeeze_kpa)

@@ -1,4 +1,5 @@
-"""Prints for each finger of a recorded run: largest pressure, largest displacement, and holding time of its grip.
+"""Prints for each finger of a recording: the largest pressure, the largest displacement, and the time for which it held its
+part.
 
     read_recording.py RECORDING
 """

@@ -1,8 +1,10 @@
-"""Client of softgripd, the controller of soft pneumatic grippers; also reads its files and computes models.
+"""Client of softgripd, the controller of soft pneumatic grippers. The package also reads files of softgrip and computes
+models.
 
-`Gripper` blocks, and `AsyncGripper` is for asyncio. Both use version 1 of the daemon's socket API and need only Python.
+The methods of `Gripper` block; `AsyncGripper` is for asyncio. Both use version 1 of the daemon's socket API and need only
+Python.
 `Recording` and the `read_*` functions need NumPy. Models, logs, `identify()`, `validate()`, `diagnose()`, `health()`, the
-controller and the simulated board need NumPy and the shared library. They are loaded at their first use.
+controller and the simulated board need NumPy and the shared library. NumPy and the library are loaded at their first use.
 """
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
     from .results import (Cause, Change, Diagnosis, Estimate, FingerHealth, Health, HealthAlarm, HealthIndicator,
                           Identification, Prediction, Suspect, Validation)
 
-# Names that are loaded at their first use: the module of each, and its name in this module.
+# Names that are loaded at their first use: the module that defines each name, and the name in that module.
 _ON_USE = {name: ("analysis", name) for name in ("diagnose", "health", "identify", "validate")}
 _ON_USE |= {name: ("control", name) for name in
             ("Board", "ControlOutput", "Controller", "LimitedCommand", "Limits", "Pid", "PidSettings", "Reading", "Reference",

@@ -1,4 +1,4 @@
-"""Checks of arguments that are texts and paths; needs nothing but Python."""
+"""Checks arguments that are texts and paths. The module needs only Python."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def text_of(argument: str, value: object) -> str:
 
 
 def file_path_of(argument: str, value: Path) -> str:
-    """A path that the system accepts, whatever its encoding."""
+    """Returns the path as a text that the system accepts, also if the path is not valid UTF-8."""
     try:
         path = os.fspath(value)
         if isinstance(path, str) and b"\0" not in os.fsencode(path):
@@ -33,12 +33,12 @@ def file_path_of(argument: str, value: Path) -> str:
 
 
 def path_of(argument: str, value: Path) -> str:
-    """A path in UTF-8, which the library requires for its messages."""
+    """Returns the path as a text in UTF-8, which the library requires for its messages."""
     return text_of(argument, file_path_of(argument, value))
 
 
 def texts_of(argument: str, value: Optional[Mapping[str, str]]) -> dict[str, str]:
-    """A copy of a mapping of texts; None is an empty one."""
+    """Returns a copy of a mapping of texts; an empty mapping for None."""
     if value is None:
         return {}
     if not isinstance(value, Mapping):

@@ -16,12 +16,12 @@ from .wire import Wire
 class Gripper:
     """A connection to softgripd.
 
-    `path`: socket of the daemon, by default $SOFTGRIP_SOCKET or that of the packaged service. `name`: name of this
-    client in the daemon's events. A client with a name owns the sequences that it starts: other clients may then only
-    stop and vent. `answer_s`: longest time of a reply [s]. Threads must not share an object.
+    `path`: socket of the daemon; the default is $SOFTGRIP_SOCKET or the socket of the packaged service. `name`: name of this
+    client in the daemon's events. A client with a name owns the sequences that it starts: other clients may then only stop
+    the sequence or vent. `answer_s`: longest time of a reply [s]. Threads must not share an object.
 
-    As a context manager, it stops on exit the sequences that it has started and that may still run, and no others.
-    Raises StopNotConfirmed if the daemon does not confirm this within `answer_s`.
+    At the end of a `with` block, the object stops the sequences that it has started and that may still run, and no other
+    sequences. Raises StopNotConfirmed if the daemon does not confirm the stop within `answer_s`.
     """
 
     def __init__(self, path: Optional[str] = None, *, name: str, answer_s: float = 5.0) -> None:
@@ -43,16 +43,16 @@ class Gripper:
             self.close()
 
     def close(self) -> None:
-        """Ends the connection. A running sequence continues without an owner. Leaving the block then does not stop
-        it."""
+        """Ends the connection. A running sequence continues and has no owner. At its end, the `with` block then does not
+        stop the sequence."""
         self._session.starts.clear()
         if self._wire:
             self._wire.close()
         self._wire = None
 
     def reconnect(self) -> Hello:
-        """Connects again after a ConnectionLost. It returns every event that the daemon still stores. If another daemon
-        runs, the last grip counts as ended by a fault."""
+        """Connects to the daemon after a ConnectionLost. Afterwards, `events()` returns the missed events that the daemon
+        still stores. If the daemon was restarted, the last grip counts as ended by a fault."""
         if self._wire:
             self._wire.close()
         self.hello = self._open()
@@ -62,37 +62,39 @@ class Gripper:
         return Status.of(self.ask("status"), "status")
 
     def sequences(self) -> tuple[Sequence, ...]:
-        """The sequences that the daemon can start by name."""
+        """Returns the sequences that the daemon can start by name."""
         return Listing.of(self.ask("sequences"), "sequences").sequences
 
     def start(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Grip:
-        """Starts a sequence by its name, or the given `text` of a sequence. `parameters`: `squeeze_kpa=4`."""
+        """Starts a sequence by its name, or the sequence in `text`. Further keywords are parameters of the sequence:
+        `squeeze_kpa=4`."""
         return Grip.of(self.ask("start", **start_keys(sequence, text, parameters)), "start")
 
     def check(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Checked:
-        """Makes all checks of a start without motion. Raises the same exceptions as a start."""
+        """Makes all checks of `start()`, but moves nothing. Raises the same exceptions as `start()`."""
         return Checked.of(self.ask("start", dry_run=True, **start_keys(sequence, text, parameters)), "start")
 
     def stop(self) -> None:
-        """Stops the sequence with the rig file's safe action of its phase."""
+        """Stops the sequence. The channels take the safe action that the rig file gives for the sequence's phase."""
         self.ask("stop")
 
     def vent(self) -> None:
-        """Vents all channels. The daemon never refuses this to a client that may operate."""
+        """Vents all channels. The daemon never refuses this request to a client that may operate the rig."""
         self.ask("vent")
 
     def release(self) -> None:
-        """Continues with the sequence's release step, or vents fingers that are still under pressure."""
+        """Continues with the release step of the sequence. Without a running sequence, vents the fingers that are still
+        under pressure."""
         self.ask("release")
 
     def acknowledge(self) -> None:
-        """Resets the latched fault if its cause is gone. Nothing moves."""
+        """Resets the latched fault if its cause no longer exists. Nothing moves."""
         self.ask("acknowledge")
 
     def wait_until(self, *wanted: Result, timeout_s: float) -> Result:
-        """Waits until the overall result since the last start is one of `wanted`, and returns it. Each result counts
-        once, also one before this call. Raises GripFailed if the result is NO PART, PART LOST or ERROR instead, or if
-        the sequence ends."""
+        """Waits until the overall result of the last start is one of `wanted`, and returns this result. A call uses up the
+        results that it checks, including results from before the call. Raises GripFailed if the result is NO PART, PART LOST
+        or ERROR and not `wanted`, or if the sequence ends."""
         end = time.monotonic() + timeout_s
         while True:
             result = self._session.reached(frozenset(wanted))
@@ -110,7 +112,7 @@ class Gripper:
             self._connected().read(self._session, end)
 
     def events(self, *, timeout_s: float) -> Iterator[Event]:
-        """Yields all events in order. Ends if there is no event for `timeout_s`."""
+        """Yields all events in order. The iteration ends if there is no event for `timeout_s` seconds."""
         while True:
             end = time.monotonic() + timeout_s
             try:
@@ -142,9 +144,9 @@ class Gripper:
         return self._wire
 
     def _stop_own(self) -> None:
-        """Stops the starts of this client without a query before it: a daemon that is silent now receives the stop
-        later. The stop names the start, so it ends no other sequence, and a start that the daemon has not received yet
-        does not begin."""
+        """Stops the sequences that this client started. Sends the stop without another request before it, so that a daemon
+        that does not respond now receives the stop later. The stop names the start. Therefore it ends no other sequence, and
+        prevents a start that the daemon has not received yet."""
         end = time.monotonic() + self.answer_s
         failure: Optional[SoftgripError] = None
         for start_id in tuple(self._session.starts):
@@ -159,7 +161,8 @@ class Gripper:
         try:
             self._ask_stop(self._connected(), self._session, start_id, end)
         except (ConnectionLost, ProtocolError):
-            # The connection was lost, or an exception interrupted a request in the middle of its line.
+            # The connection was lost, or an exception interrupted this client before it had sent the whole line of a
+            # request.
             wire = Wire(self.path, end)
             try:
                 self._ask_stop(wire, Session(), start_id, end)

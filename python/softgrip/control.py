@@ -1,6 +1,6 @@
-"""Limits, PID, controller and boards. They are those of the daemon, for one finger at a time.
+"""Limits, PID, controller and boards. The computations are those of the daemon, for one finger at a time.
 
-Times are in s, pressures in kPa, displacements in the unit of the model. An object belongs to one thread at a time.
+Times are in s, pressures in kPa, displacements in the unit of the model. Only one thread at a time may use an object.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ def _instance(argument: str, value: Any, kind: type) -> Any:
 
 @dataclasses.dataclass(frozen=True)
 class Limits:
-    """Limits of one finger: pressures [kPa], slew rates [kPa/s], displacements in the unit of the model. `rest` is the command
-    at rest [kPa]."""
+    """Limits of one finger: pressures [kPa], slew rates [kPa/s], displacements in the unit of the model. `rest` is the
+    command while the finger rests [kPa]."""
 
     pressure_min: float = 0
     pressure_max: float = 0
@@ -63,18 +63,19 @@ class Limits:
 
 @dataclasses.dataclass(frozen=True)
 class LimitedCommand:
-    """A command [kPa] within the limits, and the reasons for which it differs from the request."""
+    """A command [kPa] within the limits, and the reasons if the command differs from the request."""
 
     command: float
     saturated: bool  # the request is outside the pressure range
-    slewing: bool  # the request is further away than the slew limits allow
-    invalid: bool  # the request is not a number; the last command is held
+    slewing: bool  # the slew limits do not allow the request yet
+    invalid: bool  # the request is not a number, so the command is the last command
 
 
 def limit(limits: Limits, wanted: float, last: float, elapsed: float) -> LimitedCommand:
-    """The command for a request.
+    """Returns the command for a request.
 
-    wanted: the request [kPa]; NaN holds the last command. last: last command [kPa]. elapsed: time since the last command [s].
+    wanted: the request [kPa]; if it is NaN, the last command is held. last: the last command [kPa]. elapsed: time since the
+    last command [s].
 
     >>> limit(Limits(pressure_max=60, slew_up=100), wanted=50, last=0, elapsed=0.1)
     LimitedCommand(command=10.0, saturated=False, slewing=True, invalid=False)
@@ -88,10 +89,10 @@ def limit(limits: Limits, wanted: float, last: float, elapsed: float) -> Limited
 
 @dataclasses.dataclass(frozen=True)
 class PidSettings:
-    """Gains of a PID: kp [kPa per unit], ki [kPa per unit and s], kd [kPa s per unit].
+    """Gains of a PID controller: kp [kPa per unit of the model], ki [kPa per unit and s], kd [kPa s per unit].
 
     derivative_filter: time constant [s]. setpoint_weight: share of the reference in the proportional part, 0 to 1. anti_windup:
-    "back_calculation" (within tracking_time [s]), "conditional" or "none".
+    "back_calculation" (with the time constant tracking_time [s]), "conditional" or "none".
     """
 
     kp: float = 0
@@ -109,7 +110,8 @@ class PidSettings:
 
 
 class Pid:
-    """PID with two degrees of freedom. In a period: `step()`, `limit()` of the sum with the feedforward, `sent()`.
+    """A PID controller with two degrees of freedom. Each period calls `step()`, then `limit()` for the sum of feedback and
+    feedforward, then `sent()`.
 
     >>> pid = Pid(PidSettings(kp=2), tick=0.01)
     >>> pid.step(reference=5, measurement=4)
@@ -121,25 +123,25 @@ class Pid:
         self._core = _core.Pid(_instance("settings", settings, PidSettings)._values(), _number("tick", tick, "s"))
 
     def align(self, command: float) -> None:
-        """Makes the next `step()` continue at a command [kPa]."""
+        """Sets the integrator so that the next `step()` continues at a command [kPa]."""
         self._core.align(_finite("command", command, "kPa"))
 
     def step(self, reference: float, measurement: float, feedforward: float = 0) -> float:
-        """The feedback [kPa]. The request is the sum of it and the feedforward [kPa]."""
+        """Returns the feedback [kPa]. The requested pressure is the sum of the feedback and the `feedforward` [kPa]."""
         return self._core.step(_finite("reference", reference), _finite("measurement", measurement),
                                _finite("feedforward", feedforward, "kPa"))
 
     def hold(self, feedforward: float = 0) -> float:
-        """The feedback [kPa] of a period without a usable measurement: integrator and derivative pause."""
+        """Returns the feedback [kPa] for a period without a usable measurement. Integrator and derivative do not change."""
         return self._core.hold(_finite("feedforward", feedforward, "kPa"))
 
     def sent(self, command: float) -> None:
-        """Reports the command [kPa] that was sent after the limits, for the anti-windup."""
+        """Reports the command [kPa] that was sent after the limits. The anti-windup uses it."""
         self._core.sent(_finite("command", command, "kPa"))
 
 
 class Reference:
-    """A reference that is known in advance: up to 8 segments with continuous value, rate and acceleration.
+    """A reference that is known in advance. It has up to 8 segments; value, rate and acceleration are continuous.
 
     >>> reference = Reference(0).ramp_to(6, duration=2).hold_for(1)
     >>> reference.at(1), reference.end
@@ -147,41 +149,42 @@ class Reference:
     """
 
     def __init__(self, value: float = 0, *, start: float = 0) -> None:
-        """Holds a value from the time `start` [s] on."""
+        """Creates a reference that holds a value from the time `start` [s] on."""
         self._core = _core.Reference(_finite("value", value))
         self._core.start(_finite("start", start, "s"), _finite("value", value))
 
     def ramp_to(self, value: float, duration: float) -> Reference:
-        """Appends a minimum-jerk ramp of a duration [s]."""
+        """Appends a minimum-jerk ramp to `value` with a duration [s]."""
         self._core.ramp_to(_number("value", value), _number("duration", duration, "s"))
         return self
 
     def hold_for(self, duration: float) -> Reference:
-        """Appends a hold of a duration [s]."""
+        """Appends a segment of a duration [s] that holds the last value."""
         self._core.hold_for(_number("duration", duration, "s"))
         return self
 
     def sine(self, mean: float, amplitude: float, frequency: float, cycles: float) -> Reference:
-        """Appends mean - amplitude cos(2 pi f t) at a frequency [Hz]. A ramp to mean - amplitude should precede it."""
+        """Appends mean - amplitude cos(2 pi f t) with the frequency f [Hz]. The reference should be at mean - amplitude
+        before."""
         self._core.sine(_number("mean", mean), _number("amplitude", amplitude), _number("frequency", frequency, "Hz"),
                         _number("cycles", cycles))
         return self
 
     def at(self, time: float) -> float:
-        """The value at a time [s]."""
+        """Returns the value of the reference at a time [s]."""
         return self._core.at(_finite("time", time, "s"))
 
     @property
     def end(self) -> float:
-        """The time at which the last segment ends [s]."""
+        """Returns the time at which the last segment ends [s]."""
         return self._core.end()
 
 
 @dataclasses.dataclass(frozen=True)
 class Reading:
-    """Reading of one channel. `pressure` [kPa] and `temperature` [degrees Celsius] are NaN without a sensor. `sampled_at` [s] is
-    on the clock of the program, and `sequence` counts the responses. `validity`: "valid", "none_yet", "out_of_range",
-    "sensor_error", "jumped", "frozen" or "stale"."""
+    """Reading of one channel. `pressure` [kPa] and `temperature` [degrees Celsius] are NaN without a sensor. `sampled_at` is
+    the time of the sample on the clock of the program [s]. `sequence` counts the responses of the board. `validity`:
+    "valid", "none_yet", "out_of_range", "sensor_error", "jumped", "frozen" or "stale"."""
 
     displacement: float
     pressure: float = _NAN
@@ -197,28 +200,29 @@ class Reading:
 
 
 class Board(abc.ABC):
-    """An I/O board with one output and one set of inputs per channel. Derive from it to write a driver."""
+    """An I/O board with one output and one set of inputs per channel. A driver is a class that is derived from Board."""
 
     @property
     @abc.abstractmethod
     def channels(self) -> int:
-        """The number of channels."""
+        """Returns the number of channels."""
 
     @abc.abstractmethod
     def exchange(self, commands: Sequence[float], deadline: float) -> Sequence[Reading]:
         """Writes one pressure [kPa] per channel and reads all channels, within a deadline [s]. Raises `BusError`."""
 
     def connect(self, deadline: float) -> None:
-        """Opens or reopens the session, within a deadline [s]. The outputs keep their values. Raises `BusError`."""
+        """Opens or reopens the connection, within a deadline [s]. The outputs keep their values. Raises `BusError`."""
 
     def describe(self) -> str:
-        """One line for people: product, address."""
+        """Returns one line for the user: product and address."""
         return type(self).__name__
 
 
 @dataclasses.dataclass(frozen=True)
 class SimulatedObject:
-    """An object in the way of a finger: the displacement at contact, and the share of the free motion beyond it (0: rigid)."""
+    """An object that a finger touches: the displacement at contact, and the share of the free motion that remains possible
+    after contact (0: rigid)."""
 
     position: float
     yielding: float = 0.1
@@ -229,8 +233,8 @@ class SimulatedObject:
 
 @dataclasses.dataclass(frozen=True)
 class SimulatedFinger:
-    """One channel of a `SimulatedBoard`: its model, an object in its way, the standard deviation of a reading, the range of the
-    output [kPa], and the seed of all noise."""
+    """One channel of a `SimulatedBoard`: the model of its finger, an object that the finger can touch, the standard
+    deviation of a reading, the range of the output [kPa], and the seed of all noise."""
 
     model: Model
     object: Optional[SimulatedObject] = None
@@ -250,7 +254,7 @@ def _object_values(value: Optional[SimulatedObject]) -> Optional[tuple[float, fl
 
 
 class SimulatedBoard(Board):
-    """A board in memory whose fingers are models: the simulated board of the daemon. Its clock stands still until `advance()`.
+    """A board in memory whose fingers are models: the simulated board of the daemon. Its clock changes only in `advance()`.
 
     >>> board = SimulatedBoard([SimulatedFinger(Model.load("config/models/bench_twin.yaml"))])
     >>> board.connect()
@@ -262,7 +266,7 @@ class SimulatedBoard(Board):
     """
 
     def __init__(self, fingers: Sequence[SimulatedFinger], tick: float = 0.005) -> None:
-        """fingers: one per channel, 1 to 16. tick: usual period of `exchange()` [s]."""
+        """fingers: one per channel, 1 to 16. tick: usual time between two calls of `exchange()` [s]."""
         try:
             values = [_instance("fingers", one, SimulatedFinger)._values() for one in fingers]
         except TypeError as error:
@@ -290,46 +294,48 @@ class SimulatedBoard(Board):
 
     @property
     def now(self) -> float:
-        """The time of the board's clock [s], which begins at 1 s."""
+        """Returns the time of the board's clock [s], which starts at 1 s."""
         return self._core.now()
 
     def advance(self, duration: float) -> None:
-        """Moves the clock on by a duration [s]."""
+        """Advances the board's clock by a duration [s]."""
         self._core.advance(_number("duration", duration, "s"))
 
     def set_object(self, channel: int, value: Optional[SimulatedObject]) -> None:
-        """Places an object, or removes it."""
+        """Places an object at the finger of a channel; None removes the object."""
         self._core.set_object(_whole("channel", channel), _object_values(value))
 
     def displacement(self, channel: int = 0) -> float:
-        """The displacement of a finger without the errors of its sensor."""
+        """Returns the true displacement of a finger, without the errors of its sensor."""
         return self._core.displacement(_whole("channel", channel))
 
 
 @dataclasses.dataclass(frozen=True)
 class ControlOutput:
-    """Result of `Controller.tick()`. NaN: not available."""
+    """Result of `Controller.tick()`. A value that is not available is NaN."""
 
-    command: float  # for the board [kPa], within the limits
-    reference: float  # for now; NaN while no reference is followed
+    command: float  # command for the board [kPa], within the limits
+    reference: float  # present value of the reference; NaN while no reference is followed
     displacement: float  # last valid reading
-    feedforward: float  # part of the command [kPa]
-    feedback: float  # part of the command [kPa]
-    residual: float  # reading minus model
-    validity: str  # of the reading, after the plausibility check
+    feedforward: float  # feedforward part of the command [kPa]
+    feedback: float  # feedback part of the command [kPa]
+    residual: float  # reading minus model output
+    validity: str  # validity of the reading after the plausibility check
     saturated: bool
     slewing: bool
-    out_of_reach: bool  # the feedforward cannot reach the reference
+    out_of_reach: bool  # True if the feedforward cannot reach the reference
 
 
 class Controller:
-    """Controller of one finger: feedforward plus PID through the limits, and the plausibility check of the readings."""
+    """Controller of one finger. It computes feedforward and PID feedback, limits their sum, and checks the plausibility of
+    the readings."""
 
     def __init__(self, model: Model, limits: Limits, pid: PidSettings = PidSettings(), *, feedforward: str = "full_model",
                  extra_latency: float = 0, tick: float = 0.005, sensor_noise: float = 0.05,
                  reading_max_age: float = 0.05) -> None:
-        """feedforward: "full_model", "bouc_wen" or "none". extra_latency: from a command to the output of the board [s]. tick:
-        period of `tick()` [s]. sensor_noise: standard deviation of a reading. reading_max_age: an older reading is not used [s].
+        """feedforward: "full_model", "bouc_wen" or "none". extra_latency: time from a command to the output of the board
+        [s]. tick: period of `tick()` [s]. sensor_noise: standard deviation of a reading. reading_max_age: longest age of a
+        reading that is used [s].
         """
         self._core = _core.Controller(
             _instance("model", model, Model)._core, _instance("limits", limits, Limits)._values(),
@@ -338,25 +344,25 @@ class Controller:
             _number("reading_max_age", reading_max_age, "s"))
 
     def start(self, command: float) -> None:
-        """Starts from rest under a command [kPa]."""
+        """Starts the control of a finger that rests under a command [kPa]."""
         self._core.start(_finite("command", command, "kPa"))
 
     def follow(self, reference: Reference) -> None:
-        """From the next tick on, follows a reference whose time 0 is the time 0 of `tick()`."""
+        """Follows a reference from the next tick on. Time 0 of the reference is time 0 of `tick()`."""
         self._core.follow(_instance("reference", reference, Reference)._core)
 
     def hold(self) -> None:
-        """From the next tick on, holds the command."""
+        """Holds the present command from the next tick on."""
         self._core.hold()
 
     def vent(self) -> None:
-        """From the next tick on, goes to the rest pressure with the slew limits."""
+        """Goes to the rest pressure from the next tick on, within the slew limits."""
         self._core.vent()
 
     def pressure(self, pressure: float) -> None:
-        """From the next tick on, goes to a pressure [kPa] with the slew limits, without feedback."""
+        """Goes to a pressure [kPa] from the next tick on, within the slew limits and without feedback."""
         self._core.pressure(_finite("pressure", pressure, "kPa"))
 
     def tick(self, now: float, reading: Reading) -> ControlOutput:
-        """Runs one period. now: its time on the clock of the readings [s]."""
+        """Runs one period. now: time of the period on the clock of the readings [s]."""
         return ControlOutput(*self._core.tick(_number("now", now, "s"), _instance("reading", reading, Reading)._values()))

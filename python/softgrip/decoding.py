@@ -1,5 +1,5 @@
-"""Converts JSON from outside to values. Each value is checked against the annotations of its class. Malformed JSON
-raises a ProtocolError with its location, and no other exception."""
+"""Converts JSON of the daemon to values. Each value is checked against the annotations of its class. Malformed JSON raises a
+ProtocolError with the location of the error, and no other exception."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def _no_number(name: str) -> Any:
 
 
 def parsed(line: bytes) -> dict[str, Any]:
-    """Returns the object in a line of JSON. Raises ProtocolError if there is none."""
+    """Returns the JSON object in a line. Raises ProtocolError if the line does not contain one."""
     try:
         value = json.loads(line, parse_constant=_no_number)
     except (ValueError, RecursionError):
@@ -38,8 +38,8 @@ def _hints(cls: Any) -> dict[str, Any]:
 
 
 def fields_of(cls: Any, value: Any, where: str) -> dict[str, Any]:
-    """Reads the fields of a dataclass from the equally named members of a JSON object. Further members are ignored,
-    because a newer daemon may send more. A field with a default may be missing."""
+    """Returns the values of a dataclass's fields from the members of a JSON object that have the same names. Other members
+    are ignored, because a newer daemon may send more members. A member may be missing if the field has a default."""
     if not isinstance(value, dict):
         raise ProtocolError(f"{where} is not a JSON object")
     found = {}
@@ -52,12 +52,12 @@ def fields_of(cls: Any, value: Any, where: str) -> dict[str, Any]:
 
 
 def decoded(cls: type[T], value: Any, where: str) -> T:
-    """Creates an object of a dataclass. `where` is used in error messages."""
+    """Creates an object of a dataclass from JSON. `where` is the location in error messages."""
     return cls(**fields_of(cls, value, where))
 
 
 def checked(kind: Any, value: Any, where: str) -> Any:
-    """Returns the value if it has the annotated kind."""
+    """Returns the value if it has the type `kind` of the annotation. Raises ProtocolError otherwise."""
     origin, inner = typing.get_origin(kind), typing.get_args(kind)
     if origin is Union:  # an Optional
         return None if value is None else checked(inner[0], value, where)

@@ -25,8 +25,8 @@ class NotAnswered(SoftgripError, TimeoutError):
 
 
 class ProtocolError(SoftgripError):
-    """A line of the daemon is malformed, and the connection is closed. Or the daemon does not accept the request.
-    `code` is the code of the daemon, if it sent one."""
+    """A line of the daemon is malformed, so the connection is closed. Or the daemon does not accept the request. `code` is
+    the error code of the daemon, if the daemon sent one."""
 
     def __init__(self, message: str, code: str = "") -> None:
         super().__init__(message)
@@ -34,8 +34,8 @@ class ProtocolError(SoftgripError):
 
 
 class Refused(SoftgripError):
-    """The state of the rig does not allow the request. The text gives the reason and the remedy. `code` is `R01` ...,
-    or a code of the daemon (`busy`, `abandoned`, `not_allowed`)."""
+    """The state of the rig does not allow the request. The text gives the reason and the remedy. `code` is `R01` or a
+    similar code of a refusal, or one of the daemon's codes `busy`, `abandoned` and `not_allowed`."""
 
     def __init__(self, message: str, code: str, name: str) -> None:
         super().__init__(f"{message} ({code})")
@@ -44,7 +44,7 @@ class Refused(SoftgripError):
 
 
 class Owned(Refused):
-    """A sequence of another client runs. Only stop and vent are allowed."""
+    """A sequence of another client runs, so only stop and vent are allowed."""
 
 
 class SequenceRefused(SoftgripError):
@@ -56,7 +56,7 @@ class SequenceRefused(SoftgripError):
 
 
 class GripFailed(SoftgripError):
-    """The grip ended with another result than the expected one."""
+    """The grip ended with a result other than the expected result."""
 
     def __init__(self, result: Result, end: Optional[SequenceEnd]) -> None:
         super().__init__(f"the grip's result is {result.value}" +
@@ -66,15 +66,15 @@ class GripFailed(SoftgripError):
 
 
 class StopNotConfirmed(SoftgripError):
-    """The block was left, and its stops of the started sequences were not confirmed: they may still run. `__cause__` is
-    the cause, and its `__context__` is the exception that left the block."""
+    """At the end of a block, the daemon did not confirm the stop of the sequences that the block had started. They may still
+    run. `__cause__` is the reason. `__context__` of the reason is the exception that ended the block."""
 
 
 class MalformedFile(SoftgripError, ValueError):
-    """A recording, log or report that softgrip did not write in this form."""
+    """A recording, log or report does not have the format that softgrip writes."""
 
 
-# Arguments of the C++ library that have another name in this package.
+# Arguments of the C++ library whose names in this package are different.
 _ARGUMENTS = {"time_s": "t", "pressure_kpa": "pressure", "pressure_command_kpa": "command", "supply_kpa": "supply",
               "temperature_c": "temperature", "pressure_min_kpa": "pressure_min", "pressure_max_kpa": "pressure_max",
               "slew_up_kpa_per_s": "slew_up", "slew_down_kpa_per_s": "slew_down", "start_kpa": "start",

@@ -1,4 +1,4 @@
-"""The messages of the daemon as values. Names end with the unit. None means unknown."""
+"""The messages of the daemon as Python objects. A name with a unit ends with the unit. None means unknown."""
 
 from __future__ import annotations
 
@@ -40,11 +40,12 @@ class SequenceEnd(str, enum.Enum):
 
 
 class _AsSaid:
-    """Base class: the fields are the keys of the JSON object."""
+    """Base class of the messages. The names of the fields are the keys of the JSON object."""
 
     @classmethod
     def of(cls: type[T], json: Any, where: str) -> T:
-        """Reads an object from JSON. Raises ProtocolError for any other JSON. `where` is used in the message."""
+        """Reads an object from JSON. Raises ProtocolError for JSON of another form. `where` is the location in the
+        message."""
         return decoded(cls, json, where)
 
 
@@ -52,7 +53,7 @@ class _AsSaid:
 class Hello(_AsSaid):
     api: int
     version: str
-    started_at: str  # start time of the daemon, UTC; event ids begin there
+    started_at: str  # start time of the daemon, UTC; the ids of its events begin at this time
     role: str  # "look" or "operate"
     commands: tuple[str, ...]
     capabilities: tuple[str, ...]
@@ -60,11 +61,11 @@ class Hello(_AsSaid):
 
 @dataclasses.dataclass(frozen=True)
 class Fault(_AsSaid):
-    code: str  # "F202"
+    code: str  # fault code, such as "F202"
     name: str
     meaning: str
     remedy: str
-    channel: Optional[str]  # None: the whole rig
+    channel: Optional[str]  # name of the channel; None: the whole rig
     next: str  # the action that resets the fault
 
 
@@ -89,13 +90,13 @@ class Channel(_AsSaid):
 
     @property
     def shortfall_mm(self) -> Optional[float]:
-        """The displacement of free motion minus the reading; `deficit_mm` is the deprecated name."""
+        """Returns the displacement of free motion minus the reading; `deficit_mm` is the deprecated name."""
         return self.deficit_mm
 
 
 @dataclasses.dataclass(frozen=True)
 class SequenceState(_AsSaid):
-    """The sequence that runs or ran last."""
+    """The sequence that runs, or the last sequence if none runs."""
 
     name: str
     request: int
@@ -110,7 +111,7 @@ class SequenceState(_AsSaid):
 @dataclasses.dataclass(frozen=True)
 class Status:
     state: State
-    result: Result  # of all fingers of the sequence
+    result: Result  # overall result of all fingers of the sequence
     channels: tuple[Channel, ...]
     fault: Optional[Fault]
     sequence: Optional[SequenceState]
@@ -187,15 +188,15 @@ class Sequence(_AsSaid):
 
 @dataclasses.dataclass(frozen=True)
 class Grip(_AsSaid):
-    """A sequence that was started."""
+    """A grip: a sequence that was started."""
 
-    request: int  # the number of this start in events and recordings
+    request: int  # number of this start in events and recordings
     warnings: tuple[Problem, ...] = ()
 
 
 @dataclasses.dataclass(frozen=True)
 class WouldStart(_AsSaid):
-    """A member of the daemon's reply to a dry run."""
+    """The part of the daemon's reply to a dry run that describes the start."""
 
     name: str
     parameters: Mapping[str, float]
@@ -210,7 +211,7 @@ class CheckReply(_AsSaid):
 
 @dataclasses.dataclass(frozen=True)
 class Checked:
-    """The sequence that a start would run."""
+    """The result of a check: the sequence that a start would run."""
 
     name: str
     parameters: Mapping[str, float]
@@ -225,14 +226,14 @@ class Checked:
 
 @dataclasses.dataclass(frozen=True)
 class Listing(_AsSaid):
-    """The reply to `sequences`."""
+    """The reply to the request `sequences`."""
 
     sequences: tuple[Sequence, ...]
 
 
 @dataclasses.dataclass(frozen=True)
 class Subscribed(_AsSaid):
-    """The reply to `subscribe`."""
+    """The reply to the request `subscribe`."""
 
     since: int
     started_at: str
@@ -240,13 +241,13 @@ class Subscribed(_AsSaid):
 
 @dataclasses.dataclass(frozen=True)
 class Refusal(_AsSaid):
-    code: str  # "R02"
+    code: str  # code of the refusal, such as "R02"
     name: str
 
 
 @dataclasses.dataclass(frozen=True)
 class Failure(_AsSaid):
-    """The error of a reply."""
+    """The error in a reply."""
 
     code: str
     message: str

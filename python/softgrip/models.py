@@ -1,4 +1,4 @@
-"""Models and logs as objects on NumPy arrays. The results are identical to those of the `softgrip` commands."""
+"""Models and logs as Python objects with NumPy arrays. The results are identical to those of the `softgrip` commands."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ _EMPTY: Vector = np.empty(0)
 
 
 def _vector(argument: str, values: npt.ArrayLike, unit: str) -> Vector:
-    """Converts an argument to a vector of numbers. Raises InvalidArgument for anything else."""
+    """Converts an argument to a vector of numbers. Raises InvalidArgument if this is impossible."""
     wanted = f"a vector of numbers in {unit} is required"
     try:
         if isinstance(values, np.ma.MaskedArray):
-            values = np.where(values.mask, np.nan, values.data)  # masked: no reading
+            values = np.where(values.mask, np.nan, values.data)  # a masked value means that the reading is missing
         array = np.asarray(values)
     except Exception as error:
         raise InvalidArgument(argument, f"{argument}: {wanted}: {error}") from error
@@ -76,14 +76,14 @@ class Parameter:
 
 @dataclasses.dataclass(frozen=True)
 class Inverse:
-    """The command of `Model.inverse()`."""
+    """Result of `Model.inverse()`: the command."""
 
-    pressure_kpa: Vector  # one per time, held until the next one
+    pressure_kpa: Vector  # one value per time; each value is held until the next time
     out_of_reach: npt.NDArray[np.bool_]  # True if the limits prevent the command from following the reference
 
 
 class Model:
-    """A model of a finger: a chain of blocks from the commanded pressure to the reading. It does not change.
+    """A model of a finger: a chain of blocks from the commanded pressure to the reading. An object never changes.
 
     >>> model = Model.load("config/models/bench_twin.yaml")
     >>> model.name, model.unit
@@ -94,52 +94,52 @@ class Model:
     """
 
     def __init__(self, core: _core.Model) -> None:
-        """Only for the package. Use `load()` or `parse()`."""
+        """Only the package calls this function. Use `load()` or `parse()`."""
         if not isinstance(core, _core.Model):
             raise InvalidArgument("core", "core: use Model.load() or Model.parse()")
         self._core = core
 
     @classmethod
     def load(cls, path: Path) -> Model:
-        """Reads a model file. `MalformedFile` names each problem with line and column."""
+        """Reads a model file. Raises `MalformedFile`, which names each problem with line and column."""
         return cls(_core.Model.load(path_of("path", path)))
 
     @classmethod
     def parse(cls, yaml: str, name: str = "model") -> Model:
-        """Reads the text of a model file; `name` is for messages."""
+        """Reads the text of a model file; messages contain `name`."""
         return cls(_core.Model.parse(text_of("yaml", yaml), text_of("name", name)))
 
     def save(self, path: Path) -> None:
-        """Writes a model file, which `load()` reads back without loss."""
+        """Writes a model file. `load()` reads the same model from this file."""
         self._core.save(path_of("path", path))
 
     @property
     def yaml(self) -> str:
-        """The text of a model file."""
+        """Returns the text of a model file."""
         return self._core.yaml()
 
     @property
     def name(self) -> str:
-        """The name of the model."""
+        """Returns the name of the model."""
         return self._core.name()
 
     @property
     def source(self) -> str:
-        """The origin of the parameters."""
+        """Returns the origin of the parameters."""
         return self._core.source()
 
     @property
     def unit(self) -> str:
-        """The unit of the output: "mm", or "deg" of a bending angle."""
+        """Returns the unit of the output: "mm", or "deg" for a bending angle."""
         return self._core.unit()
 
     @property
     def parameters(self) -> Mapping[str, Parameter]:
-        """All parameters by name, in the order of the chain."""
+        """Returns all parameters by name, in the order of the chain."""
         return {one[0]: Parameter(*one) for one in self._core.parameters()}
 
     def with_parameter(self, name: str, value: float) -> Model:
-        """A model with another value of a parameter.
+        """Returns a copy of the model in which one parameter has another value.
 
         >>> model = Model.load("config/models/bench_twin.yaml").with_parameter("transport_delay.delay_s", 0.2)
         >>> model.parameters["transport_delay.delay_s"].value
@@ -150,11 +150,13 @@ class Model:
     def simulate(self, t: npt.ArrayLike, pressure: npt.ArrayLike, *, held: bool = False, noise: float = 0,
                  seed: int = 1, supply: Optional[npt.ArrayLike] = None,
                  temperature: Optional[npt.ArrayLike] = None) -> Vector:
-        """Returns the reading at each time, in the unit of the model. The finger is first at rest under the first pressure.
+        """Returns the reading at each time, in the unit of the model. At first, the finger is at rest under the first
+        pressure.
 
-        t: times [s], increasing. pressure: commanded pressure [kPa], one per time. held: hold the pressure of a sample
-        until the next one instead of interpolating linearly. noise: standard deviation of white noise, in the unit of the
-        model. seed: seed of all noise. supply [kPa] and temperature [degrees Celsius]: one per time.
+        t: times [s], increasing. pressure: commanded pressure [kPa], one value per time. held: if True, the pressure of a
+        sample is held until the next sample; otherwise it is interpolated linearly. noise: standard deviation of white
+        noise, in the unit of the model. seed: seed of all noise. supply: supply pressure [kPa], one value per time.
+        temperature: [degrees Celsius], one value per time.
 
         >>> model = Model.load("config/models/bench_twin.yaml")
         >>> model.simulate([0, 1], [0, 10, 20])
@@ -168,11 +170,12 @@ class Model:
 
     def inverse(self, t: npt.ArrayLike, displacement: npt.ArrayLike, *, pressure_min: float = 0,
                 pressure_max: float = 100, slew_up: float = 300, slew_down: float = 300, start: float = 0) -> Inverse:
-        """Returns the command with which the finger follows a displacement.
+        """Returns the command for which the displacement of the finger follows a reference.
 
-        t: times [s] with equal steps. displacement: in the unit of the model, one per time. pressure_min, pressure_max:
-        range of the command [kPa]. slew_up, slew_down: its largest rise and fall [kPa/s]. start: the command under which the
-        finger is at rest at the first time [kPa]. `NoResult` if the model has no inverse.
+        t: times [s] with equal steps. displacement: the reference in the unit of the model, one value per time.
+        pressure_min, pressure_max: range of the command [kPa]. slew_up, slew_down: largest rise and fall of the command
+        [kPa/s]. start: command under which the finger is at rest at the first time [kPa]. Raises `NoResult` if the model has
+        no inverse.
 
         >>> model = Model.load("config/models/bench_twin.yaml")
         >>> t = np.arange(0, 10, 0.005)
@@ -212,10 +215,11 @@ def _column(argument: str, values: Optional[npt.ArrayLike], unit: str) -> Vector
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Log:
-    """A measured run of one finger: `Log(t, command, displacement)`, `Log.from_pandas()` or `Log.read()`.
+    """A measured log of one finger: `Log(t, command, displacement)`, `Log.from_pandas()` or `Log.read()`.
 
-    t: times [s], increasing. command: commanded pressure [kPa]. displacement: readings in `unit`, NaN where there is none.
-    pressure: measured pressure [kPa]. temperature [degrees Celsius]. supply: supply pressure [kPa]. One value per time.
+    t: times [s], increasing. command: commanded pressure [kPa]. displacement: readings in `unit`; NaN where a reading is
+    missing. pressure: measured pressure [kPa]. temperature [degrees Celsius]. supply: supply pressure [kPa]. Each array has
+    one value per time.
 
     >>> log = Log([0, 0.1, 0.2], [0, 10, 20], [0, 1, 2.5], name="short")
     >>> len(log), log.unit
@@ -261,11 +265,12 @@ class Log:
     def read(cls, path: Path, *, channel: str = "", columns: Optional[Mapping[str, str]] = None,
              units: Optional[Mapping[str, str]] = None, rate_hz: Optional[float] = None, sheet: str = "",
              import_file: bool = True) -> Log:
-        """Reads a log (CSV, or the folder of a recording), or converts a file of another program (text, XLSX, TDMS, MCAP,
-        MATLAB, HDF5) as `softgrip import` proposes; the notes state how.
+        """Reads a log (CSV, or the folder of a recording). Converts a file of another program (text, XLSX, TDMS, MCAP,
+        MATLAB, HDF5) with the column roles that `softgrip import` proposes; the notes of the log describe the conversion.
 
-        columns: by role (time, command, pressure, displacement, temperature, supply), a name or a number from 1. units: by
-        role, if the file does not state them. rate_hz: samples per second of a file without times.
+        columns: for each role (time, command, pressure, displacement, temperature, supply), the name or the number (from 1)
+        of a column. units: unit for each role, if the file does not state the unit. rate_hz: samples per second of a file
+        without times.
         """
         found = _core.read_log(path_of("path", path), text_of("channel", channel), _flag("import_file", import_file),
                                texts_of("columns", columns), texts_of("units", units),
@@ -276,8 +281,8 @@ class Log:
 
     @classmethod
     def from_pandas(cls, frame: Any, *, name: str = "log") -> Log:
-        """A log of a pandas DataFrame with the columns of a log file: time_s, pressure_command_kpa, displacement_mm (or
-        angle_deg), and optionally pressure_kpa, temperature_c and supply_kpa."""
+        """Returns the log in a pandas DataFrame that has the columns of a log file: time_s, pressure_command_kpa,
+        displacement_mm (or angle_deg), and optionally pressure_kpa, temperature_c and supply_kpa."""
         unit = "deg" if "angle_deg" in frame.columns else "mm"
         needed = ("time_s", "pressure_command_kpa", "angle_deg" if unit == "deg" else "displacement_mm")
         for column in needed:
@@ -290,7 +295,7 @@ class Log:
         return cls(t, command, displacement, pressure, temperature, supply, unit, name)
 
     def write(self, path: Path) -> None:
-        """Writes a log file, which `read()` reads back without loss."""
+        """Writes a log file. `read()` reads the same log from this file."""
         _core.write_log(path_of("path", path), self._columns())
 
     def check(self) -> None:
@@ -310,7 +315,7 @@ class Log:
         return f"<softgrip.Log {self.name}, {len(self)} samples, {length_s:.6g} s, readings in {self.unit}>"
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws command and displacement over time on two matplotlib axes, and returns them."""
+        """Draws command and displacement over time on two matplotlib axes, and returns the axes."""
         from .results import two_axes
         upper, lower = two_axes(axes)
         upper.plot(self.t, self.command, label="command")

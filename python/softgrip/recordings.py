@@ -1,4 +1,4 @@
-"""Recordings and reports of softgrip as NumPy arrays."""
+"""Reads recordings and reports of softgrip as NumPy arrays."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ def _check(about: os.stat_result, path: Path, largest: int) -> None:
 
 
 def _text(path: Path, largest: int) -> str:
-    """Returns the text of a regular file. Raises OSError for a device, a pipe (it would block) or a file that is too
-    large."""
+    """Returns the text of a regular file. Raises OSError for a device, for a pipe (reading it would block) and for a file
+    that is too large."""
     path = file_path_of("path", path)
-    _check(os.stat(path), path, largest)  # check this first: opening some devices starts them
+    _check(os.stat(path), path, largest)  # check the type before opening, because opening starts some devices
     with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC), "rb") as file:
-        _check(os.fstat(file.fileno()), path, largest)  # another process may have replaced it
+        _check(os.fstat(file.fileno()), path, largest)  # another process may have replaced the file since the first check
         data = file.read(largest)
     try:
         return data.decode()
@@ -59,7 +59,7 @@ def _json_object(path: Path) -> dict[str, Any]:
 
 
 def _column(cells: list[str]) -> Array:
-    """Returns numbers if every cell is a number or empty (NaN), else texts."""
+    """Returns an array of numbers if every cell is a number or empty (NaN). Otherwise, returns an array of texts."""
     try:
         return np.array([float(cell) if cell else np.nan for cell in cells])
     except ValueError:
@@ -67,8 +67,8 @@ def _column(cells: list[str]) -> Array:
 
 
 def read_columns(path: Path) -> dict[str, Array]:
-    """Reads a CSV file with a header (run.csv, a log, a series.csv) as one array per column. An incomplete last line,
-    as after a killed run, is ignored. Any other malformed line raises MalformedFile with its number."""
+    """Reads a CSV file with a header (run.csv, a log, a series.csv) as one array per column. An incomplete last line, which
+    a killed run can leave, is ignored. Any other malformed line raises MalformedFile with the line number."""
     text = _text(path, LARGEST_CSV)
     rows = csv.reader(io.StringIO(text[:text.rfind("\n") + 1], newline=""))
     kept: list[list[str]] = []
@@ -109,7 +109,7 @@ class Recording:
     """A recorded run: a folder with run.csv and run.json."""
 
     about: Mapping[str, Any]  # run.json
-    channels: Mapping[str, Mapping[str, Array]]  # by finger: the columns of run.csv with equal lengths
+    channels: Mapping[str, Mapping[str, Array]]  # for each finger, its columns of run.csv; all have the same length
 
     @classmethod
     def read(cls, folder: Path) -> Recording:

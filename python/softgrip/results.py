@@ -20,11 +20,11 @@ Vector = npt.NDArray[np.float64]
 
 
 def _pyplot() -> Any:
-    return importlib.import_module("matplotlib.pyplot")  # takes a second, so it is imported only for plots
+    return importlib.import_module("matplotlib.pyplot")  # the import takes about a second, so only plots import the module
 
 
 def two_axes(axes: Any) -> tuple[Any, Any]:
-    """Returns two matplotlib axes above each other: the given ones, or new ones."""
+    """Returns the two given matplotlib axes, or two new axes, one above the other."""
     if axes is None:
         _, axes = _pyplot().subplots(2, 1, sharex=True, layout="constrained")
     try:
@@ -47,8 +47,8 @@ def _interval(interval: Optional[tuple[float, float]]) -> str:
 
 @dataclasses.dataclass(frozen=True)
 class Estimate:
-    """A number with its 95 % interval. The interval is None if the number is fixed, at a bound, or without effect (see
-    `note`)."""
+    """A number with its 95 % interval. The interval is None if the number is fixed, is at a bound, or has no effect on the
+    result (see `note`)."""
 
     name: str
     unit: str
@@ -60,7 +60,7 @@ class Estimate:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Prediction:
-    """The prediction of one log. `error` is reading minus prediction, in `unit`, NaN without a reading."""
+    """The prediction of one log. `error` is the reading minus the prediction, in `unit`; NaN where a reading is missing."""
 
     log: str
     unit: str
@@ -73,7 +73,7 @@ class Prediction:
     diverges: bool
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws readings and prediction, and the error below, on two matplotlib axes, and returns them."""
+        """Draws readings and prediction on one matplotlib axes, and the error on a second one below. Returns both axes."""
         upper, lower = two_axes(axes)
         upper.plot(self.time_s, self.prediction + self.error, ".", markersize=2, label="reading")
         upper.plot(self.time_s, self.prediction, label="prediction")
@@ -87,14 +87,14 @@ class Prediction:
 
 
 class _Reported:
-    """A result with the JSON and the report page of its command."""
+    """A result that contains the JSON and the report page of the `softgrip` command."""
 
     json: str
     html: str
 
     @functools.cached_property
     def report(self) -> Mapping[str, Any]:
-        """The complete result: the JSON file of the command as Python values."""
+        """Returns the complete result: the JSON file of the command as Python values."""
         return json.loads(self.json)  # type: ignore[no-any-return]
 
     def save_html(self, path: Any) -> None:
@@ -115,7 +115,7 @@ class Identification(_Reported):
     """The result of `identify()`."""
 
     model: Model
-    rmse: float  # of all fitted samples, in the unit of the model
+    rmse: float  # RMSE of all fitted samples, in the unit of the model
     converged: bool
     verdict: str
     warnings: Sequence[str]
@@ -132,7 +132,7 @@ class Identification(_Reported):
         return _table(self.verdict, self.warnings, ("parameter", "value", "unit", "95 % interval", ""), rows)
 
     def plot(self, log: Optional[str] = None, axes: Any = None) -> Any:
-        """Draws the fit of one log, by default the first."""
+        """Draws the fit of one log; the default is the first log."""
         return _plotted(self.fit, log, axes)
 
 
@@ -152,7 +152,7 @@ class Validation(_Reported):
         return _table(self.verdict, self.warnings, ("log", "RMSE", "of span", "largest error"), rows)
 
     def plot(self, log: Optional[str] = None, axes: Any = None) -> Any:
-        """Draws the prediction of one log, by default the first."""
+        """Draws the prediction of one log; the default is the first log."""
         return _plotted(self.predictions, log, axes)
 
 
@@ -165,7 +165,7 @@ class Cause:
     error_reduction_percent: float
     error_reduction_ci95: tuple[float, float]
     parameters: Sequence[Estimate]
-    alternatives: Sequence[str]  # ids of causes that the logs cannot separate from it
+    alternatives: Sequence[str]  # ids of causes that the logs cannot separate from this cause
 
 
 def _cause_rows(causes: Sequence[Cause]) -> list[tuple[str, ...]]:
@@ -174,7 +174,7 @@ def _cause_rows(causes: Sequence[Cause]) -> list[tuple[str, ...]]:
 
 
 def _one_axes(axes: Any) -> Any:
-    """The given matplotlib axes, or new ones."""
+    """Returns the given matplotlib axes, or new axes."""
     return _pyplot().subplots(layout="constrained")[1] if axes is None else axes
 
 
@@ -192,8 +192,8 @@ def _plotted_causes(causes: Sequence[Cause], axes: Any) -> Any:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Diagnosis(_Reported):
-    """The result of `diagnose()`. Errors are root mean squares in `unit`. Those of the refitted and the extended model
-    apply to held-out blocks."""
+    """The result of `diagnose()`. Errors are root mean squares in `unit`. The errors of the refitted and the extended model
+    are errors on held-out blocks."""
 
     verdict: str
     sentence: str
@@ -215,7 +215,7 @@ class Diagnosis(_Reported):
                       _cause_rows(self.causes))
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws the error reduction of each cause with its interval on matplotlib axes, and returns them."""
+        """Draws the error reduction of each cause with its interval on matplotlib axes, and returns the axes."""
         return _plotted_causes(self.causes, axes)
 
 
@@ -236,8 +236,9 @@ class Change(_Reported):
                       _cause_rows(self.causes))
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws the size of each change with its 95 % interval on matplotlib axes, and returns them. Sizes have different units,
-        so each is drawn as a share of the largest absolute value of its interval; the labels state the values."""
+        """Draws the size of each change with its 95 % interval on matplotlib axes, and returns the axes. The sizes have
+        different units. Therefore, each size is drawn as a share of the largest absolute value in its interval; the labels
+        state the sizes."""
         axes = _one_axes(axes)
         sizes = [(cause.id, one) for cause in self.causes for one in cause.parameters]
         for row, (_, one) in enumerate(sizes):
@@ -253,8 +254,9 @@ class Change(_Reported):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class HealthIndicator:
-    """An indicator of a finger. `value` is that of the last point, `reference` and `spread` (mean and standard deviation) are
-    those since the last maintenance record; each is None if unknown. `values` has one value per point, NaN: none."""
+    """An indicator of a finger. `value` is the value at the last point. `reference` and `spread` are mean and standard
+    deviation since the last maintenance record. Each of the three is None if it is unknown. `values` has one value per
+    point; NaN means that the point has none."""
 
     id: str
     title: str
@@ -267,7 +269,8 @@ class HealthIndicator:
 
 @dataclasses.dataclass(frozen=True)
 class HealthAlarm:
-    """A significant change of an indicator, in its unit. `since` and `noticed` are points. A maintenance record ends it."""
+    """A significant change of an indicator, in the unit of the indicator. `since` and `noticed` are points. A maintenance
+    record ends the alarm."""
 
     indicator: str
     change: float
@@ -279,7 +282,7 @@ class HealthAlarm:
 
 @dataclasses.dataclass(frozen=True)
 class Suspect:
-    """A possible cause of the active alarms, and the checks that confirm it, the quickest first."""
+    """A possible cause of the active alarms, and the checks that confirm this cause, the quickest check first."""
 
     id: str
     words: str
@@ -303,15 +306,15 @@ class FingerHealth:
     html: str = dataclasses.field(repr=False)
 
     def indicator(self, name: str) -> HealthIndicator:
-        """The indicator of an id, such as "gain_mm"."""
+        """Returns the indicator with an id, such as "gain_mm"."""
         for one in self.indicators:
             if one.id == name:
                 return one
         raise InvalidArgument("indicator", f"indicator: {name!r} is not one of {', '.join(one.id for one in self.indicators)}")
 
     def plot(self, indicator: Optional[str] = None, axes: Any = None) -> Any:
-        """Draws an indicator over the points, with its reference and 3 standard deviations, on matplotlib axes, and returns them.
-        By default, it is that of the first active alarm, or else the gain."""
+        """Draws an indicator over the points, with its reference and 3 standard deviations, on matplotlib axes. Returns the
+        axes. The default is the indicator of the first active alarm, or the gain if no alarm is active."""
         active = [one.indicator for one in self.alarms if one.active]
         shown = self.indicator(indicator if indicator is not None else active[0] if active else "gain_mm")
         axes = _one_axes(axes)
@@ -344,11 +347,11 @@ class Health:
 
     @functools.cached_property
     def report(self) -> Mapping[str, Any]:
-        """The complete result: health.json as Python values."""
+        """Returns the complete result: health.json as Python values."""
         return json.loads(self.json)  # type: ignore[no-any-return]
 
     def finger(self, name: str) -> FingerHealth:
-        """The health of a finger by its name."""
+        """Returns the health of the finger with this name."""
         for one in self.fingers:
             if one.finger == name:
                 return one
@@ -360,7 +363,8 @@ class Health:
         return _table("alarm" if self.alarm else "steady", self.warnings, ("finger", "state", "health", "suspects"), rows)
 
     def plot(self, finger: Optional[str] = None, indicator: Optional[str] = None, axes: Any = None) -> Any:
-        """Draws an indicator of a finger over time. By default, it is the first finger in alarm, or else the first one."""
+        """Draws an indicator of a finger over time. The default is the first finger with an active alarm, or the first
+        finger if no alarm is active."""
         alarmed = [one for one in self.fingers if one.state == "alarm"]
         shown = self.finger(finger) if finger is not None else (alarmed or self.fingers)[0]
         return shown.plot(indicator, axes)

@@ -1,4 +1,4 @@
-"""A connection without its socket: the requests, and their results. Both clients add a socket to it."""
+"""The state of a connection without its socket: the requests and their results. Both clients add a socket."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from .messages import Event, Failure, Grip, Hello, Reply, Result, SequenceEnd, S
 
 API = 1
 LONGEST_LINE = 16 << 20
-# Number of grips whose results are kept for later calls.
+# Number of grips whose results are stored for later calls.
 MOST_GRIPS = 64
-# Replaces the request number of a grip of an earlier daemon.
+# Replaces the request number of a grip that an earlier daemon started.
 OF_ANOTHER_DAEMON = -1
 FAILURES = frozenset({Result.NO_PART, Result.PART_LOST, Result.ERROR})
-# A capability in the daemon's hello: starts have ids, and a stop may name one.
+# A capability in the daemon's hello: starts have ids, and a stop may name the id of a start.
 START_ID = "start_id"
-# The refusal of a stop that names a start: the start does not run and will not begin.
+# The daemon's refusal of a stop that names a start: this start does not run and will not begin.
 NOT_RUNNING = "named_start_not_running"
 
 
@@ -60,7 +60,7 @@ def error_of(error: Optional[Failure]) -> SoftgripError:
 
 
 class _Story:
-    """The results of one grip, from its events."""
+    """The results of one grip, collected from its events."""
 
     def __init__(self) -> None:
         self.results: collections.deque[Result] = collections.deque()
@@ -76,18 +76,18 @@ class Session:
         self.last_event: Optional[int] = None
         self.grip = 0  # request number of the last start
         self.failure: Optional[Exception] = None  # the daemon's reason for closing the connection
-        # By start id: the starts of this client that may run, with their request number in the daemon's events once it
-        # is known.
+        # The starts of this client that may still run, by start id. The value is the start's request number in the daemon's
+        # events, once this number is known.
         self.starts: dict[str, Optional[int]] = {}
         self._names_starts = True
         self._last_id = 0
         self._waiting: set[int] = set()
-        self._start_of: dict[int, str] = {}  # by the id of a request without a reply
+        self._start_of: dict[int, str] = {}  # start id by the id of a request that has no reply yet
         self._last_start = 0
         self._stories: collections.OrderedDict[int, _Story] = collections.OrderedDict()
 
     def raise_unconfirmed(self, failure: Optional[SoftgripError]) -> None:
-        """Raises StopNotConfirmed if starts may still run after an attempt to stop each."""
+        """Raises StopNotConfirmed if starts may still run after this client has tried to stop each of them."""
         if self.starts and failure:
             which = ", ".join("a start without a reply" if request is None else f"request {request}"
                               for request in self.starts.values())
@@ -98,8 +98,8 @@ class Session:
         self._names_starts = START_ID in hello.capabilities
 
     def request(self, command: str, keys: Mapping[str, Any]) -> tuple[int, bytes]:
-        """Returns a request line and the id of its reply. A start is stored with a unique id before it is sent, because
-        an exception can occur at any later moment."""
+        """Returns the line of a request and the id of its reply. A start is stored with a unique id before it is sent,
+        because an exception can occur at any time after this call."""
         number = self._last_id + 1
         starts = command == "start" and not keys.get("dry_run")
         if starts:
@@ -125,14 +125,14 @@ class Session:
         self.replies.pop(number, None)
 
     def subscription(self) -> dict[str, Any]:
-        """The keys of a subscription that continues after the last received event."""
+        """Returns the keys of a subscription that continues after the last received event."""
         if self.last_event is None:
             return {}
         return {"since": self.last_event, "started_at": self.started_at}
 
     def subscribed(self, result: Mapping[str, Any]) -> None:
-        """Processes the reply to a subscription. A restarted daemon counts its requests from the beginning, and the
-        sequences of the previous daemon have ended."""
+        """Processes the reply to a subscription. If the daemon was restarted, its request numbers start from the beginning,
+        and the sequences of the previous daemon have ended."""
         reply = Subscribed.of(result, "subscribe")
         if self.started_at not in ("", reply.started_at):
             self.starts.clear()
@@ -147,7 +147,7 @@ class Session:
         self.last_event = reply.since
 
     def receive(self, line: bytes) -> None:
-        """Processes a line of the daemon. Raises ProtocolError if it is malformed."""
+        """Processes a line from the daemon. Raises ProtocolError if the line is malformed."""
         said = parsed(line)
         if "event" in said:
             self._take(Event.of(said["event"], "event"))
@@ -164,8 +164,8 @@ class Session:
             self.replies[reply.id] = reply
 
     def _take_start(self, number: int, reply: Reply) -> None:
-        """Processes the reply to a start, also if the program no longer waits for it. Only a refusal means that the
-        start will not begin."""
+        """Processes the reply to a start, also if the program no longer waits for this reply. If the reply is a refusal, the
+        start will not begin; any other error does not prove this."""
         start_id = self._start_of.pop(number)
         if reply.ok:
             request = Grip.of(reply.result, "start").request
@@ -181,7 +181,8 @@ class Session:
                        if request is None or self._story(request).end is None}
 
     def result_of(self, number: int) -> Mapping[str, Any]:
-        """Returns the result of a received reply once, or raises its exception."""
+        """Returns the result of a received reply and discards the reply. If the reply is an error, raises the exception for
+        it."""
         reply = self.replies.pop(number)
         if not reply.ok:
             raise error_of(reply.error)
@@ -209,8 +210,8 @@ class Session:
         return story
 
     def reached(self, wanted: frozenset[Result]) -> Optional[Result]:
-        """Returns the result of the last start if it is one of `wanted`, or None if there is no result yet. Raises
-        GripFailed for a failure or the end of the sequence."""
+        """Returns the result of the last start if it is one of `wanted`; None if there is no result yet. Raises GripFailed
+        if the grip failed or the sequence ended."""
         story = self._story(self.grip)
         while story.results:
             result = story.results.popleft()
@@ -223,5 +224,5 @@ class Session:
         return None
 
     def ended(self) -> Optional[SequenceEnd]:
-        """Returns the end of the last start, or None if it still runs."""
+        """Returns the end of the last start, or None if its sequence still runs."""
         return self._story(self.grip).end

@@ -1,4 +1,4 @@
-"""Lines over the daemon's socket, for the blocking client."""
+"""Sends and receives lines over the daemon's socket, for the blocking client."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ from typing import Any, Optional
 from .errors import ConnectionLost, NoDaemon, NotAnswered, ProtocolError
 from .session import LONGEST_LINE, Session
 
-# Time between two attempts to connect if more clients wait than the daemon accepts at a time.
+# Time between two attempts to connect while the daemon's queue of waiting clients is full.
 CONNECT_PAUSE_S = 0.01
 
 
 class Wire:
-    """A connection. Any exception, such as that of Ctrl-C, may leave an incomplete line: `torn`."""
+    """A connection to the daemon. `torn` is True if an exception, such as that of Ctrl-C, may have left an incomplete
+    line."""
 
     def __init__(self, path: str, end: float) -> None:
         self.path = path
@@ -91,8 +92,8 @@ class Wire:
         return NotAnswered(f"{self.path}: time limit exceeded")
 
     def _lost(self, session: Session, error: Optional[OSError]) -> Exception:
-        """Returns the exception for a lost connection. The last message of the daemon is more specific than the loss
-        itself."""
+        """Returns the exception for a lost connection. If the last message of the daemon was an error, this is the exception
+        for that error, because it is more specific than the loss of the connection."""
         self.close()
         return session.failure or ConnectionLost(f"{self.path}: {error or 'the daemon closed the connection'}")
 
