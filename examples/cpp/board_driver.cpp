@@ -1,5 +1,5 @@
-// A board driver: a board on a line that answers "SET 12.5\n" with "POS 3.2\n". A thread plays the board.
-// board_driver writes three commands and prints the readings.
+// Shows a board driver. The board of this example is connected by a socket and answers "SET 12.5\n" with "POS
+// 3.2\n"; a thread of the program simulates it. board_driver writes three commands and prints the readings.
 
 #include <poll.h>
 #include <sys/socket.h>

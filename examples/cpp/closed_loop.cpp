@@ -1,5 +1,6 @@
-// Closes a loop on the simulated board: closed_loop MODEL.yaml tracks a sine with feedforward and PID at 200
-// Hz, with a sensor that has noise, and prints the root mean square error of the last cycle.
+// Runs a controller with the simulated board: closed_loop MODEL.yaml tracks a sine with feedforward and PID
+// at 200 Hz. The simulated sensor has noise. The program prints the root mean square error of the last cycle
+// of the sine.
 
 #include <array>
 #include <chrono>
@@ -31,8 +32,8 @@ int main(int count, char** arguments) try {
   settings.extra_latency_s = 0.005;  // a command reaches the board in the next exchange
   softgrip::Controller controller(settings);
   softgrip::Reference reference;
-  reference.start(1, 0);         // the clock of the board begins at 1 s
-  reference.ramp_to(6, 3);       // to 6 mm in 3 s
+  reference.start(1, 0);         // the clock of the board starts at 1 s
+  reference.ramp_to(6, 3);       // ramp to 6 mm within 3 s
   reference.sine(9, 3, 0.1, 3);  // three cycles of 10 s
   controller.follow(reference);
 
@@ -48,7 +49,7 @@ int main(int count, char** arguments) try {
     }
     const softgrip::ControlOutput output = controller.tick(board.now(), reading[0]);
     command_kpa[0] = output.command_kpa;
-    if (i >= 200 * 23) {  // the last cycle
+    if (i >= 200 * 23) {  // the last cycle of the sine
       const double error = board.displacement(0) - output.reference;
       squares += error * error;
       ++samples;

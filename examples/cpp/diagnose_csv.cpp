@@ -1,5 +1,6 @@
-// From a file of another program to a diagnosis: diagnose_csv FILE [REPORT.html] converts the file as
-// `softgrip import` proposes, fits the base structure, and names the causes of its error.
+// Diagnoses a finger from a file of another program. diagnose_csv FILE [REPORT.html] converts the file with
+// the column roles that `softgrip import` proposes, fits the default model structure, and names the causes of
+// the model error.
 
 #include <cstdio>
 #include <exception>

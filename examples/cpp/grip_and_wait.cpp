@@ -1,6 +1,6 @@
-// Grips and waits for the result: grip_and_wait SOCKET SEQUENCE asks softgripd
-// (docs/reference/socket-api.md). Exit code 1: nothing is held. A line is a JSON object; a larger program
-// parses it with a JSON library.
+// Grips and waits for the result: grip_and_wait SOCKET SEQUENCE sends requests to softgripd
+// (docs/reference/socket-api.md). Exit code 1: the gripper holds nothing. Each line of the socket is a JSON
+// object; a larger program should parse the lines with a JSON library.
 
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -46,7 +46,7 @@ class Daemon {
   std::string received_;
 };
 
-/// The text of a key; empty if the line does not have it.
+/// Returns the text value of a key in a JSON line; empty if the line does not contain the key.
 std::string text_of(const std::string& line, const std::string& key) {
   std::size_t at = line.find("\"" + key + "\"");
   if (at == std::string::npos) return "";

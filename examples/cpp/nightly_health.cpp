@@ -1,6 +1,6 @@
-// A nightly health check: nightly_health RECORDINGS BASELINE OUT prints the health of each finger and writes
-// its page into OUT, which also keeps the indicators, so that no recording is read twice. Exit code 1: an
-// alarm of a finger is active.
+// Checks the health of all fingers every night. nightly_health RECORDINGS BASELINE OUT prints the health of
+// each finger and writes a page per finger into the folder OUT. OUT also stores the indicators, so that no
+// recording is read twice. Exit code 1: an alarm of a finger is active.
 
 #include <cstdio>
 #include <exception>

@@ -1,4 +1,4 @@
-"""A board driver: a board on a line that answers "SET 12.5" with "POS 2.5". A thread plays the board.
+"""Shows a board driver. The board of this example answers "SET 12.5" with "POS 2.5"; a thread of the program simulates it.
 
 board_driver.py writes three commands and prints the readings.
 """

@@ -1,4 +1,4 @@
-"""Closes a loop on the simulated board: closed_loop.py MODEL.yaml tracks a sine with feedforward and PID at 200 Hz."""
+"""Runs a controller with the simulated board: closed_loop.py MODEL.yaml tracks a sine with feedforward and PID at 200 Hz."""
 
 import math
 import sys
@@ -14,7 +14,7 @@ def main(model_file: str) -> None:
     controller = softgrip.Controller(
         model, softgrip.Limits(pressure_max=80), softgrip.PidSettings(kp=2.7, ki=13),
         extra_latency=TICK, tick=TICK)  # a command reaches the board in the next exchange
-    reference = softgrip.Reference(0, start=1)  # the clock of the board begins at 1 s
+    reference = softgrip.Reference(0, start=1)  # the clock of the board starts at 1 s
     reference.ramp_to(6, duration=3)
     reference.sine(mean=9, amplitude=3, frequency=0.1, cycles=3)
     controller.follow(reference)
@@ -26,7 +26,7 @@ def main(model_file: str) -> None:
         reading, = board.exchange([command])
         output = controller.tick(board.now, reading)
         command = output.command
-        if board.now > reference.end - 10:  # the last cycle
+        if board.now > reference.end - 10:  # the last cycle of the sine
             errors.append(board.displacement() - output.reference)
         board.advance(TICK)
     rmse = math.sqrt(sum(error**2 for error in errors) / len(errors))

@@ -1,4 +1,4 @@
-"""Grips and waits for the result: grip_and_wait.py [SOCKET] [SEQUENCE]. Exit code 1: nothing is held."""
+"""Grips and waits for the result: grip_and_wait.py [SOCKET] [SEQUENCE]. Exit code 1: the gripper holds nothing."""
 
 import sys
 from typing import Optional
@@ -7,9 +7,9 @@ import softgrip
 
 
 def main(socket: Optional[str] = None, sequence: str = "pick_stone") -> int:
-    # Leaving the block stops the sequence if it still runs, for each reason to leave.
+    # At the end of the block, also after an exception, the sequence is stopped if it still runs.
     with softgrip.Gripper(socket, name="grip_and_wait") as gripper:
-        gripper.check(sequence)  # all checks of a start; nothing moves
+        gripper.check(sequence)  # checks the sequence as a start does, but moves nothing
         gripper.start(sequence)
         try:
             result = gripper.wait_until(softgrip.Result.HOLDING, timeout_s=60)

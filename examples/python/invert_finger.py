@@ -1,4 +1,4 @@
-"""Inverts a finger and prints the tracking error in simulation: invert_finger.py MODEL.yaml"""
+"""Inverts the model of a finger and prints the tracking error in simulation: invert_finger.py MODEL.yaml"""
 
 import sys
 
@@ -13,7 +13,7 @@ def main(model_file: str) -> None:
     wanted = 6 - 2 * np.cos(0.2 * np.pi * t)
     command = model.inverse(t, wanted, pressure_max=80)
     moved = model.simulate(t, command.pressure_kpa, held=True)  # a board holds each command until the next one
-    error = np.abs(moved - wanted)[t > 3]  # the way to the first value takes some time
+    error = np.abs(moved - wanted)[t > 3]  # the finger needs some time to reach the first value
     print(f"largest command {command.pressure_kpa.max():.2f} kPa, largest error {error.max():.1e} {model.unit}")
 
 

@@ -1,4 +1,4 @@
-"""Identifies many logs, one process per processor: many_logs.py LOG... prints a line for each."""
+"""Identifies many logs in parallel, one process per processor core: many_logs.py LOG... prints a line for each log."""
 
 import sys
 from concurrent.futures import ProcessPoolExecutor

@@ -1,6 +1,6 @@
-"""A nightly health check: nightly_health.py RECORDINGS BASELINE OUT. Exit code 1: an alarm of a finger is active.
+"""Checks the health of all fingers every night: nightly_health.py RECORDINGS BASELINE OUT. Exit code 1: an alarm is active.
 
-OUT keeps the indicators of each recording, so that no recording is read twice, and gets a page per finger.
+The folder OUT stores the indicators of each recording, so that no recording is read twice. It also gets a page per finger.
 """
 
 import pathlib
