@@ -4,9 +4,9 @@
     bench/beside.py [--build build/release] [--page docs/results/beside-octave-and-scipy.md] [--runs 3]
 
 Needs Debian's octave, octave-optim, octave-dev, python3-scipy and python3-pandas (scripts/packages.sh tests readers benchmarks).
-The programs for Octave and SciPy are in bench/beside; both use the same simulator, which is compiled C. Every number of the
-page is measured by this run. Exit codes: 0: the page is written; 1: a program failed, or a reader did not get the exported
-values.
+The programs for Octave and SciPy are in bench/beside. Both use the same simulator, which is compiled C code. Every number of
+the page is measured by this run. Exit codes: 0: the page is written; 1: a program failed, or a program read other values than
+the exported ones.
 """
 import argparse
 import csv
@@ -31,8 +31,8 @@ SIMULATOR, MEX = ROOT / "bench/sysid_peer_simulator.c", ROOT / "bench/sysid_peer
 
 
 def said(words, folder):
-    """Runs a program. Returns its standard output and the processor time that it took on all cores. Elapsed time is
-    not used, because other programs may run at the same time."""
+    """Runs a program. Returns its standard output and the processor time that it used on all cores. The elapsed time is not
+    used, because other programs on the machine lengthen it."""
     began = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run([str(word) for word in words], cwd=folder, capture_output=True, text=True)
     if done.returncode != 0:
@@ -100,7 +100,8 @@ class Study:
         self.extended = json.loads((self.folder / "extended/validate.json").read_text())["rmse_mm"]
 
     def exports(self):
-        """Computes, for each reader, the largest difference between its values and the exported ones [mm]."""
+        """Computes, for each program that reads the exported file, the largest difference between the values that it read
+        and the exported values [mm]."""
         import pandas
         import scipy.io
         said([self.softgrip, "export", "tp1.csv", "--out", "out.mat"], self.folder)

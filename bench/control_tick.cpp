@@ -1,6 +1,6 @@
 // Measures the CPU time of one channel per tick, for the whole controller and for its parts. A tick of two
-// fingers with all functions may take 1 us of CPU time, so the channel controllers measured here may take
-// about 350 ns each.
+// fingers with all functions may take 1 us of CPU time. Therefore, each channel controller measured here may
+// take about 350 ns.
 
 #include <benchmark/benchmark.h>
 
@@ -45,8 +45,8 @@ control::ChannelSettings settings_for(control::FeedforwardKind kind) {
   return settings;
 }
 
-/// A recorded run of a finger that equals its model. The finger is not simulated during the benchmark, so
-/// only the controller is measured.
+/// A simulated recording of a finger that equals its model. The simulation is finished before the benchmark
+/// starts, so the benchmark measures only the controller.
 struct Tape {
   explicit Tape(const control::ChannelSettings& settings) {
     reference.start(0, 0);
@@ -106,8 +106,9 @@ void channel(benchmark::State& state) {
 }
 BENCHMARK(channel)->ArgName("feedforward")->Arg(0)->Arg(1)->Arg(2);
 
-// Measures a channel whose valve model consists of a dead band and a regulator instead of a lag. Such a model
-// results if the valve is identified from the command alone.
+// Measures a channel whose valve model consists of a dead band and a pressure regulator, in place of the
+// usual first-order lag. Such a model results if the valve is identified from the command without a pressure
+// sensor.
 void channel_behind_a_regulator(benchmark::State& state) {
   control::ChannelSettings settings = settings_for(control::FeedforwardKind::full_model);
   model::Model& model = settings.model;
@@ -123,7 +124,8 @@ void channel_behind_a_regulator(benchmark::State& state) {
 }
 BENCHMARK(channel_behind_a_regulator);
 
-// Measures the time of each tick of two fingers separately, to determine percentiles.
+// Measures the time of each tick of two fingers separately, so that percentiles of the tick time can be
+// computed.
 void two_channels_percentiles(benchmark::State& state) {
   const auto settings = settings_for(control::FeedforwardKind::full_model);
   Tape tape(settings);

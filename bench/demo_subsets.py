@@ -3,9 +3,9 @@
 
     bench/demo_subsets.py --build BUILD [--page FILE] [--check] [SUBSET ...]
 
-SUBSET: names of logs joined by +, such as tp1+sp2; default: all seven. --check fails in three cases: an interval does not
-cover the true value of the simulated finger, a wrong cause is named, or a cause is named with some logs but not with these
-logs and further ones.
+SUBSET: names of logs joined by +, such as tp1+sp2; default: all seven. --check fails in three cases. An interval does not
+cover the true value of the simulated finger. A wrong cause is named. A cause that is named with some logs is not named when
+further logs are added.
 """
 import argparse
 import itertools
@@ -44,7 +44,8 @@ def diagnose(softgrip, logs, out):
 
 
 def found(diagnosis):
-    """Returns (value, low, high, inclusion) for each named cause; None for a cause that NUMBER_OF does not contain."""
+    """Returns (value, low, high, inclusion) for each named cause, or None in place of the tuple if NUMBER_OF does not
+    contain the cause."""
     rows = {}
     for cause in diagnosis["causes"]:
         number = cause["parameters"].get(NUMBER_OF.get(cause["id"]))

@@ -1,6 +1,6 @@
-// Measures the duration of an exchange over loopback. libmodbus sends the same requests to the same server
-// for comparison. Blocks of exchanges of the two clients alternate within the same seconds, and the
-// percentiles of both are compared.
+// Measures the duration of a Modbus exchange over the loopback interface. For comparison, the client of
+// libmodbus sends the same requests to the same server. Blocks of exchanges of the two clients alternate
+// within the same seconds. The program prints the percentiles of both clients.
 //
 //   build/release/bench/exchange_bench [exchanges, default 20000]
 
@@ -29,7 +29,7 @@ using drivers::ModbusBoard;
 
 constexpr std::size_t block = 100;
 
-/// A server of libmodbus in a thread. Each server handles one session at a time.
+/// A Modbus server of libmodbus in a thread. Each server serves one client at a time.
 class Server {
  public:
   Server() : context_(::modbus_new_tcp("127.0.0.1", 0)), mapping_(::modbus_mapping_new(64, 64, 512, 64)) {
@@ -72,8 +72,8 @@ class Server {
   std::thread thread_;
 };
 
-/// Returns the board map that both clients use: two integer outputs from register 256 and two integer inputs
-/// from register 0.
+/// Returns the board map for both clients: two integer outputs from register 256 and two integer inputs from
+/// register 0.
 drivers::BoardMap map_with(bool fc23) {
   drivers::BoardMap map;
   map.name = "bench";

@@ -5,7 +5,7 @@
                      [--threads 1] [--at-most-s 3600] [--reference FILE] [--page [PAGE]]
 
 A judge evaluates one kind of case: repeats (runs between which nothing changed), changes (changes that the laboratory
-labelled), stiction (control loops with labelled valves), identification (compared with a linear output-error model and with
+labelled), stiction (control loops with labelled valves), identification (comparison with a linear output-error model and with
 a Bouc-Wen fit by SciPy). Each folder below --data is a data set. bench/foreign/sets/FOLDER.yaml, or foreign.yaml in the
 folder, describes it (docs/how-to/measure.md).
 The cases and their summary are written to DIR/results.json. The results of all calls are stored in DIR, so that a repeated
@@ -37,7 +37,8 @@ PAGE, REFERENCE = ROOT / "docs/results/foreign-data.md", HERE / "reference.json"
 
 
 class Judge:
-    """Four functions: the cases of a data set, the result of one case, its text for the screen, the summary of all."""
+    """The four functions of a judge. They return the cases of a data set, the result of one case, its text for the screen,
+    and the summary of all cases."""
 
     def __init__(self, cases, judge, said, summary):
         self.cases, self.judge, self.said, self.summary = cases, judge, said, summary
@@ -104,7 +105,7 @@ def summaries(cases):
 
 
 class Results:
-    """Collects the cases and writes results.json after each of them."""
+    """Collects the cases and writes results.json after each case."""
 
     def __init__(self, options, runner, sets):
         self.path = options.out / "results.json"
@@ -124,7 +125,7 @@ class Results:
 
 
 def refused(options):
-    """Returns (exit code, sentence) if a folder of data or the program is missing, otherwise None."""
+    """Returns (exit code, sentence) if a data folder or the program does not exist, otherwise None."""
     for folder in options.data:
         if not folder.is_dir():
             return 4, f"there is no folder {folder}"

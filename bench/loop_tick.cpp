@@ -1,12 +1,12 @@
 // Measures the duration of a whole tick of the control loop's thread. The tick takes readings, controls two
 // fingers with full_model and PID, checks limits, runs the supervisor, publishes commands and snapshot, and
-// passes rows to the recorder. Only Loop::tick is timed; board and recorder run between the ticks. Each
-// series of ticks runs twice. The first run measures the CPU time of the thread, which excludes interruptions
-// but needs a system call. The second run uses the monotonic clock, which is fast to read but includes
-// interruptions.
+// passes rows to the recorder. Only Loop::tick is timed; the simulated board and the recorder run between the
+// ticks. Each series of ticks runs twice. The first series measures the CPU time of the thread, which
+// excludes interruptions by other threads but needs a system call. The second series uses the monotonic
+// clock, which is fast to read but includes these interruptions.
 //
-// Then the program measures how much faster than real time the whole daemon (board, control loop, bus,
-// recorder and disk) runs in virtual time.
+// Then the program runs the whole daemon (board, control loop, bus, recorder and disk) in virtual time. It
+// measures how many times faster than real time the daemon is.
 //
 //   loop_tick [TICKS]
 
@@ -65,7 +65,8 @@ struct Times {
   }
 };
 
-/// Measures the time between two successive readings of the clock.
+/// Measures the time between two successive readings of the clock, which is the time of the measurement
+/// itself.
 Times time_nothing(clockid_t clock) {
   Times times;
   for (int i = 0; i < 100'000; ++i) {
@@ -86,8 +87,8 @@ std::shared_ptr<const daemon::LoadedSequence> track_sine(const control::RigSetti
   return *sequence;
 }
 
-/// Measures the ticks of a sequence that follows a sine. The sequence is repeated until `ticks` ticks were
-/// measured.
+/// Measures the ticks of a sequence whose reference is a sine. The sequence is repeated until `ticks` ticks
+/// were measured.
 Times time_ticks(double rate_hz, clockid_t clock, std::uint64_t ticks) {
   daemon::DaemonOptions options;
   options.virtual_time = true;
@@ -122,8 +123,8 @@ void print(double rate_hz, const char* name, clockid_t clock, std::uint64_t tick
               rate_hz, name, times.at(0.5), times.at(0.99), times.at(0.999), times.at(1), nothing.at(0.5));
 }
 
-/// Prints how many seconds are simulated per second of elapsed time while everything is recorded: the median
-/// of several runs.
+/// Prints how many seconds of rig time the daemon simulates per second, while it records everything. Prints
+/// the median, smallest and largest result of several runs.
 void print_speed(double rate_hz) {
   constexpr int runs = 7;
   std::vector<double> by_clock;

@@ -1,4 +1,5 @@
-// Measures the CPU time of one sample of a model: a step, and a trial step as an inverse needs it, with and
+// Measures the CPU time of one sample of a model: for a step that changes the model's state, and for a trial
+// step that does not change it, as the inverse of a model needs it. The trial step is measured with and
 // without the derivative.
 
 #include <benchmark/benchmark.h>

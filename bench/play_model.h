@@ -1,6 +1,6 @@
 #pragma once
-// A model of a finger with play operators, with as many parameters as an identified model usually has. It is
-// compared with the Bouc-Wen model.
+// A model of a finger with play operators. It has as many parameters as an identified model usually has. The
+// benchmarks compare its computing time with that of the Bouc-Wen model.
 
 #include <cmath>
 #include <utility>
@@ -15,9 +15,9 @@
 
 namespace softgrip::bench {
 
-/// Returns a model with 12 play operators up to 57 kPa, 7 creep branches and a nonlinear characteristic. It
-/// has the dead time of bench_twin and a lag that fills faster than it vents. The values are examples, not
-/// measurements. The finger reaches 20 mm below 60 kPa.
+/// Returns a model with 12 play operators with thresholds up to 57 kPa, 7 creep branches and a nonlinear
+/// characteristic. Its dead time is that of bench_twin, and its valve fills faster than it vents. The values
+/// are examples, not measurements. The finger reaches 20 mm below 60 kPa.
 inline model::Model play_model() {
   constexpr int plays = 12, branches = 7;
   std::vector<double> hysteresis{0, 0, 0, 0, 0, 0.15}, creep{1e9};

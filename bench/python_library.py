@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The Python functions compared with the C++ library and with SciPy, on one page.
+"""Compares the Python functions with the C++ library and with SciPy, on one page.
 
     bench/python_library.py [--build build/release] [--page docs/results/python-library.md] [--runs 5]
 
@@ -57,7 +57,7 @@ class Study:
         self.environment = {**os.environ, "PYTHONPATH": str(build / "python"), "LD_LIBRARY_PATH": str(build / "library")}
 
     def said(self, *words):
-        """Standard output, and the processor time on all cores [s]."""
+        """Runs a program. Returns its standard output and its processor time on all cores [s]."""
         began = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = subprocess.run([str(word) for word in words], cwd=self.folder, env=self.environment, capture_output=True, text=True)
         if done.returncode != 0:
@@ -66,14 +66,15 @@ class Study:
         return done.stdout, used.ru_utime + used.ru_stime - began.ru_utime - began.ru_stime
 
     def imports(self, without_numpy):
-        """Median wall time and processor time of an import [s]."""
+        """Returns the median wall time and the median processor time of an import [s]."""
         times = [self.said(PYTHON, "-c", IMPORT.format(without_numpy=without_numpy))[0].split() for _ in range(4 * self.runs)]
         return [statistics.median(float(one[column]) for one in times) for column in (0, 1)]
 
     def simulations(self):
-        """The fastest call from C++ and from Python [µs], of alternating processes: other programs make a call slower, never
-        faster. In both, malloc keeps freed memory: otherwise the small C++ program returns it after each call, and the next
-        call pays for it."""
+        """Returns the time of the fastest call from C++ and from Python [µs]. Processes of the two languages alternate. The
+        fastest call is used, because other programs can make a call only slower. In both languages, malloc keeps freed
+        memory. By default, the small C++ program would return the memory after each call, and the next call would be
+        slower."""
         self.environment |= {"MALLOC_TRIM_THRESHOLD_": str(2**28), "MALLOC_MMAP_THRESHOLD_": str(2**25)}
         self.said("c++", "-std=c++20", "-O2", "-I", ROOT / "library/include", ROOT / "bench/library_simulate.cpp", "-o",
                   "library_simulate", self.build / "library/libsoftgrip.so")
@@ -84,7 +85,7 @@ class Study:
         return [min(values) for values in fastest.values()]
 
     def identifications(self):
-        """Of SciPy and of softgrip: the result, and the median processor time [s]."""
+        """Returns, for SciPy and for softgrip, the result of the identification and the median processor time [s]."""
         logs = []
         for signal in ("tp1", "steps", "sp2"):
             logs.append(f"{signal}.csv")

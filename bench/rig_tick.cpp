@@ -1,7 +1,7 @@
 // Measures the duration of a whole tick of a rig: two fingers with full_model and PID, sequence, supervisor
-// and fault monitor. Only RigController::tick is timed; the simulated fingers advance between the
-// measurements. To compare models, run them alternately:
-// --benchmark_enable_random_interleaving=true --benchmark_repetitions=9.
+// and fault monitor. Only RigController::tick is timed; the simulated fingers advance between the timed
+// calls. To compare models, measure them alternately: --benchmark_enable_random_interleaving=true
+// --benchmark_repetitions=9.
 
 #include <benchmark/benchmark.h>
 
@@ -55,7 +55,8 @@ control::RigSettings settings(const model::Model& model, double rate_hz) {
   return rig;
 }
 
-/// Measures ticks during the sine of config/sequences/track_sine.yaml, which is repeated.
+/// Measures ticks during the sine of config/sequences/track_sine.yaml. The sine is repeated until the
+/// benchmark ends.
 void rig_tick(benchmark::State& state, const model::Model& model) {
   const control::RigSettings rig = settings(model, static_cast<double>(state.range(0)));
   const double period_s = 1 / rig.rate_hz;

@@ -29,8 +29,8 @@ def simulate(x, t, p):
 
 
 def natural(z):
-    """Converts the logarithms of stiffnesses and dampings, which are fitted as in softgrip, to the parameters themselves.
-    The other parameters are unchanged."""
+    """Converts the fitted numbers to the parameters of the model. As in softgrip, the logarithms of stiffnesses and dampings
+    are fitted; the other parameters are unchanged."""
     return np.concatenate([z[:4], np.exp(z[4:])])
 
 

@@ -1,10 +1,11 @@
-// The part of bench/sysid_peers.sh that runs softgrip: creates three logs and the start points, fits the logs
-// from each start point and prints the times.
+// Runs softgrip for the comparison bench/sysid_peers.sh. Creates three logs and the start points, fits the
+// logs from each start point and prints the times.
 //
 //   sysid_starts FOLDER [STARTS [SAMPLES]]
 //
-// FOLDER gets log1.csv .. log3.csv, starts.txt (one start per line: alpha beta gamma eta k1 c1 k2 c2) and
-// ours.txt (RMSE per start in mm, then the CPU time in s of all starts on one thread).
+// The program writes log1.csv to log3.csv, starts.txt and ours.txt into FOLDER. starts.txt has one start
+// point per line: alpha beta gamma eta k1 c1 k2 c2. ours.txt has the RMSE of each start point [mm], then the
+// CPU time of all fits on one thread [s].
 
 #include <chrono>
 #include <cmath>
@@ -26,8 +27,8 @@ namespace {
 using namespace softgrip;
 using namespace softgrip::sysid;
 
-/// Returns start points. Every parameter except k0 and the exponent is multiplied by a random factor between
-/// 1/e and e.
+/// Returns start points for the fits. Every parameter except k0 and the exponent is multiplied by a random
+/// factor between 1/e and e.
 std::vector<model::Model> start_points(std::size_t count) {
   std::mt19937_64 random(2025);
   std::uniform_real_distribution<double> logarithm(-1, 1);
@@ -45,7 +46,7 @@ std::vector<model::Model> start_points(std::size_t count) {
   return starts;
 }
 
-/// Duration of a fit: elapsed time, and CPU time, on which other programs have less effect.
+/// Duration of a fit: the elapsed time, and the CPU time. Other programs have less effect on the CPU time.
 struct Seconds {
   double wall;
   double processor;

@@ -28,8 +28,8 @@ using control::FeedforwardKind;
 using control::PidSettings;
 
 struct Options {
-  int draws = 40;        ///< draws for the results in the table
-  int search_draws = 6;  ///< further draws, for the search of the controller gains
+  int draws = 40;        ///< random models for the results in the table
+  int search_draws = 6;  ///< further random models, for the search of the controller gains
   std::uint64_t seed = 1;
   double latency_ms = 0;
   bool quantised = false;  ///< readings with 16 bits over 100 mm, commands with 12 bits over 100 kPa
@@ -39,7 +39,7 @@ struct Options {
 struct Scheme {
   std::string name;
   FeedforwardKind kind = FeedforwardKind::none;
-  model::Model believed;  ///< model of the controller before its parameters are changed
+  model::Model believed;  ///< model of the controller before its parameters are varied
   double pressure_max_kpa = 60;
 };
 
@@ -57,8 +57,8 @@ model::Model model_named(const std::string& name) {
   return *model;
 }
 
-/// Returns the published element with beta reduced to 0.9 of alpha. It can then be inverted, because beta
-/// causes the inverse response.
+/// Returns the published Bouc-Wen model with beta reduced to 0.9 of alpha. The published beta causes an
+/// inverse response; the model with the smaller beta can be inverted.
 model::Model regularised(const model::Model& published) {
   auto values = model::flat_values(published);
   values[model::find_path(published, "bouc_wen.beta_mm_per_kpa").value()] =
@@ -82,8 +82,8 @@ control::TrackingRun run_of(const Scheme& scheme, const Options& options, const 
   return run;
 }
 
-/// Returns models whose parameters deviate by up to `scatter` and whose feedforward exists. The number of
-/// other draws is returned in `refused`.
+/// Returns random models whose parameters deviate from those of the scheme by up to `scatter`. Models without
+/// a feedforward are not returned, but counted in `refused`.
 std::vector<model::Model> draws_of(const Scheme& scheme, int count, std::uint64_t seed, int& refused) {
   std::vector<model::Model> models;
   refused = 0;
@@ -99,8 +99,8 @@ std::vector<model::Model> draws_of(const Scheme& scheme, int count, std::uint64_
   return models;
 }
 
-/// Cost of a set of gains: root mean square of the RMSE over the draws, each from one short run. The cost is
-/// large if the stability margin of the loop is too small.
+/// Cost of a set of gains: root mean square of the RMSE over several random models, with one short run per
+/// model. The cost is large if the stability margin of the loop is too small.
 class Cost {
  public:
   Cost(const Scheme& scheme, const Options& options, const model::Model& finger, double frequency_hz)

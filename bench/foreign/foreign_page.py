@@ -26,7 +26,7 @@ def of(count, total):
 
 
 def names_of(case):
-    """Formats the named causes with their alternatives and sizes."""
+    """Formats the causes that a diagnosis named, with their alternatives and sizes."""
     parts = []
     for name, rivals, size in zip(case["named"], case["alternatives"], case["sizes"]):
         text = " or ".join([name, *rivals])
@@ -187,7 +187,7 @@ def failures_section(values):
 
 
 def meaning(values):
-    """Returns sentences with the counts that show how reliable the answers on such data are."""
+    """Returns sentences with counts that show how reliable the answers of softgrip on such data are."""
     summary, parts = values.get("summary", {}), []
     if "runs" in summary.get("repeats", {}):
         part = summary["repeats"]["runs"]

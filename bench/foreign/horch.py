@@ -1,14 +1,16 @@
 """Horch's phase test for stiction in a control loop, independent of softgrip.
 
-The idea is from A. Horch, "A simple method for detection of stiction in control valves", Control Engineering Practice 7 (1999) 1221-1231:
-if a loop oscillates because its valve sticks, the cross-correlation of controller output and reading is odd (a phase
-shift of 90 degrees). If a disturbance or a tight controller causes the oscillation, it is even (180 degrees). The zero
-crossings to the left and to the right of lag 0 measure the symmetry: for a sinusoid, the ratio
+The idea is from A. Horch, "A simple method for detection of stiction in control valves", Control Engineering Practice 7
+(1999) 1221-1231. If a loop oscillates because its valve sticks, the cross-correlation of controller output and reading is an
+odd function of the lag (a phase shift of 90 degrees). If a disturbance or a tight controller causes the oscillation, the
+cross-correlation is even (180 degrees). Its zero crossings to the left and to the right of lag 0 measure the symmetry. For a
+sinusoid, the ratio
 |left - right| / (left + right) is the distance of the phase shift from 180 degrees, divided by 90 degrees.
-The valve sticks if the ratio is above 2/3 (60 degrees) and is free if it is below 1/3 (30 degrees); otherwise the test is
-undecided. It applies to self-regulating processes. The limits are derived here from the sinusoid, because the text of the
-publication was not available. A second ratio, which uses the values of the correlation, was left out because it finds only 2
-of the 7 sticking loops of the data set `stiction`. The labels of the loops were known when this decision was made.
+The test decides that the valve sticks if the ratio is above 2/3 (60 degrees), and that it is free if the ratio is below 1/3
+(30 degrees). Otherwise the test is undecided. It applies to self-regulating processes. The two limits are derived here from
+the sinusoid, because the text of the publication was not available. A second ratio, which uses the values of the
+correlation, is not used, because it finds only 2 of the 7 sticking loops of the data set `stiction`. The labels of the loops
+were known when this decision was made.
 """
 import numpy as np
 
@@ -35,8 +37,8 @@ def first_crossing(values):
 
 
 def phase_ratio(u, y):
-    """Returns the phase ratio of a cross-correlation: 1 if it is odd, 0 if it is even. Returns None if it does not cross
-    zero on both sides of lag 0."""
+    """Returns the phase ratio of a cross-correlation: 1 if the cross-correlation is odd, 0 if it is even. Returns None if it
+    does not cross zero on both sides of lag 0."""
     correlation, middle = cross_correlation(u, y), len(u) - 1
     right, left = first_crossing(correlation[middle:]), first_crossing(correlation[middle::-1])
     if right is None or left is None or right + left == 0:

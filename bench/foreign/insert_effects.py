@@ -5,11 +5,11 @@
     bench/foreign.py --data DIR --only changes --out RESULTS --page PAGE
 
 The runs are those that a laboratory recorded without a change between them (`repeats` in the table of a data set). An effect
-is inserted into the readings of the later run; the baseline runs remain as recorded. So the finger, the valve, the noise and
+is inserted into the readings of the later run. The baseline runs remain as recorded. So the finger, the valve, the noise and
 the differences between runs are real, and only the effect is artificial. DIR contains 1 new data set for each data set of
---data. With --pulses, the pulses of one recording are used instead of runs: 1 healthy pulse, and the next one with an effect.
-Sizes of effects are shares of the stroke (highest minus lowest reading). If an operation removes noise, white noise is added
-again (0.1 % of the stroke, seed 1).
+--data. With --pulses, the pulses of one recording are used in place of runs: 1 healthy pulse, and the next pulse with an
+effect. Sizes of effects are shares of the stroke (highest minus lowest reading). If the inserted effect removes noise from
+the readings, white noise is added (0.1 % of the stroke, seed 1).
 """
 import argparse
 import pathlib
@@ -93,7 +93,7 @@ def inserted(log, effect):
 
 
 def write_set(data_set, pairs, folder):
-    """Writes the logs and the table of 1 new data set. `pairs` are the used ones of the `repeats` of `data_set`."""
+    """Writes the logs and the table of 1 new data set. `pairs` are the pairs of `repeats` in `data_set` that are used."""
     folder.mkdir(parents=True, exist_ok=True)
     entries, changes = {}, []
 

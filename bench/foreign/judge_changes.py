@@ -17,8 +17,8 @@ PROBABILITY = 0.95
 
 
 def healthy_bound(errors):
-    """Returns a one-sided prediction bound: the error of 1 further healthy run is below it with PROBABILITY (Student's
-    t)."""
+    """Returns an upper bound for the error of 1 further healthy run: the error is below the bound with PROBABILITY
+    (one-sided prediction bound, Student's t)."""
     n = len(errors)
     if n < 2:
         return None

@@ -1,8 +1,8 @@
 """Judge 4: identification compared with a linear output-error model and with a Bouc-Wen fit by SciPy.
 
-Each method either fits the first part of a log and predicts the rest, with a simulation from the start of the log, or it fits
-a whole log and predicts another log. If a log has a command and a measured pressure, it is identified twice: once with the
-command alone as the input (the measured pressure is removed), and once with the measured pressure as the input.
+Each method fits the first part of a log and predicts the rest, with a simulation from the start of the log. For some logs,
+it fits a whole log and predicts another log. A log with a command and a measured pressure is identified twice: once with the
+command as the input (the measured pressure is removed), and once with the measured pressure as the input.
 """
 import json
 import pathlib
@@ -14,9 +14,9 @@ from runner import result_of, slug
 HERE = pathlib.Path(__file__).resolve().parent
 OUTPUT_ERROR, SCIPY, HELD_OUT = HERE / "output_error.py", HERE / "scipy_bouc_wen.py", HERE / "held_out.py"
 SIMULATOR = HERE.parent / "sysid_peer_simulator.c"
-ORDER = 3  # states of the published element: its hysteresis and 2 creep branches
+ORDER = 3  # states of the published Bouc-Wen model: its hysteresis and 2 creep branches
 METHODS = ("plain", "auto", "output_error", "scipy")
-WORSE = 1.1  # required: the linear model is not better by more than 10 %
+WORSE = 1.1  # required: the held-out error is at most 10 % larger than that of the linear model
 
 
 def only(scores):
@@ -42,7 +42,7 @@ def library(runner):
 
 
 def peer(runner, data_set, log, test, script, words):
-    """Runs a program that shares no code with softgrip. Returns its result."""
+    """Runs a program that shares no code with softgrip, for comparison. Returns its result."""
     files = [log.path, *([test.path] if test else [])]
     sources = [script, HELD_OUT, SIMULATOR]
     name = f"{script.stem} {log.name} {test.name if test else ''} {log.path.parent.name}"

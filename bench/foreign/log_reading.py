@@ -1,4 +1,5 @@
-"""Converts a measured log to the log format of softgrip (docs/how-to/identify.md), as its entry in the table describes."""
+"""Converts a measured log to the log format of softgrip (docs/how-to/identify.md). The table's entry for the log describes
+its format."""
 import csv
 import dataclasses
 import datetime
@@ -13,7 +14,7 @@ COMMENTS = ("#", "%", "//")
 SEPARATORS = (",", ";", "\t", "|", " ")
 FAR_ENOUGH = 200  # number of lines in which the header is searched
 MOST_SAID = 5
-MOST_MISSING = 0.2  # the share of samples without a displacement that `softgrip identify` accepts
+MOST_MISSING = 0.2  # largest share of samples without a displacement that `softgrip identify` accepts
 # A hole, as in `softgrip identify`: an interval that is longer than HOLE_S and longer than HOLE_INTERVALS usual intervals, and
 # over which the command changes by more than the share HOLE_CHANGE of its range.
 HOLE_S, HOLE_INTERVALS, HOLE_CHANGE = 0.5, 20, 0.02
@@ -28,8 +29,8 @@ class Spoiled(Exception):
 @dataclasses.dataclass
 class Log:
     time_s: list
-    columns: dict  # by quantity; NaN: no reading
-    lines: list  # number of the line in the file, by sample
+    columns: dict  # values by name of the quantity; NaN: no reading
+    lines: list  # for each sample, the number of its line in the file
     notes: list
 
     def text(self):
@@ -82,7 +83,7 @@ class Reader:
         else:
             self.more += 1
 
-    # The places of the columns
+    # The positions of the columns
 
     def find_header(self):
         """Finds the first line that contains the names of all columns that the table gives by name. Returns the separator,
@@ -198,7 +199,8 @@ class Reader:
     # Units
 
     def factor(self, column, quantity):
-        """Returns the factor from the unit of the column to that of the log format, and the zero in the column's unit."""
+        """Returns the factor from the unit of the column to the unit of the log format, and the zero of the quantity in the
+        unit of the column."""
         written = {unit_in(name, column.quantity) for name in column.names} - {""}
         unit = column.unit.lower() or (written.pop() if len(written) == 1 else "")
         if column.unit and written and not {unit} >= written and unit in QUANTITIES[column.quantity]:
@@ -282,8 +284,8 @@ class Reader:
         return filled
 
     def with_readings(self, keep, readings):
-        """Removes the samples without a reading if they are more than MOST_MISSING of all samples, as with a sensor that
-        is slower than the log."""
+        """Removes the samples without a reading if their share is above MOST_MISSING. This happens if the sensor is slower
+        than the log."""
         read = [i for i in keep if not math.isnan(readings[i])]
         if not read or len(read) >= (1 - MOST_MISSING) * len(keep):
             return keep
@@ -291,8 +293,8 @@ class Reader:
         return read
 
     def usable(self, lines, times):
-        """Returns the indices of the samples within the requested time range. The time of each is later than that of the
-        previous one."""
+        """Returns the indices of the samples within the requested time range. Skips a sample that has the time of the
+        previous sample. Raises Spoiled if a time decreases."""
         keep, repeated = [], 0
         for i, t in enumerate(times):
             if not self.entry.from_s <= t <= self.entry.to_s:
@@ -315,7 +317,7 @@ def cut(log, begin, end):
 
 
 def longest_piece(log):
-    """Returns the longest segment of a log between holes."""
+    """Returns the longest segment of a log that contains no hole."""
     steps = [b - a for a, b in zip(log.time_s, log.time_s[1:])]
     if not steps:
         return log

@@ -34,13 +34,14 @@ class Map(dict):
 
 @dataclasses.dataclass
 class Column:
-    """The columns of a quantity, and the conversion to its unit in the log format. Several columns are averaged."""
+    """The columns of a quantity, and the conversion of their values to the unit of the log format. If there are several
+    columns, their values are averaged."""
     quantity: str
-    names: list = dataclasses.field(default_factory=list)  # a name, or a number that counts from 1
+    names: list = dataclasses.field(default_factory=list)  # names of columns, or column numbers from 1
     unit: str = ""
     scale: float = math.nan  # units of the log format per unit of the column
-    zero: object = None  # subtracted before scaling: a number, or "first"
-    span_mm: float = math.nan  # the readings are scaled to this span
+    zero: object = None  # value that is subtracted before scaling: a number, or "first" for the first value
+    span_mm: float = math.nan  # range of the readings after scaling
     rate_hz: float = math.nan  # sampling rate if the file has no column for the time
 
 
@@ -183,7 +184,7 @@ class EntryReader:
 
 
 def files_of(values, data):
-    """Returns name and file of every log that an entry of the table describes."""
+    """Returns the name and the file of every log that an entry of the table describes."""
     file = str(values.get("file", ""))
     if not file:
         return [(str(values.get("name", "?")), "")]
@@ -231,8 +232,8 @@ def refuse_what_says_nothing(path, values, known):
 
 
 def read_table(path, data, more_keys=()):
-    """Reads the table at `path`, which describes logs in the folder `data`. `more_keys`: further keys of the table, which the
-    caller reads."""
+    """Reads the table at `path`, which describes logs in the folder `data`. `more_keys` are the further keys that the caller
+    reads from the table."""
     path, data = pathlib.Path(path), pathlib.Path(data)
     values = values_of(path)
     refuse_what_says_nothing(path, values, (*TABLE_KEYS, *more_keys))

@@ -1,5 +1,5 @@
-"""Stores the outcome of each program in a file with a checksum of the inputs. A repeated run then only runs the programs
-whose inputs have changed."""
+"""Stores the outcome of each program in a file, together with a checksum of the program's inputs. A repeated run calls only
+the programs whose inputs have changed."""
 import hashlib
 import json
 import os
@@ -68,9 +68,9 @@ def described(error):
 
 
 def outcome_in(folder, of, function, in_words=described):
-    """Returns the outcome of function(folder), and True if it was read from the folder instead of computed. The outcome is
-    a dict with the keys "of", "wall_s", "processor_s", "load_1min", and "result" or "error". A stored outcome is used if it
-    has a result and if its checksum of the inputs equals `of`."""
+    """Returns the outcome of function(folder), and True if the outcome was read from the folder and not computed. The
+    outcome is a dict with the keys "of", "wall_s", "processor_s", "load_1min", and "result" or "error". A stored outcome is
+    used if it has a result and if its checksum of the inputs equals `of`."""
     kept = folder / "outcome.json"
     known = read_json(kept)
     if known and known.get("of") == of and "result" in known:

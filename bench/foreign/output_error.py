@@ -1,14 +1,15 @@
 #!/usr/bin/python3
-"""Fits a linear output-error model to a log. A model of an actuator should have a smaller error than this reference.
+"""Fits a linear output-error model to a log. The error of this model is the reference that an actuator model should fall
+below.
 
     output_error.py LOG.csv SPLIT ORDER [TEST.csv]     prints JSON: RMSE of the fitted and of the predicted part [mm]
 
 The model has ORDER poles and ORDER zeros and is stable (L. Ljung, System Identification, 2nd edition, section 4.2). It
-minimises the squared error of the simulation. Its poles are searched; residues, direct term, offset and initial state
-follow by linear least squares (variable projection: Golub and Pereyra, SIAM J. Numer. Anal. 10, 1973, 413-432). Two forms
-are fitted: all poles are real, or 1 pair is complex. The form with the smaller error on the fitted part is used. On TEST,
-the first 5 % (at least 2 s) determine the offset and the initial state. The prior of the initial state has the size of the
-initial state of LOG. The program shares no code with softgrip.
+The fit minimises the squared error of the simulation. A search finds the poles; for each set of poles, linear least squares
+gives the residues, direct term, offset and initial state (variable projection: Golub and Pereyra, SIAM J. Numer. Anal. 10,
+1973, 413-432). Two forms are fitted: in one, all poles are real; in the other, 1 pair is complex. The form with the smaller
+error on the fitted part is used. On TEST, the first 5 % (at least 2 s) determine the offset and the initial state. The prior
+of the initial state of TEST has the size of the initial state of LOG. The program shares no code with softgrip.
 """
 import itertools
 import json
@@ -52,20 +53,21 @@ class Signals:
         return self.at_samples(lfilter(np.ravel(b), a, self.drive))
 
     def free(self, denominator):
-        """Returns one response without a drive per pole. The responses of all initial states are combinations of them."""
+        """Returns the response of each pole to its initial state without an input. The response to any initial state is a
+        linear combination of these responses."""
         _, a, _ = cont2discrete(([1.0], denominator), self.step, "foh")
         motions = [lfilter([0.0] * k + [1.0], a, self.impulse) for k in range(len(a) - 1)]
         return [self.at_samples(motion / np.max(np.abs(motion))) for motion in motions]
 
 
 class Form:
-    """A form of the model: a number of real poles, and one complex pair of poles or none. All its parameters have
+    """A form of the model: a number of real poles, and one complex pair of poles or no such pair. The search parameters have
     magnitudes of about 1 to 10."""
 
     def __init__(self, real, pair, step_s, length_s):
         self.real, self.pair = real, pair
-        # Limits of the search. Motions slower than the fitted part or faster than its samples are not observable. An
-        # overdamped pair is excluded, because it equals 2 real poles.
+        # Limits of the search. The log does not show responses that are slower than its fitted part or faster than its
+        # sampling. An overdamped pair is excluded, because it equals 2 real poles.
         self.low = [np.log(step_s)] * real + ([np.log(2 * np.pi / length_s), np.log(0.01)] if pair else [])
         self.high = [np.log(length_s)] * real + ([np.log(0.5 * np.pi / step_s), 0.0] if pair else [])
 
@@ -79,7 +81,8 @@ class Form:
                 for real, w, z in itertools.product(list(reals), frequencies, DAMPINGS)]
 
     def denominators(self, numbers):
-        """Returns the denominator and the numerators of each part of the linear combination."""
+        """Returns, for each real pole and for the complex pair, the denominator of its transfer functions and their
+        numerators."""
         parts = [([tau, 1.0], [[1.0]]) for tau in np.exp(numbers[:self.real])]
         if self.pair:
             w, zeta = np.exp(numbers[-2:])
@@ -101,14 +104,14 @@ class Form:
 
 
 def least(columns, values):
-    """Returns the least-squares weights of the columns, which may have any magnitude. Combinations of columns that nearly
-    cancel get no weight."""
+    """Returns the least-squares weights of the columns, which may have any magnitude. Linear combinations of columns whose
+    sum is nearly zero get no weight."""
     scale = np.linalg.norm(columns, axis=0) + 1e-300
     return np.linalg.lstsq(columns / scale, values, rcond=NEARLY_CANCELS)[0] / scale
 
 
 class Fit:
-    """One form, fitted to the samples `fitted` of a log."""
+    """A model of one form, fitted to the samples `fitted` of a log."""
 
     def __init__(self, form, signals, reading, fitted):
         self.form, self.signals, self.reading = form, signals, reading
@@ -125,7 +128,7 @@ class Fit:
         error = (self.simulated - reading)[self.used]
         self.fitted_mm = rmse(error)
         correlation = np.clip(error[1:] @ error[:-1] / (error @ error), 0, 0.9999)
-        # number of correlated errors that count as 1 independent error
+        # number of correlated errors that have the information of 1 independent error
         self.samples_per_error = (1 + correlation) / (1 - correlation)
 
     def solve(self, numbers):
@@ -141,7 +144,7 @@ class Fit:
         return float(error @ error)
 
     def predict(self, time, drive, reading):
-        """Predicts another log. The beginning of this log determines its offset and its initial state."""
+        """Predicts another log. The beginning of that log determines its offset and its initial state."""
         signals = Signals(time, drive)
         forced = self.form.forced(self.numbers, signals) @ self.residues
         free = self.form.free(self.numbers, signals)
@@ -156,7 +159,7 @@ class Fit:
 
 
 def fitted(time, drive, reading, mask, order):
-    """Fits all forms of this order. Returns the fit with the smallest error."""
+    """Fits all forms of a model of this order. Returns the fit with the smallest error."""
     signals = Signals(time, drive)
     length = float(time[mask][-1] - time[0])
     forms = [Form(order, False, signals.step, length)]

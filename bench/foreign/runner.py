@@ -57,15 +57,15 @@ class Runner:
         self.prepared, self.calls = {}, []
 
     def cost(self):
-        """Returns the time and the highest machine load of the calls since the last cost(). For a stored call, these are
-        the values of the run in which it was made."""
+        """Returns the time and the highest machine load of the calls since the last call of cost(). If the outcome of a call
+        was stored earlier, its values are those of the run in which the call was made."""
         calls, self.calls = self.calls, []
         return {"wall_s": round(sum(call["wall_s"] for call in calls), 2),
                 "processor_s": round(sum(call["processor_s"] for call in calls), 2),
                 "load_1min": max((call["load_1min"] for call in calls), default=None)}
 
     def kept(self, folder, of, function, in_words=described):
-        """Returns the outcome of outcome_in() and counts it in cost()."""
+        """Returns the outcome of outcome_in() and adds its time and load to the next cost()."""
         outcome = outcome_in(folder, of, function, in_words)[0]
         self.calls.append(outcome)
         return outcome
@@ -124,7 +124,7 @@ class Runner:
 
 
 def result_of(outcome):
-    """Returns the result of an outcome. Raises Failed with the message of the program if it has none."""
+    """Returns the result of an outcome. If the outcome has no result, raises Failed with the message of the program."""
     if "error" in outcome:
         raise Failed(outcome["error"])
     return outcome["result"]

@@ -4,9 +4,9 @@
     scipy_bouc_wen.py LOG.csv SPLIT SIMULATOR.so [TEST.csv]     prints JSON: RMSE of the fitted and of the predicted part [mm]
 
 The program shares no code with softgrip: the simulator is the compiled bench/sysid_peer_simulator.c, and the optimiser is
-scipy.optimize.least_squares. The input is the measured pressure if there is one. The finger is assumed to be at rest at the
-first pressure. The zero of the readings is fitted together with the other eight parameters. The best of four starts is
-used. With TEST, the whole of LOG is fitted and TEST is predicted.
+scipy.optimize.least_squares. The input is the measured pressure if the log contains it, otherwise the command. The finger is
+assumed to be at rest at the first pressure. The zero of the readings is fitted together with the other eight parameters. The
+result is the best of the fits from four start points. With TEST, the whole of LOG is fitted and TEST is predicted.
 """
 import ctypes
 import json
@@ -20,14 +20,14 @@ except ImportError as error:
 
 from held_out import first_share, read, rmse, rmse_with_own_offset
 
-K0 = 1e12  # stiffness of the elastic spring: so large that it has no effect, because its effect equals that of alpha
+K0 = 1e12  # stiffness of the elastic spring, so large that the spring has no effect; alpha has the same effect
 STARTS, EVALUATIONS = 4, 200
 POINTER = ctypes.POINTER(ctypes.c_double)
 
 
 class Problem:
-    """The fit with readings and pressures divided by their ranges in the fitted log, so that all parameters have
-    magnitudes of about one."""
+    """The fit of the model. Readings and pressures are divided by their ranges in the fitted log, so that all parameters
+    have magnitudes of about one."""
 
     def __init__(self, log, fitted, library):
         self.simulator = ctypes.CDLL(library).simulate

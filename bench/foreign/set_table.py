@@ -1,7 +1,7 @@
-"""Reads a data set and its table. The table describes logs, as in log_table.py, and the known facts that the judges use.
+"""Reads a data set and its table. The table describes the logs, as in log_table.py, and the known facts that the judges use.
 
-A mistake in a log, a pair or a loop is reported with its file and line. Only the cases that use this entry are not judged. If
-the table as a whole cannot be read, log_table.Unusable is raised. docs/how-to/measure.md lists the keys.
+A mistake in a log, a pair or a loop is reported with its file and line. The cases that use this entry are not judged, but all
+other cases are. If the table as a whole cannot be read, log_table.Unusable is raised. docs/how-to/measure.md lists the keys.
 """
 import csv
 import dataclasses
@@ -18,12 +18,13 @@ CAUSES = ("transport_delay", "valve_lag", "valve_deadband", "pressure_saturation
           "stress_softening", "slow_creep", "thermal_gain", "ageing", "contact", "inertia", "backlash", "payload",
           "sensor_lag", "sensor_drift", "sensor_nonlinearity", "sensor_saturation", "periodic_disturbance", "outliers",
           "clock_offset", "sampling")
-OWN_TABLE = "foreign.yaml"  # in a data folder; otherwise sets/NAME_OF_THE_FOLDER.yaml
+OWN_TABLE = "foreign.yaml"  # name of the table in a data folder; if it is missing, sets/NAME_OF_THE_FOLDER.yaml is used
 
 
 @dataclasses.dataclass
 class Pair:
-    """Baseline logs and a later log of the same rig. If there is no label, nothing has changed between them."""
+    """Baseline logs and a later log of the same rig. Without a label, nothing has changed between the baseline logs and the
+    later log."""
     name: str
     baseline: list
     later: str
@@ -179,7 +180,7 @@ def is_log(path):
 
 
 def set_without_table(folder, scratch):
-    """Returns a data set for a folder without a table. Each CSV file in the log format is a case of the judge
+    """Returns a data set for a folder that has no table. Each CSV file in the log format is a case of the judge
     `identification`; the other judges have no cases."""
     files = [path for path in sorted(folder.glob("*.csv")) if is_log(path)]
     if not files:

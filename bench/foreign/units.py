@@ -11,7 +11,7 @@ QUANTITIES = {
     "displacement": {"mm": 1, "cm": 10, "m": 1000, "um": 1e-3, "µm": 1e-3, "in": 25.4, "inch": 25.4},
     "temperature": {"c": 1, "degc": 1, "°c": 1, "k": 1, "f": 5 / 9, "degf": 5 / 9, "°f": 5 / 9},
 }
-# The zero of the Celsius scale, expressed in each unit of temperature.
+# The temperature of 0 degrees Celsius in each unit of temperature.
 ZEROS = {"k": 273.15, "f": 32, "degf": 32, "°f": 32}
 
 
