@@ -1,6 +1,6 @@
 #pragma once
-// Defines the faults. A fault latches until it is reset. The codes are stable; they appear in events,
-// recordings, metrics and the manual.
+// Defines the faults. A fault stays latched until it is reset. The codes of the faults never change; they
+// appear in events, recordings, metrics and the manual.
 
 #include <cstdint>
 #include <span>
@@ -8,17 +8,18 @@
 
 namespace softgrip::control {
 
-/// The codes of the faults. The number of a code is stable and is shown after an F: 101 is "F101". The
-/// hundreds digit is the group: 1 bus, 2 readings, 3 board and outputs, 4 model, 5 safety, 9 internal.
+/// The codes of the faults. The number of a fault never changes and is shown after an F: 101 is "F101". The
+/// hundreds digit is the group of the fault: 1 bus, 2 readings, 3 board and outputs, 4 model, 5 safety, 9
+/// internal.
 enum class FaultCode : std::uint16_t {
   none = 0,
-  bus_down = 101,              ///< no session, or no valid exchange for too many cycles
+  bus_down = 101,              ///< no connection, or no valid exchange for too many cycles
   bus_timed_out = 102,         ///< the board does not respond in time
-  bus_bad_reply = 103,         ///< responses do not match the request
-  bus_exception = 104,         ///< the board rejects the function or the address
+  bus_bad_reply = 103,         ///< the response does not match the request
+  bus_exception = 104,         ///< the board rejects the Modbus function or the register address
   reading_stale = 201,         ///< no new reading of a channel arrives
   reading_out_of_range = 202,  ///< the reading is outside the sensor's electrical range
-  sensor_error = 203,          ///< the sensor's or the board's own error code
+  sensor_error = 203,          ///< the sensor or the board reports an error code
   reading_jumped = 204,        ///< the reading changed faster than a finger can move
   reading_frozen = 205,        ///< the reading stayed constant while the command changed
   displacement_beyond_limits = 206,
@@ -31,7 +32,7 @@ enum class FaultCode : std::uint16_t {
   emergency_stop = 501,
   inputs_lost = 502,  ///< the digital inputs cannot be read
   cycles_lost = 901,  ///< the loop missed more consecutive cycles than allowed
-  not_finite = 902,   ///< a command was not a finite number
+  not_finite = 902,   ///< a command was NaN or infinite
 };
 
 /// Description of a fault in the manual and in events.
@@ -41,17 +42,17 @@ struct FaultInfo {
   std::string_view name;     ///< "bus_down"
   std::string_view meaning;  ///< one sentence
   std::string_view cause;    ///< usual cause
-  std::string_view remedy;   ///< action before the reset (acknowledge)
-  std::string_view bound;    ///< number of cycles until the fault latches, given as keys of the rig file
+  std::string_view remedy;   ///< action that the user must take before the reset (`acknowledge`)
+  std::string_view bound;    ///< keys of the rig file that give the number of cycles until the fault latches
 };
 
 /// Returns all faults in the order of their codes, without `none`.
 [[nodiscard]] std::span<const FaultInfo> all_faults() noexcept;
-/// Returns the description of a fault. For `none` and unknown numbers, the entry has id "F000" and name
-/// "none".
+/// Returns the description of a fault. The description of `none` and of an unknown number has the id "F000"
+/// and the name "none".
 [[nodiscard]] const FaultInfo& info_of(FaultCode code) noexcept;
 
-/// Returns true if the fault means that the board's outputs can differ from the commands of the loop.
+/// Returns true if the outputs of the board can differ from the commands of the loop after this fault.
 [[nodiscard]] constexpr bool inhibits(FaultCode code) noexcept {
   return code == FaultCode::cycles_lost || code == FaultCode::board_watchdog_tripped ||
          code == FaultCode::write_refused || code == FaultCode::outputs_overwritten;
@@ -65,15 +66,17 @@ enum class RefusalCode : std::uint16_t {
   interlock_open = 3,
   emergency_stop = 4,
   sequence_unfit = 5,    ///< no sequence was given, or the sequence was prepared for another rig
-  no_valid_reading = 6,  ///< a channel of the sequence has no valid reading
+  no_valid_reading = 6,  ///< a channel that the sequence uses has no valid reading
   nothing_to_stop = 7,
   nothing_to_acknowledge = 8,
   cause_persists = 9,            ///< reset requested while the cause of a latched fault is still present
-  overtaken = 10,                ///< a stop or vent request superseded the start before the loop accepted it
+  overtaken = 10,                ///< a stop or vent request arrived before the loop accepted the start, so
+                                 ///< the start was dropped
   nothing_to_release = 11,       ///< no sequence runs, and every channel is at its rest pressure
   named_start_not_running = 12,  ///< the request stops one given start, but no sequence of that start runs
 };
-/// Returns the id of a refusal, for example "R01". name_of() returns its name in snake_case.
+/// Returns the id of a refusal, for example "R01". The function name_of() returns the name of the refusal in
+/// snake_case.
 [[nodiscard]] std::string_view id_of(RefusalCode code) noexcept;
 [[nodiscard]] std::string_view name_of(RefusalCode code) noexcept;
 

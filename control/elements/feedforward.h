@@ -1,5 +1,5 @@
 #pragma once
-// Settings of the feedforward: the pressure that a reference needs according to the model.
+// Settings of the feedforward. The feedforward is the pressure that the model needs to follow the reference.
 
 #include <array>
 #include <cstdint>
@@ -11,12 +11,14 @@ namespace softgrip::control {
 
 enum class FeedforwardKind : std::uint8_t {
   none,        ///< PID alone
-  bouc_wen,    ///< inverse of the Bouc-Wen element alone (Zhang et al. 2025, section 5)
+  bouc_wen,    ///< inverse of the Bouc-Wen element without the other elements (Zhang et al. 2025, section 5)
   full_model,  ///< inverse of the complete chain, with a lead for each lag and a preview for the dead time
-  planned,     ///< computed before the run by least squares over the reference; needs no inverse of the model
+  planned,     ///< command computed by least squares over the reference before the sequence starts; needs no
+               ///< inverse of the model
 };
 
-/// Names of the kinds in rig files and options. `bouc_wen` is the name of the block that it inverts.
+/// Names of the feedforward kinds in rig files and options. The kind `bouc_wen` has the name of the block
+/// that it inverts.
 inline constexpr std::array<std::string_view, 4> feedforward_names{"none", model::BoucWen<double>::info.id,
                                                                    "full_model", "planned"};
 [[nodiscard]] constexpr std::string_view name_of(FeedforwardKind kind) {
@@ -25,9 +27,9 @@ inline constexpr std::array<std::string_view, 4> feedforward_names{"none", model
 
 struct FeedforwardSettings {
   FeedforwardKind kind = FeedforwardKind::none;
-  /// Time from the computation of a command to the board's output [s]: the bus exchange and the conversion of
-  /// the board. The valve blocks of the model do not include this time. `full_model` adds it to its preview.
-  /// Range: 0 to 1.
+  /// Time from the computation of a command to the board's output [s]: the bus exchange and the board's
+  /// conversion. The valve blocks of the model do not include this time. The kind `full_model` reads the
+  /// reference earlier by this time. Range: 0 to 1.
   double extra_latency_s = 0;
 };
 

@@ -1,21 +1,21 @@
 #pragma once
-// Detects an object between the fingers. Grips by pressure and grips by displacement use the same evidence:
-// the displacement shortfall, which is the displacement of the free-motion model minus the reading. The model
-// receives the commands that were written. It contains hysteresis and creep, so the evidence is valid while
-// the pressure changes and while the finger creeps.
+// Detects an object between the fingers. The evidence is the displacement shortfall, for grips to a pressure
+// and for grips to a displacement. The shortfall is the displacement of the free-motion model minus the
+// reading. The model receives the commands that were written. It contains hysteresis and creep, so the
+// evidence is also valid while the pressure changes or the finger creeps.
 
 #include <cstdint>
 #include <limits>
 
 namespace softgrip::control {
 
-/// Detects contact with hysteresis. Contact starts at a displacement shortfall of `margin_mm` and ends below
-/// half of it.
+/// Detects contact with hysteresis. Contact begins when the displacement shortfall reaches `margin_mm`, and
+/// ends when the shortfall falls below half of `margin_mm`.
 class Contact {
  public:
   explicit Contact(double margin_mm) noexcept : margin_mm_(margin_mm) {}
   void reset() noexcept { touching_ = false; }
-  /// Processes a displacement shortfall [mm]. An unknown shortfall (NaN) changes nothing.
+  /// Processes a displacement shortfall [mm]. If the shortfall is unknown (NaN), the state does not change.
   void observe(double shortfall_mm) noexcept;
   [[nodiscard]] bool touching() const noexcept { return touching_; }
 
@@ -24,17 +24,17 @@ class Contact {
   bool touching_ = false;
 };
 
-/// Decides if the evidence of a grip is present during a complete time window. Unusable readings restart the
-/// window.
+/// Decides if the evidence of a grip is present during a complete time window. If a reading is unusable, the
+/// window restarts.
 class EvidenceWindow {
  public:
   enum class Verdict : std::uint8_t { pending, verified, refuted };
   void start(double time_s, double window_s) noexcept;
-  /// Returns verified if the evidence was present during the complete window, refuted if it was absent during
-  /// the complete window, otherwise pending.
+  /// Returns `verified` if the evidence was present during the complete window, and `refuted` if it was
+  /// absent during the complete window. Otherwise returns `pending`.
   Verdict observe(double time_s, bool usable, bool evidence) noexcept;
-  /// Returns true if a sample in the last window was not usable. Missing readings are then the reason for a
-  /// pending verdict.
+  /// Returns true if a sample in the last window was unusable. In this case, missing readings are the reason
+  /// for the result `pending`.
   [[nodiscard]] bool blinded(double time_s) const noexcept { return time_s - unusable_s_ < window_s_; }
 
  private:
@@ -45,12 +45,12 @@ class EvidenceWindow {
   bool evidence_ = false;
 };
 
-/// Monitors a held part. The mean evidence of every interval must reach `least`. The loss of a part is
-/// reported at most two intervals after it occurs. Intervals without a usable sample are ignored.
+/// Monitors a held part. The mean evidence of each interval must be at least `least`. If a part is lost, this
+/// is reported after two intervals at the latest. Intervals without a usable sample are ignored.
 class HoldWatch {
  public:
   void start(double time_s, double interval_s, double least) noexcept;
-  /// Returns true once, at the end of the interval that shows the loss.
+  /// Returns true if the interval that ends with this sample shows that the part is lost. This happens once.
   bool observe(double time_s, bool usable, double evidence) noexcept;
 
  private:

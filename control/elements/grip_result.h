@@ -6,25 +6,26 @@
 
 namespace softgrip::control {
 
-/// The result of one channel; it stays until a reset (acknowledge) or the next start.
+/// The grip result of one channel. It remains until a reset (`acknowledge`) or the next start.
 enum class GripResult : std::uint8_t {
   none,       ///< no grip yet
   holding,    ///< HOLDING: an object was detected and verified
-  no_part,    ///< NO PART: the finger moved as if free
-  part_lost,  ///< PART LOST: the object was held before
+  no_part,    ///< NO PART: the finger moved as without an object
+  part_lost,  ///< PART LOST: an object was held before, but is not held any more
   released,   ///< RELEASED
-  error,      ///< ERROR: timeout, fault or stop before a result
+  error,      ///< ERROR: a timeout, a fault or a stop occurred before there was a result
 };
-/// Returns the name for users: "HOLDING", "NO PART", "PART LOST", "RELEASED", "ERROR"; "-" for none.
+/// Returns the name that the user sees: "HOLDING", "NO PART", "PART LOST", "RELEASED" or "ERROR"; "-" for
+/// none.
 [[nodiscard]] std::string_view title_of(GripResult result) noexcept;
-/// Returns the name for programs: "holding", "no_part", ...
+/// Returns the name in files and messages for programs: "holding", "no_part", ...
 [[nodiscard]] std::string_view name_of(GripResult result) noexcept;
 
-/// The evidence of a verification.
+/// The evidence on which the verification of a grip is based.
 enum class GripEvidence : std::uint8_t {
   none,
-  displacement,  ///< the finger moved less than its free-motion envelope
-  pressure,      ///< weaker: only the pressure, because the displacement is not available
+  displacement,  ///< the finger moved less than its free-motion model
+  pressure,      ///< weaker evidence: the pressure alone, because the displacement is not available
 };
 /// Returns "none", "displacement" or "pressure (weaker)".
 [[nodiscard]] std::string_view name_of(GripEvidence evidence) noexcept;

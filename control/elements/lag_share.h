@@ -5,8 +5,8 @@
 
 namespace softgrip::control {
 
-/// Returns the share of the distance to a constant input that a first-order lag covers in `step_s` >= 0. It
-/// is 1 - exp(-step / tau), or 1 without a time constant.
+/// Returns the share of the distance to a constant input that the output of a first-order lag covers in the
+/// time `step_s` >= 0. The share is 1 - exp(-step_s / time_constant_s), or 1 if the time constant is 0.
 [[nodiscard]] inline double lag_share(double step_s, double time_constant_s) noexcept {
   return time_constant_s > 0 ? -std::expm1(-step_s / time_constant_s) : 1;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Reports a limit that has restricted a command for longer than a short time.
+// Reports a limit that has restricted a command for at least LimitWatch::moment_s.
 
 #include <cstdint>
 #include <optional>
@@ -7,8 +7,8 @@
 
 namespace softgrip::control {
 
-/// The limit that restricts a command. The rest pressure is not in this list, because the command of every
-/// released finger is at the rest pressure.
+/// The limit that restricts a command. The rest pressure is not one of these limits, because the command of
+/// every released finger is at the rest pressure.
 enum class BindingLimit : std::uint8_t {
   none,
   rig_pressure,   ///< limits: pressure_max_kpa of the rig file
@@ -19,27 +19,28 @@ enum class BindingLimit : std::uint8_t {
 };
 /// Returns "none", "rig_pressure", "step_pressure", "step_squeeze", "rig_slew_up" or "rig_slew_down".
 [[nodiscard]] std::string_view name_of(BindingLimit limit) noexcept;
-/// Returns the message, for example "pressure_max_kpa of the rig limits the pressure"; empty for none.
+/// Returns the message for a limit, for example "pressure_max_kpa of the rig limits the pressure"; empty for
+/// `none`.
 [[nodiscard]] std::string_view words_of(BindingLimit limit) noexcept;
 
-/// Reports a limit after limits have restricted a command for `moment_s`. If another limit then restricts the
-/// command for `moment_s`, or if the restriction ends, this is reported too. Gaps shorter than `gap_s` are
-/// ignored, because noise moves a command across its ceiling repeatedly.
+/// Reports a limit after limits have restricted a command for `moment_s`. Reports another limit after this
+/// other limit has restricted the command for `moment_s`. Reports the end of the restriction. Interruptions
+/// shorter than `gap_s` are ignored, because noise can move a command across a limit repeatedly.
 class LimitWatch {
  public:
   static constexpr double moment_s = 0.5;
   static constexpr double gap_s = 0.1;
 
-  /// Processes one tick. Returns reported() if it has just changed, otherwise nothing.
+  /// Processes one tick. Returns reported() if its value has changed in this tick, otherwise nothing.
   std::optional<BindingLimit> observe(double time_s, BindingLimit now) noexcept;
-  /// Returns the limit that was reported and is still active.
+  /// Returns the limit that was reported and still restricts the command.
   [[nodiscard]] BindingLimit reported() const noexcept { return reported_; }
 
  private:
   BindingLimit reported_ = BindingLimit::none;
   BindingLimit now_ = BindingLimit::none;
-  double since_s_ = 0;   ///< time at which a limit became active
-  double change_s_ = 0;  ///< time at which the present limit became active
+  double since_s_ = 0;   ///< time at which the command was first restricted by any limit
+  double change_s_ = 0;  ///< time at which the present limit began to restrict the command
   double last_s_ = 0;
 };
 

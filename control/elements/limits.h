@@ -1,8 +1,8 @@
 #pragma once
-// Limits commands. limit() is the only function that keeps a commanded pressure within its range and its slew
-// limits. The planner of the feedforward `planned` calls it too. The safe output (ChannelOutput::safe_kpa) is
-// written when the loop stops or its commands time out. It is either the last command, or the rest pressure
-// without a slew limit.
+// Limits commands. All commands of the loop and of the feedforward plan pass through limit(), which keeps
+// them within the pressure range and the slew limits. The safe output (ChannelOutput::safe_kpa) is written
+// when the loop stops or its commands time out. It is either the last command, or the rest pressure without a
+// slew limit.
 
 #include <algorithm>
 #include <cmath>
@@ -10,19 +10,19 @@
 
 namespace softgrip::control {
 
-/// Limits of one channel. The rig file must give each field except rest_kpa, because no default fits all
-/// rigs.
+/// Limits of one channel. The rig file must give each of them except rest_kpa, because no default is suitable
+/// for all rigs.
 struct LimitSettings {
   double pressure_min_kpa = 0;
   double pressure_max_kpa = 0;        ///< > pressure_min_kpa
   double slew_up_kpa_per_s = 0;       ///< > 0; largest rate of increase of the command
-  double slew_down_kpa_per_s = 0;     ///< > 0; largest rate of decrease
-  double displacement_min_mm = 0;     ///< lower limit of references
+  double slew_down_kpa_per_s = 0;     ///< > 0; largest rate of increase of the command
+  double displacement_min_mm = 0;     ///< > 0; largest rate of decrease of the command
   double displacement_max_mm = 0;     ///< > displacement_min_mm; upper limit of references
-  double displacement_margin_mm = 0;  ///< >= 0; a reading that is outside the range by more than this is a
-                                      ///< fault
-  double rest_kpa = 0;  ///< the pressure of every safe state; resting_kpa() returns this value limited to the
-                        ///< range
+  double displacement_margin_mm = 0;  ///< >= 0; a reading outside the displacement range by more than this
+                                      ///< margin is a fault
+  double rest_kpa = 0;  ///< pressure of every safe state; resting_kpa() returns it after limiting it to the
+                        ///< pressure range
 };
 
 /// A command within the limits, and the limits that changed it.
@@ -30,60 +30,59 @@ struct LimitedCommand {
   double command_kpa = 0;
   bool saturated = false;  ///< the requested pressure is outside the pressure range
   bool slewing = false;    ///< the request is further from the last command than the slew limits allow
-  bool invalid = false;    ///< the request or the ceiling is not a number: the last command is held
+  bool invalid = false;    ///< the request or the ceiling is not a number, so the last command is held
   bool capped = false;     ///< the request is above the ceiling
 };
 
-/// Limits a pressure to the range.
+/// Returns the pressure in the pressure range that is nearest to `pressure_kpa`.
 [[nodiscard]] double in_range(const LimitSettings& limits, double pressure_kpa) noexcept;
 
-/// Returns the pressure of every safe state: `rest_kpa`, or the end of the pressure range that is nearest to
-/// it.
+/// Returns the pressure of every safe state: `rest_kpa`, limited to the pressure range.
 [[nodiscard]] inline double resting_kpa(const LimitSettings& limits) noexcept {
   return std::max(limits.pressure_min_kpa, std::min(limits.rest_kpa, limits.pressure_max_kpa));
 }
 
-/// Returns the pressure between `rest_kpa` and `bound_kpa` that is nearest to `kpa`. For a bound above rest,
-/// the result is not below rest; for a bound below rest, it is not above rest. An infinite bound does not
-/// limit the pressure.
+/// Returns `kpa`, limited to the pressures between `rest_kpa` and `bound_kpa`. The order of the two does not
+/// matter: the bound may be above or below rest. An infinite bound does not limit the pressure.
 [[nodiscard]] inline double no_further(double rest_kpa, double kpa, double bound_kpa) noexcept {
   if (std::isinf(bound_kpa)) return kpa;
   return std::clamp(kpa, std::min(rest_kpa, bound_kpa), std::max(rest_kpa, bound_kpa));
 }
 
-/// Returns the end of the pressure range that is further from rest. If all pressures are on one side of rest,
-/// the finger moves toward this end.
+/// Returns the end of the pressure range that is further from the rest pressure. If the range lies on one
+/// side of the rest pressure, the finger moves toward this end.
 [[nodiscard]] inline double far_end_kpa(const LimitSettings& limits) noexcept {
   const double rest_kpa = resting_kpa(limits);
   const bool above = limits.pressure_max_kpa - rest_kpa >= rest_kpa - limits.pressure_min_kpa;
   return above ? limits.pressure_max_kpa : limits.pressure_min_kpa;
 }
 
-/// Returns true if a pressure differs from rest by more than 0.1 kPa, so that the channel counts as
+/// Returns true if a pressure differs from the rest pressure by more than 0.1 kPa. The channel then counts as
 /// pressurised.
 [[nodiscard]] inline bool pressed(const LimitSettings& limits, double pressure_kpa) noexcept {
   constexpr double unpressed_kpa = 0.1;
   return std::abs(pressure_kpa - resting_kpa(limits)) > unpressed_kpa;
 }
 
-/// No ceiling in addition to the pressure range.
+/// Value of a ceiling that does not limit the command; only the pressure range does.
 inline constexpr double no_ceiling = std::numeric_limits<double>::infinity();
 
-/// Returns the command for `wanted_kpa` if `last_kpa` was written `elapsed_s` (>= 0) ago. The result is
-/// always inside the pressure range, even if the last command was outside. Inside the range, the slew limits
-/// apply too. If the ceiling is below the present command, the command decreases to the ceiling as fast as
-/// the slew limits permit. A ceiling below the rest pressure acts as a ceiling at the rest pressure.
+/// Returns the command for the request `wanted_kpa` if `last_kpa` was written `elapsed_s` (>= 0) ago. The
+/// result is always inside the pressure range, even if the last command was outside. Inside the range, the
+/// slew limits apply too. If the ceiling is below the present command, the command decreases to the ceiling
+/// as fast as the slew limits permit. A ceiling below the rest pressure counts as a ceiling at the rest
+/// pressure.
 [[nodiscard]] LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last_kpa,
                                    double elapsed_s, double ceiling_kpa = no_ceiling) noexcept;
 
-/// A reference inside the displacement range.
+/// A reference, limited to the displacement range.
 struct LimitedReference {
   double reference_mm = 0;
   bool clamped = false;
 };
 [[nodiscard]] LimitedReference limit_reference(const LimitSettings& limits, double reference_mm) noexcept;
 
-/// Returns true if a reading is outside the displacement range by more than the margin, or not a number.
+/// Returns true if a reading is outside the displacement range by more than the margin, or is not a number.
 [[nodiscard]] bool displacement_beyond(const LimitSettings& limits, double displacement_mm) noexcept;
 
 }  // namespace softgrip::control

@@ -1,6 +1,6 @@
 #pragma once
-// Detects that the model no longer describes the finger. The criterion is the residual of the model that runs
-// in parallel.
+// Detects that the model no longer describes the finger. The criterion is the residual: the reading minus the
+// output of the model that runs in parallel.
 //
 // The residual of a healthy model is not white: parameter errors of a few percent cause errors that follow
 // the motion. The residual is modelled as the sum of a slow error and white noise of the sensor. The slow
@@ -8,8 +8,9 @@
 // correlation_time_s). Readings are averaged over interval_s. A Kalman filter of this process turns the
 // averages into innovations, which are independent and have unit variance if the residual has these
 // properties. A two-sided CUSUM (Page, Biometrika 41, 1954) accumulates the innovations. Its threshold
-// follows from the requested mean time between false alarms by Siegmund's formula (Sequential Analysis, 1985,
-// chapter 2). A model error that is larger or slower than the settings state causes more alarms, as intended.
+// is computed from the required mean time between false alarms by Siegmund's formula (Sequential Analysis,
+// 1985, chapter 2). A model error that is larger or slower than the settings state raises an alarm, as
+// intended.
 
 #include <array>
 #include <cstddef>
@@ -18,45 +19,48 @@
 namespace softgrip::control {
 
 enum class HealthState : std::uint8_t {
-  unknown,  ///< nothing was observed yet
+  unknown,  ///< the model has not been observed yet
   healthy,
   suspect,  ///< the residual drifts more than that of a healthy model, so the model should be fitted again
             ///< soon
-  unfit,    ///< the residual exceeds the tolerance of grip detection and feedforward
+  unfit,    ///< the residual exceeds the tolerance of grip detection and of the feedforward
 };
 [[nodiscard]] const char* name_of(HealthState state) noexcept;
 
-/// Properties of a healthy residual, and the limits for warnings. The defaults were tested with models of the
-/// simulated finger whose parameters are wrong, 40 models per error, over five cycles of a 13 +- 7 mm sine.
-/// No model becomes suspect or unfit for parameter errors up to 5 %, 5 of 40 models for errors up to 10 %,
-/// and 23 of 40 for errors up to 20 % (checked by tests/control/tuning/tracking_run_test.cpp).
+/// Properties of the residual of a healthy model, and the limits for warnings. The defaults were tested on
+/// the simulated finger with models whose parameters are wrong: 40 models per size of the parameter error,
+/// over five cycles of a 13 +- 7 mm sine. The number of models that become suspect or unfit is 0 for
+/// parameter errors up to 5 %. It is 5 for errors up to 10 %, and 23 for errors up to 20 % (checked by
+/// tests/control/tuning/tracking_run_test.cpp).
 struct ModelHealthSettings {
-  double model_error_mm = 0.4;      ///< > 0
-  double correlation_time_s = 4.0;  ///< > 0
+  double model_error_mm = 0.4;      ///< > 0; standard deviation of the slow error
+  double correlation_time_s = 4.0;  ///< > 0; correlation time of the slow error
   double noise_mm = 0.05;           ///< > 0; standard deviation of one reading
   double interval_s = 1.0;          ///< > 0; time over which the residual is averaged before a decision
-  double allowance_sigma = 0.5;     ///< > 0; half of the shift to detect, in standard deviations per interval
-  /// > 0; mean time between false alarms of a healthy model. It determines the decision threshold.
+  double allowance_sigma = 0.5;     ///< > 0; half of the shift of the innovations that must be detected, in
+                                    ///< standard deviations
+  /// > 0; mean time between false alarms of a healthy model. The decision threshold is computed from this
+  /// time.
   double false_alarm_interval_s = 3.6e6;
   double unfit_mm = 1.5;      ///< > 0; root mean square over unfit_window_s above which the model is unfit
-  double unfit_window_s = 5;  ///< > 0
+  double unfit_window_s = 5;  ///< > 0; time over which the root mean square is taken
 };
 
-/// Returns the mean number of independent standard normal values until a two-sided CUSUM with this allowance
-/// first reaches `threshold` from zero. The result is Siegmund's approximation. Its error is a few percent
-/// for run lengths from 50 on.
+/// Returns the mean number of independent standard normal values until a two-sided CUSUM with this allowance,
+/// which starts at zero, reaches `threshold`. The result is Siegmund's approximation. Its error is a few
+/// percent for run lengths of 50 and more.
 [[nodiscard]] double cusum_run_length(double allowance, double threshold) noexcept;
 /// Returns the threshold for which cusum_run_length() is `run_length` (at least 2).
 [[nodiscard]] double cusum_threshold(double allowance, double run_length) noexcept;
 
-/// Turns averages of a residual over intervals into innovations. They are independent and standard normal if
-/// the residual has the properties in the settings. The filter is a Kalman filter whose process noise
-/// correlates with its observation noise, because the average over an interval and the state at its end
-/// depend on the same noise.
+/// Turns averages of a residual over intervals into innovations. The innovations are independent and standard
+/// normal if the residual has the properties in the settings. The filter is a Kalman filter whose process
+/// noise correlates with its observation noise. The reason is that the average over an interval and the state
+/// at its end depend on the same noise.
 class ResidualWhitener {
  public:
   explicit ResidualWhitener(const ModelHealthSettings& settings) noexcept;
-  /// Restarts after a gap, when only the variance of the slow error is known.
+  /// Restarts the filter after a gap. The only knowledge after a gap is the variance of the slow error.
   void reset() noexcept;
   /// Returns the innovation of one interval in standard deviations; `count` is the number of averaged
   /// readings.
@@ -74,12 +78,12 @@ class ModelHealth {
  public:
   ModelHealth(const ModelHealthSettings& settings, double tick_s) noexcept;
 
-  /// Discards all earlier residuals.
+  /// Discards all residuals that were observed so far.
   void reset() noexcept;
   /// Processes a tick with a valid reading in free motion. Returns true if the state changed.
   bool observe(double residual_mm) noexcept;
-  /// Processes a tick without a valid reading in free motion. Returns true if the state changed. An interval
-  /// with too few readings is ignored.
+  /// Processes a tick that has no valid reading in free motion. Returns true if the state changed. An
+  /// interval with too few readings is ignored.
   bool skip() noexcept;
 
   [[nodiscard]] HealthState state() const noexcept { return state_; }
@@ -93,13 +97,13 @@ class ModelHealth {
   ModelHealthSettings settings_;
   ResidualWhitener whitener_;
   double threshold_ = 0;
-  double forget_ = 0;  ///< weight of one interval in the mean square
+  double forget_ = 0;  ///< weight of one interval in the mean square of the averages
   std::uint32_t ticks_per_interval_ = 1;
   std::uint32_t ticks_ = 0;
   std::uint32_t observed_ = 0;
   double sum_mm_ = 0;
-  double up_ = 0;    ///< CUSUM of innovations above the allowance
-  double down_ = 0;  ///< CUSUM of innovations below the negative allowance
+  double up_ = 0;    ///< CUSUM of positive innovations, each reduced by the allowance
+  double down_ = 0;  ///< CUSUM of negative innovations, each reduced by the allowance
   double mean_square_mm2_ = 0;
   bool alarmed_ = false;
   HealthState state_ = HealthState::unknown;

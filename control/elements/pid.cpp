@@ -61,8 +61,8 @@ double Pid::hold(double feedforward_kpa) noexcept {
 void Pid::sent(double command_kpa) noexcept {
   if (aligns()) align_to_kpa_ = command_kpa;
   const double cut_kpa = command_kpa - request_kpa_;
-  // Without an integral part, nothing would later remove the correction that the anti-windup adds to the
-  // integral.
+  // The anti-windup changes the integral. Without an integral gain, this change would never be removed, so
+  // the anti-windup is not applied.
   if (cut_kpa == 0 || settings_.ki_kpa_per_mm_s == 0) return;
   switch (settings_.anti_windup) {
     case AntiWindup::none:

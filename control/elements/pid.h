@@ -1,22 +1,23 @@
 #pragma once
-// PID controller with two degrees of freedom that uses the command that was really sent.
+// A PID controller with two degrees of freedom. Its anti-windup uses the command that was really sent.
 //
 //   request = feedforward + kp (b r - y) + I - kd d(y filtered)/dt,   dI/dt = ki (r - y)
 //
-// Discretisation: trapezoidal rule for the integral; ramp-invariant for the derivative, which is exact if the
-// measurement is linear between samples (Åström and Wittenmark, Computer-Controlled Systems, 3rd ed. 1997,
-// chapters 8.2 and 8.5; Åström and Hägglund, Advanced PID Control, 2006, chapter 13).
+// with the reference r, the reading y and the setpoint weight b. Discretisation: trapezoidal rule for the
+// integral; ramp-invariant for the derivative, which is exact if the measurement is linear between samples
+// (Åström and Wittenmark, Computer-Controlled Systems, 3rd ed. 1997, chapters 8.2 and 8.5; Åström and
+// Hägglund, Advanced PID Control, 2006, chapter 13).
 
 #include <cstdint>
 
 namespace softgrip::control {
 
-/// Method that prevents integrator windup while the command cannot follow the request.
+/// Method against integrator windup, which occurs while the command cannot follow the request.
 enum class AntiWindup : std::uint8_t {
-  none,              ///< the integrator continues: for comparison only
-  conditional,       ///< the integrator stops while its increment would move a limited request further beyond
-                     ///< the limit
-  back_calculation,  ///< the part that the limits remove drives the integrator back within tracking_time_s
+  none,              ///< no protection: the integrator continues (for comparisons)
+  conditional,       ///< the integrator stops while it would move a limited request further beyond the limit
+  back_calculation,  ///< the part of the request that the limits remove drives the integrator back within
+                     ///< tracking_time_s
 };
 
 struct PidSettings {
@@ -26,7 +27,7 @@ struct PidSettings {
   double derivative_filter_s = 0.02;  ///< time constant of the first-order filter of the derivative; >= 0
   double setpoint_weight = 1;         ///< b: share of the reference in the proportional part, 0 to 1
   AntiWindup anti_windup = AntiWindup::back_calculation;
-  double tracking_time_s = 0.5;  ///< for back_calculation; > 0
+  double tracking_time_s = 0.5;  ///< > 0; time constant of back_calculation
 };
 
 /// One PID controller. In each tick, the caller calls step() to get the request, applies the limits, and
@@ -35,24 +36,25 @@ class Pid {
  public:
   Pid(const PidSettings& settings, double tick_s) noexcept;
 
-  /// Makes the request of the next step() equal to `command_kpa`, regardless of the error and the
-  /// feedforward: the integrator absorbs the difference. Call this function at a start, at a change from hold
-  /// or pressure to displacement, and for a new feedforward.
+  /// Makes the request of the next step() equal to `command_kpa`, whatever the error and the feedforward are:
+  /// the integrator absorbs the difference. Call this function at a start, when the mode changes from hold or
+  /// pressure to displacement, and for a new feedforward.
   void align(double command_kpa) noexcept;
 
-  /// Returns the feedback part of the request [kPa]; the request is the sum of feedforward_kpa and this part.
-  /// `error_reference_mm` is the reference at the time at which `measurement_mm` was sampled.
+  /// Returns the feedback part of the request [kPa]. The request is the sum of feedforward_kpa and the
+  /// feedback. `error_reference_mm` is the value of the reference at the time at which `measurement_mm` was
+  /// sampled.
   [[nodiscard]] double step(double error_reference_mm, double measurement_mm,
                             double feedforward_kpa) noexcept;
 
-  /// Processes a tick without a usable measurement, or with the feedback held on purpose. The last feedback
-  /// is kept, and the integrator and the derivative pause. After align(), the feedback is the value that
-  /// continues the command, and the next step() continues from there.
+  /// Processes a tick without a usable measurement, or a tick in which the feedback is held on purpose.
+  /// Returns the last feedback; the integrator and the derivative do not change. After align(), returns the
+  /// feedback that keeps the command unchanged, and the next step() continues from this feedback.
   [[nodiscard]] double hold(double feedforward_kpa) noexcept;
 
-  /// Receives the command that remains of the last request after the limits. The anti-windup acts on the
-  /// difference between this command and the request. The difference can come from the pressure range, the
-  /// slew limits or a feedforward beyond these limits.
+  /// Receives the command that was sent after the limits. The anti-windup acts on the difference between this
+  /// command and the last request. The difference can come from the pressure range, from the slew limits or
+  /// from a feedforward outside them.
   void sent(double command_kpa) noexcept;
 
   [[nodiscard]] double integral_kpa() const noexcept { return integral_kpa_; }
@@ -66,23 +68,23 @@ class Pid {
   PidSettings settings_;
   double tick_s_;
   double filter_keep_;     ///< share of the derivative filter's state that remains per tick
-  double tracking_share_;  ///< back-calculation: share of the part removed by the limits that is taken from
-                           ///< the integral per tick
+  double tracking_share_;  ///< for back_calculation: share of the pressure removed by the limits by which the
+                           ///< integral is reduced per tick
   double integral_kpa_ = 0;
   double rate_mm_per_s_ = 0;  ///< filtered derivative of the measurement
   double last_error_mm_ = 0;
   double last_measurement_mm_ = 0;
   double feedback_kpa_ = 0;
   double request_kpa_ = 0;
-  double increment_kpa_ = 0;  ///< increase of the integral in the last step
+  double increment_kpa_ = 0;  ///< change of the integral in the last step
   double align_to_kpa_ = 0;
-  /// The state from which the next step() continues.
+  /// The value from which the next step() continues.
   enum class Memory : std::uint8_t {
-    none,           ///< the integral alone: there is no earlier measurement for the derivative and the
-                    ///< trapezoidal rule
-    measured,       ///< the last measurement
-    aligning,       ///< the command of align()
-    aligned_ahead,  ///< the command of align(), after a hold() that continued it
+    none,           ///< the integral; there is no earlier measurement for the derivative and the trapezoidal
+                    ///< rule
+    measured,       ///< the integral and the last measurement
+    aligning,       ///< the command that align() received
+    aligned_ahead,  ///< the command that align() received, after hold() has kept it unchanged
   };
   Memory memory_ = Memory::none;
 };

@@ -11,10 +11,11 @@ double between_s(Nanoseconds from, Nanoseconds to) {
   return static_cast<double>(to - from) * 1e-9;
 }
 
-/// Number of changes of the reading after which the longest run without a change is known for the sensor.
+/// After this number of changes of the reading, the longest time without a change counts as known for the
+/// sensor.
 constexpr std::uint32_t enough_changes = 50;
-/// A run without a change is implausible if it is longer than the longest previous run times this factor, and
-/// also longer than unlike_at_least.
+/// A time without a change is implausible if it is longer than the longest earlier one times this factor. It
+/// must also be longer than unlike_at_least.
 constexpr Nanoseconds unlike_times = 4;
 constexpr Nanoseconds unlike_at_least = ns_per_s / 10;
 
@@ -38,7 +39,7 @@ void Plausibility::Travel::see(double value) noexcept {
   highest = std::max(highest, value);
 }
 
-/// Stores the length of a run, unless the run was implausible for this sensor.
+/// Stores the time without a change that has just ended, unless it was implausible for this sensor.
 void Plausibility::learn(Nanoseconds run) noexcept {
   if (stands_still_) return;
   longest_run_ = std::max(longest_run_, run);

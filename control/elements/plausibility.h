@@ -1,5 +1,6 @@
 #pragma once
-// Checks the age, the speed of change and the constancy of readings that are electrically valid.
+// Checks electrically valid readings: their age, their speed of change, and the time for which they are
+// constant.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,20 +16,22 @@ inline constexpr std::size_t most_unsteady_jumps = 32;
 struct PlausibilitySettings {
   double max_age_s = 0.05;          ///< > 0; a reading that is older than this is stale
   double max_speed_mm_per_s = 500;  ///< > 0; must be above the speed of any motion of the finger
-  double jump_margin_mm = 0.5;      ///< >= 0; added to the permitted change because of the sensor's noise
+  double jump_margin_mm = 0.5;      ///< >= 0; addition to the permitted change of the reading, because of the
+                                    ///< sensor's noise
   /// > 0; time for which the reading may stay constant while the command changes. It must be longer than the
   /// valve's delay.
   double frozen_after_s = 1.0;
-  double frozen_band_mm = 0;       ///< >= 0; smaller changes count as constant (a quantisation step)
-  double frozen_command_kpa = 10;  ///< > 0; a reading that stays constant while the command changes by this
-                                   ///< amount is frozen
-  /// > 0; a reading that stays constant while the model of the free finger moves by this distance is frozen
-  /// too, if the sensor's readings usually change (stands_still()).
+  double frozen_band_mm = 0;       ///< >= 0; a smaller change of the reading counts as no change (a
+                                   ///< quantisation step)
+  double frozen_command_kpa = 10;  ///< > 0; a reading that stays constant while the command changes by more
+                                   ///< than this is frozen
+  /// > 0; a reading is also frozen if it stays constant while the model of the free finger moves by this
+  /// distance. This rule applies only to a sensor whose readings usually change (stands_still()).
   double frozen_expected_mm = 2;
-  /// > 0; if the part of a change between two readings that the model does not explain is larger than this,
-  /// the change is a jump (jump_watch.h).
+  /// > 0; a change between two readings is a jump if the part that the model does not explain is larger than
+  /// this (jump_watch.h).
   double jump_mm = 2;
-  /// From 2 to most_unsteady_jumps. This number of reversing jumps within 1 s makes the sensor unsteady.
+  /// Number of reversing jumps within 1 s that makes the sensor unsteady; 2 to most_unsteady_jumps.
   std::uint32_t unsteady_jumps = 4;
 };
 
@@ -37,20 +40,21 @@ class Plausibility {
  public:
   explicit Plausibility(const PlausibilitySettings& settings) noexcept;
 
-  /// Forgets all earlier readings: the next valid reading is accepted.
+  /// Discards all earlier readings, so that the next valid reading is accepted.
   void reset() noexcept;
 
-  /// Returns the validity of `reading` at `now`; `command_kpa` is the last command sent. If the driver
-  /// reports an invalid reading, its reason is returned. A jump is measured from the last valid reading. The
-  /// permitted travel grows with time, so a sensor that returns after a gap becomes valid again.
-  /// `expected_mm` is the displacement of the free-motion model at the time of the reading.
+  /// Returns the validity of `reading` at the time `now`. `command_kpa` is the last command that was sent. If
+  /// the driver reports an invalid reading, returns the reason that the driver gives. A jump is measured from
+  /// the last valid reading. The permitted change grows with the time since this reading, so a sensor that
+  /// returns after a gap becomes valid again. `expected_mm` is the displacement of the free-motion model at
+  /// the time of the reading.
   [[nodiscard]] model::Validity judge(const model::Reading& reading, Nanoseconds now, double command_kpa,
                                       double expected_mm = 0) noexcept;
 
   /// Returns true if the last digits of this sensor usually change, but the reading has been constant for
-  /// much longer than ever before. The sensor may then be frozen. A finger at rest does not explain the
-  /// constant reading. For a sensor with often constant readings (coarse, slow, without noise) the function
-  /// returns false.
+  /// much longer than ever before. The sensor may then be frozen; a finger at rest does not explain such a
+  /// reading. Returns false for a sensor whose readings are often constant because it is coarse, slow or
+  /// without noise.
   [[nodiscard]] bool stands_still() const noexcept { return stands_still_; }
 
  private:
@@ -69,16 +73,16 @@ class Plausibility {
   PlausibilitySettings settings_;
   Nanoseconds max_age_;
   Nanoseconds frozen_after_;
-  bool known_ = false;  ///< there is a last valid reading
+  bool known_ = false;  ///< true: there is a last valid reading
   double last_mm_ = 0;
   Nanoseconds last_sampled_at_ = 0;
-  bool watching_ = false;  ///< there is a displacement with which later readings are compared
+  bool watching_ = false;  ///< true: there is a displacement with which later readings are compared
   double still_mm_ = 0;
   Nanoseconds still_since_ = 0;
   Travel command_kpa_;
   Travel expected_mm_;
   std::uint32_t changes_ = 0;    ///< number of changes of the reading; counted up to enough_changes
-  Nanoseconds longest_run_ = 0;  ///< longest time between two changes
+  Nanoseconds longest_run_ = 0;  ///< longest time between two changes of the reading
   bool stands_still_ = false;
 };
 

@@ -8,11 +8,11 @@ namespace {
 
 /// Peak speed of a minimum-jerk move of unit length in unit time (Flash and Hogan, J. Neurosci. 5, 1985).
 constexpr double peak_speed_factor = 1.875;
-/// Time in which a reference that was cut in motion comes to rest before it continues [s].
+/// Time within which a moving reference that was cut comes to rest [s]. The next ramp begins after this time.
 constexpr double brake_s = 0.2;
 
-/// Returns the quintic from a moving start to rest at `value` over `duration`: coefficients of the powers of
-/// time.
+/// Returns the polynomial of degree 5 from a moving start to rest at `value` within `duration`, as
+/// coefficients of the powers of time.
 std::array<double, 6> quintic_to_rest(const ReferencePoint& from, double value, double duration) {
   const double t = duration;
   const double distance = value - from.value;
@@ -129,7 +129,7 @@ bool Reference::ramp_to(double value, double speed) noexcept {
   const ReferencePoint from = last_point();
   const bool moving = from.rate != 0 || from.acceleration != 0;
   if (count_ + (moving ? 2U : 1U) > capacity) return false;
-  // Distance in which the speed decreases smoothly to 0 without a reversal.
+  // Appends a ramp over the distance in which the speed decreases smoothly to 0 without a reversal.
   if (moving && !ramp_for(from.value + from.rate * brake_s / 2, brake_s)) return false;
   const double distance = std::abs(value - final_value());
   if (distance == 0) return moving || hold_for(0);

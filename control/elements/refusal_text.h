@@ -1,5 +1,5 @@
 #pragma once
-// Gives the message for a refused request.
+// Returns the message for a refused request.
 
 #include <string_view>
 
@@ -9,10 +9,10 @@ namespace softgrip::control {
 
 struct RefusalText {
   std::string_view meaning;  ///< one sentence
-  std::string_view next;     ///< next action, with its command
+  std::string_view next;     ///< the next action of the user, with its command
 };
 
-/// Returns the texts for a code. For `none` and unknown numbers they state that there is no reason.
+/// Returns the texts for a code. For `none` and for unknown numbers, the text says that there is no reason.
 [[nodiscard]] const RefusalText& text_of(RefusalCode code) noexcept;
 
 }  // namespace softgrip::control

@@ -1,5 +1,5 @@
 #pragma once
-// Detects that a value has come to rest: it stays within a band for a time.
+// Detects that a value is at rest: it has stayed within a band for a required time.
 
 #include <algorithm>
 #include <optional>
@@ -12,8 +12,8 @@ class RestWatch {
 
   void start() noexcept { seen_.reset(); }
 
-  /// Returns true if `value` has been at rest for long enough. Pass an empty value if it is unknown; the
-  /// required time at rest then begins again.
+  /// Processes one tick. Returns true if `value` has stayed within the band for the required time. If `value`
+  /// is empty because it is unknown, the required time starts from the beginning.
   bool observe(double time_s, std::optional<double> value) noexcept {
     if (!value) {
       start();

@@ -8,12 +8,12 @@
 
 namespace softgrip::control {
 
-/// If the instantaneous gain is positive (check_feedforward() ensures it), the displacement at the end of a
-/// tick increases with the pressure at the end of the tick, so the solution is unique. It is found by a
-/// Newton iteration on the implicit equation inside a bracket. The explicit "multiplicative" form, which
-/// computes the pressure from the hysteresis state of the last tick, is not used: it is a fixed-point
-/// iteration with the loop gain beta/alpha and diverges if this gain is 1 or more
-/// (tests/control/feedforward/actuator_inverse_test.cpp).
+/// Finds the pressure by a Newton iteration on the implicit equation inside a bracket. check_feedforward()
+/// ensures that the instantaneous gain is positive. Therefore, the displacement at the end of a tick
+/// increases with the pressure at the end of the tick, and the solution is unique. The explicit
+/// "multiplicative" form computes the pressure from the hysteresis state of the last tick. It is not used,
+/// because it is a fixed-point iteration with the loop gain beta/alpha and diverges for a loop gain of 1 or
+/// more (tests/control/feedforward/actuator_inverse_test.cpp).
 class ActuatorInverse {
  public:
   /// @param body  a model of the chain after the valve (see body_of()).
@@ -21,15 +21,15 @@ class ActuatorInverse {
 
   struct Solution {
     double pressure_kpa = 0;
-    bool reached = true;  ///< false: the nearest solution is a bound of the bracket
+    bool reached = true;  ///< false: no solution in the bracket; `pressure_kpa` is the nearest bound
   };
   /// Returns the pressure in [lower_kpa, upper_kpa] for which the output of the load is `displacement_mm` at
   /// the end of the next tick. The error of the displacement is at most 1e-11 mm. Does not change the state.
   [[nodiscard]] Solution solve(double displacement_mm, double lower_kpa, double upper_kpa) const noexcept;
 
-  /// Advances by one tick with a linear change to `pressure_kpa`.
+  /// Advances by one tick in which the pressure changes linearly to `pressure_kpa`.
   void advance(double pressure_kpa) noexcept;
-  /// Copies the state of a chain of the same model at `pressure_kpa`.
+  /// Copies the state of `body`, a chain of the same model, at the pressure `pressure_kpa`.
   void take_over(const model::Chain<double>& body, double pressure_kpa) noexcept;
 
   /// Returns the displacement at the output of the load one tick from now if the pressure changes linearly to
@@ -41,8 +41,8 @@ class ActuatorInverse {
  private:
   double tick_s_;
   model::Chain<double> body_;
-  std::array<double, 3> past_kpa_{};  ///< newest first; the parabola through the three gives the next initial
-                                      ///< guess
+  std::array<double, 3> past_kpa_{};  ///< last three pressures, newest first; a parabola through them gives
+                                      ///< the next initial guess
 };
 
 }  // namespace softgrip::control

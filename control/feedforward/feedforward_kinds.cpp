@@ -13,34 +13,37 @@
 namespace softgrip::control {
 namespace {
 
-/// Shortest time in which a difference between plan and reference fades out [s].
+/// Shortest time in which the difference between the plan and the reference fades out [s].
 constexpr double fade_s = 0.5;
-/// Largest change of the reference's slope per tick [mm] that is not a jump. A corner between 50 mm/s up and
-/// 50 mm/s down at 200 Hz has this size.
+/// A change of the reference's slope per tick that is larger than this is a jump [mm]. A corner from 50 mm/s
+/// up to 50 mm/s down at 200 Hz has exactly this size.
 constexpr double jump_mm = 0.5;
-/// Peak acceleration and peak speed of a minimum-jerk move of unit length in unit time.
+/// Peak acceleration and peak speed of a minimum-jerk move over unit length in unit time.
 constexpr double peak_acceleration = 5.774;
 constexpr double peak_speed = 1.875;
-/// A plan that differs from the required pressure by more than this is reported as out of reach.
+/// If the plan differs from the required pressure by more than this, the reference is reported as out of
+/// reach.
 constexpr double late_kpa = 1e-6;
-/// A plan whose model differs from the reference by more than this is reported as out of reach.
+/// If the model of a plan differs from the reference by more than this, the reference is reported as out of
+/// reach.
 constexpr double missed_mm = 0.2;
-/// Largest difference between the start of a reference and the start of its plan. If the difference is
-/// larger, the plan was computed for another motion and would be worse than no plan.
+/// Largest difference between the first values of a reference and of its plan. A plan with a larger
+/// difference was computed for another motion, and would be worse than no plan.
 constexpr double off_plan_mm = 1;
-/// Largest rounding difference between two equal clocks.
+/// Largest difference that rounding causes between two clocks that should be equal.
 constexpr double clock_rounding_s = 1e-6;
-/// Fade-out time of the difference between the previous pressure and the start of a plan.
+/// Time in which the difference between the previous pressure and the start of a plan fades out.
 constexpr double plan_fade_s = 3;
 
 model::Model bouc_wen_of(const model::Model& model) {
-  // The asymmetry is a part of the hysteresis element, so its block is kept.
+  // The asymmetry of the hysteresis is a block of its own. It is kept, because it is a part of the hysteresis
+  // element.
   return model::only(model, [](const model::BlockInfo& info) {
     return model::is<model::BoucWen, model::AsymmetricBoucWen, model::DuhemHysteresis>(info);
   });
 }
 
-/// Returns the target displacement of the model at `time_s`: the reference within the limits, minus the
+/// Returns the displacement that the model must reach at `time_s`: the reference within the limits, minus the
 /// offset [mm].
 double wanted_mm(const LimitSettings& limits, const FeedforwardQuery& query, double time_s) noexcept {
   return limit_reference(limits, query.reference->value_at(time_s)).reference_mm - query.offset_mm;
@@ -52,7 +55,7 @@ BoucWenFeedforward::BoucWenFeedforward(const model::Model& model, const LimitSet
     : limits_(limits), inverse_(bouc_wen_of(model), tick_s) {}
 
 void BoucWenFeedforward::enter(const RunningModel& running, const FeedforwardQuery&, double) noexcept {
-  // The hysteresis needs no intermediate points, so the pressure change during the time without calls is
+  // The hysteresis needs no intermediate points. Therefore, the pressure change since the last call is
   // applied as one segment.
   inverse_.advance(running.pressure_kpa());
 }
@@ -73,8 +76,8 @@ FullModelFeedforward::FullModelFeedforward(const model::Model& model, const Feed
       valve_(model, tick_s),
       preview_s_(tick_s + dead_time_s(model) + settings.extra_latency_s),
       inverse_(body_of(model), tick_s) {
-  // At the slew limit, the immediate response determines the speed of the finger, and the creep determines
-  // its acceleration.
+  // Estimates the motion that the finger can make at the slew limit: the immediate response determines its
+  // speed, and the creep determines its acceleration.
   const model::Chain<double> body(body_of(model), {}, tick_s);
   const double at_once = body.peek(0.0, model::Dual<double>(0, 1)).v;
   const double after_tick = body.peek(tick_s, model::Dual<double>(0, 1)).v;
@@ -97,7 +100,8 @@ double FullModelFeedforward::command_toward(double wanted_kpa) noexcept {
   double next = wanted_kpa;
   const double time_constant_s = valve_.time_constant_s(now, wanted_kpa);
   if (time_constant_s > 0) {
-    // `left` is the difference that remains if the pressure changes as much as the target does in this tick.
+    // `left` is the difference that remains if the pressure changes in this tick by as much as the target
+    // does.
     const double along = std::clamp(wanted_kpa - last_wanted_kpa_, -limits_.slew_down_kpa_per_s * tick_s_,
                                     limits_.slew_up_kpa_per_s * tick_s_);
     const double left = wanted_kpa - now - along;
@@ -117,8 +121,8 @@ void FullModelFeedforward::enter(const RunningModel& running, const FeedforwardQ
   valve_.take_over(running.valve());
   command_kpa_ = command_kpa;
   last_wanted_kpa_ = running.pressure_kpa();
-  // The fade-out begins at the position that the model reaches when the pressure has moved towards the
-  // present command for one tick.
+  // The fade-out begins at the position that the model would reach if the pressure moved towards the present
+  // command for one tick.
   const double before_mm = inverse_.displacement_mm();
   ValveInverse alone = valve_;
   const double alone_kpa = std::min(alone.advance(running.pressure_kpa(), command_kpa), ceiling_kpa_);
@@ -133,8 +137,8 @@ void FullModelFeedforward::fade_from(double displacement_mm, double speed_mm_per
                                      double then_s) noexcept {
   const double difference_mm = displacement_mm - to.value;
   const double distance_mm = std::abs(difference_mm);
-  // The shorter time is sufficient: the speed limit applies to an element that responds immediately, the
-  // acceleration limit to one that creeps.
+  // The shorter of the two times is sufficient. The speed limit applies to an element that responds
+  // immediately, and the acceleration limit to an element that creeps.
   const double by_speed_s = peak_speed * distance_mm / easy_mm_per_s_;
   const double by_acceleration_s = std::sqrt(peak_acceleration * distance_mm / easy_mm_per_s2_);
   fade_.start(then_s, {difference_mm, speed_mm_per_s - to.rate, 0});
@@ -181,8 +185,8 @@ void PlannedFeedforward::enter(const RunningModel&, const FeedforwardQuery&, dou
 double PlannedFeedforward::unplanned_mm(const FeedforwardQuery& query, double wanted_mm,
                                         double then_s) const noexcept {
   double least_mm = std::numeric_limits<double>::max();
-  // The two clocks can differ by a rounding error, which matters at a jump of the reference. Both sides of
-  // the jump are therefore compared.
+  // The clocks of the reference and of the plan can differ by a rounding error, which matters at a jump of
+  // the reference. Therefore, the values on both sides of the jump are compared.
   for (const double aside_s : {0.0, -clock_rounding_s, clock_rounding_s}) {
     const double on_plan_s = then_s - query.plan_origin_s + aside_s;
     const double planned_mm =

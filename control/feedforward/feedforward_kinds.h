@@ -1,5 +1,5 @@
 #pragma once
-// The feedforward classes. Their settings are in control/elements/feedforward.h.
+// Defines the classes of the feedforward kinds. Their settings are in control/elements/feedforward.h.
 
 #include <array>
 #include <variant>
@@ -18,21 +18,23 @@ namespace softgrip::control {
 /// Result of a feedforward in one tick.
 struct FeedforwardStep {
   double pressure_kpa = 0;
-  bool out_of_reach = false;  ///< the reference exceeds the limits; the pressure goes as far as the limits
-                              ///< allow
+  bool out_of_reach = false;  ///< true: the reference cannot be reached within the limits; the pressure goes
+                              ///< as far as the limits allow
 };
 
-/// Inputs of a feedforward. The reference is in mm of the finger. `offset_mm` is the reading minus the model.
+/// Inputs of a feedforward. `reference` is the displacement of the finger in mm, and `offset_mm` is the
+/// reading minus the model output.
 struct FeedforwardQuery {
   const Reference* reference = nullptr;
-  double time_s = 0;  ///< now, on the reference's clock
+  double time_s = 0;  ///< present time on the clock of the reference
   double offset_mm = 0;
   const PressurePlan* plan = nullptr;  ///< plan for the kind `planned`
-  double plan_origin_s = 0;            ///< origin of the plan's clock on the reference's clock
+  double plan_origin_s = 0;            ///< time on the clock of the reference at which the clock of the plan
+                                       ///< is 0
 };
 
 // Each kind has three functions. enter() is called with the present outputs when tracking begins. step() is
-// called once per tick after that. preview_s() returns the time by which the kind reads the reference ahead.
+// called once per tick after enter(). preview_s() returns how far ahead of now the kind reads the reference.
 // A new kind needs a class and an entry in the variant of Feedforward.
 
 class NoFeedforward {
@@ -42,9 +44,9 @@ class NoFeedforward {
   [[nodiscard]] double preview_s() const noexcept { return 0; }
 };
 
-/// The published scheme, which returns the pressure at which the Bouc-Wen element alone would follow the
-/// reference. The PID corrects the effect of the other elements of the finger, of the valve and of all
-/// delays.
+/// The published scheme: returns the pressure for which the Bouc-Wen element would follow the reference if it
+/// were the whole finger. The PID corrects the effect of the other elements of the finger, of the valve and
+/// of all delays.
 class BoucWenFeedforward {
  public:
   BoucWenFeedforward(const model::Model& model, const LimitSettings& limits, double tick_s);
@@ -58,22 +60,22 @@ class BoucWenFeedforward {
 };
 
 /// Inverse of the complete chain, computed from the finger back to the valve. The pressure at the actuator is
-/// planned ahead. Each tick adds one pressure to this plan: the pressure at which the chain after the valve
-/// reaches the reference at the time "now + one tick + all dead times", provided that the plan was followed
-/// so far. The command follows from the plan (ValveInverse).
+/// planned ahead, and each tick adds one pressure to this plan. With this pressure, the chain after the valve
+/// reaches the reference at the time "now + one tick + all dead times". ValveInverse computes the command
+/// from the plan.
 ///
 /// The lead differentiates the plan, which contains no sensor noise. The command stays inside the pressure
-/// range and the slew limits. The plan is the effect of the limited command, so it does not wind up. If the
+/// range and the slew limits. The plan is computed from the limited command, so it does not wind up. If the
 /// reference is out of reach, the plan goes as far as the limits allow, step() reports it, and the plan
-/// continues from there. Behind a lag, a slewing command cannot stop the pressure at once. The plan then
-/// approaches the reference no faster than it can brake (constant deceleration slew/tau), so a jump of the
-/// reference causes no ringing.
+/// continues from there. Behind a lag, a command at the slew limit cannot stop the pressure at once.
+/// Therefore, the plan approaches the reference no faster than it can brake (constant deceleration slew/tau),
+/// so a jump of the reference causes no ringing.
 class FullModelFeedforward {
  public:
   FullModelFeedforward(const model::Model& model, const FeedforwardSettings& settings,
                        const LimitSettings& limits, double tick_s);
-  /// Starts from the state of the running model. At that moment the model's free response and the reference
-  /// differ because of creep or an offset of the reading. The difference fades out without a jump.
+  /// Starts from the state of the running model. At the start, the displacement of the model can differ from
+  /// the reference because of creep or an offset of the reading. The difference fades out without a jump.
   void enter(const RunningModel& running, const FeedforwardQuery& query, double command_kpa) noexcept;
   FeedforwardStep step(const FeedforwardQuery& query) noexcept;
   [[nodiscard]] double preview_s() const noexcept { return preview_s_; }
@@ -86,34 +88,34 @@ class FullModelFeedforward {
 
   LimitSettings limits_;
   double tick_s_;
-  double ceiling_kpa_;  ///< highest pressure that passes the model's valve
+  double ceiling_kpa_;  ///< highest pressure that the model's valve can output
   ValveInverse valve_;
   double preview_s_;
   ActuatorInverse inverse_;
   double command_kpa_ = 0;                  ///< command of the last tick
-  double last_wanted_kpa_ = 0;              ///< the pressure that the reference needed in the last tick
-  double easy_mm_per_s2_;                   ///< acceleration of the finger within the slew limits
-  double easy_mm_per_s_;                    ///< speed of the finger within the slew limits
-  std::array<double, 2> last_target_mm_{};  ///< targets of the last two ticks, newest first
-  double last_displacement_mm_ = 0;         ///< displacement of the plan one tick earlier
-  Reference fade_;  ///< fade-out of the difference after enter() or a jump of the reference, on the
-                    ///< reference's clock
+  double last_wanted_kpa_ = 0;              ///< pressure that was needed for the reference in the last tick
+  double easy_mm_per_s2_;                   ///< acceleration that the finger reaches within the slew limits
+  double easy_mm_per_s_;                    ///< speed that the finger reaches within the slew limits
+  std::array<double, 2> last_target_mm_{};  ///< target displacements of the last two ticks, newest first
+  double last_displacement_mm_ = 0;         ///< displacement according to the plan, one tick earlier
+  Reference fade_;  ///< fade-out of the difference after enter() or after a jump of the reference, on the
+                    ///< clock of the reference
 };
 
-/// Follows a plan that was computed before the run (control/sequences/planner.h). The plan is read ahead by
-/// the total dead time, and by half a tick because the board holds its output for a tick. The plan does not
-/// include the offset of a finger from its model (offset_mm). The offset divided by the settled gain is added
-/// to the planned pressure. If there is no plan, or if the reference starts more than 1 mm from the plan, the
-/// pressure is computed from the reference with the settled gain alone until the next step. After each change
-/// between these sources, the difference from the previous pressure fades out over 3 s. The PID corrects the
-/// remaining error.
+/// Follows a plan that was computed before the sequence starts (control/sequences/planner.h). The plan is
+/// read ahead by the total dead time, plus half a tick because the board holds its output for a tick. The
+/// plan does not include the offset of the finger from its model (offset_mm), so the offset divided by the
+/// settled gain is added to the planned pressure. If there is no plan, or if the reference starts more than 1
+/// mm from its plan, the pressure is computed until the next step from the reference and the settled gain.
+/// Each change between the two sources of the pressure causes a difference, which fades out over 3 s. The PID
+/// corrects the remaining error.
 class PlannedFeedforward {
  public:
   PlannedFeedforward(const model::Model& model, const FeedforwardSettings& settings,
                      const LimitSettings& limits, double tick_s);
   void enter(const RunningModel& running, const FeedforwardQuery& query, double command_kpa) noexcept;
   FeedforwardStep step(const FeedforwardQuery& query) noexcept;
-  /// Returns more than the dead time, because a plan acts before its reference changes.
+  /// Returns a time longer than the dead time, because a plan acts before its reference changes.
   [[nodiscard]] double preview_s() const noexcept { return ahead_s_ + plan_lead_s; }
 
  private:
@@ -129,12 +131,12 @@ class PlannedFeedforward {
   bool on_plan_ = false;
   double last_kpa_ = 0;
   double difference_kpa_ = 0;  ///< difference between the previous pressure and the first pressure of the new
-                               ///< source
+                               ///< plan, or of its replacement without a plan
   double fade_left_s_ = 0;     ///< remaining time of the fade-out
   bool entering_ = true;
 };
 
-/// Returns the time by which a plan is read ahead of now: all dead time and half a tick [s].
+/// Returns how far ahead of now a plan is read: the sum of all dead times and half a tick [s].
 [[nodiscard]] double plan_ahead_s(const model::Model& model, const FeedforwardSettings& settings,
                                   double tick_s);
 

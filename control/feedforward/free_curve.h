@@ -1,5 +1,5 @@
 #pragma once
-// Computes the pressure that a free finger needs for a displacement. Pressure in excess of this value is
+// Computes the pressure that a free finger needs for a displacement. The pressure above this value is
 // gripping pressure.
 
 #include <vector>
@@ -9,20 +9,21 @@
 
 namespace softgrip::control {
 
-/// The displacement of a model's free finger at each command on the first motion away from rest. The
-/// displacement is taken three seconds after a jump to the command, when only slow creep remains. The inverse
-/// gives the command for a displacement. Beyond its ends the curve continues with its mean slope. The
-/// constructor simulates a few thousand steps. The other functions allocate no memory.
+/// The displacement of a model's free finger at each command, on the first motion away from rest. It is taken
+/// three seconds after a jump to the command, when only slow creep remains. The inverse of the curve gives
+/// the command for a displacement. Beyond its ends, the curve continues with its mean slope. The constructor
+/// simulates a few thousand steps. The other functions allocate no memory.
 class FreeCurve {
  public:
   FreeCurve(const model::Model& model, const LimitSettings& limits);
 
-  /// Returns the command under which the free finger rests at `displacement_mm` (of the model, without
-  /// offset) [kPa].
+  /// Returns the command under which the free finger rests at `displacement_mm`, the displacement of the
+  /// model without an offset [kPa].
   [[nodiscard]] double command_kpa(double displacement_mm) const noexcept {
     return at(command_kpa_, displacement_mm);
   }
-  /// Returns the pressure at the actuator, after the valve, in the same state [kPa].
+  /// Returns the pressure at the actuator, after the valve, when the free finger rests at `displacement_mm`
+  /// [kPa].
   [[nodiscard]] double pressure_kpa(double displacement_mm) const noexcept {
     return at(pressure_kpa_, displacement_mm);
   }
@@ -34,9 +35,11 @@ class FreeCurve {
   [[nodiscard]] double at(const std::vector<double>& table, double displacement_mm) const noexcept;
 
   double lowest_mm_ = 0;
-  double step_mm_ = 0;  ///< 0: the model does not move, so the curve is a point
+  double step_mm_ = 0;  ///< distance between two points of the curve; 0: the model does not move, so the
+                        ///< curve has one point
   double slope_kpa_per_mm_ = 0;
-  std::vector<double> command_kpa_;  ///< commands for displacements from lowest_mm_ on, in steps of step_mm_
+  std::vector<double> command_kpa_;  ///< commands for displacements that start at lowest_mm_ and increase by
+                                     ///< step_mm_
   std::vector<double> pressure_kpa_;
 };
 

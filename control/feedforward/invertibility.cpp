@@ -39,19 +39,21 @@ constexpr std::string_view creep_alone =
     "spring) does";
 constexpr std::string_view planned_needs_none = "feedforward `planned` needs no elastic element";
 
-/// Below this gain, no element responds immediately to the pressure. The value is above 1e-9 mm/kPa, which is
-/// the gain of a Kelvin-Voigt spring that has no effect.
+/// If the gain is below this value, no element responds immediately to the pressure. The value is above 1e-9
+/// mm/kPa, the gain of a Kelvin-Voigt spring that has no effect.
 constexpr double least_gain_mm_per_kpa = 1e-8;
 
-/// The smallest slope of displacement over pressure that was found, and its pressure.
+/// The smallest slope of displacement over pressure that was found so far, and the pressure at which it
+/// occurs.
 struct Worst {
   double gain_mm_per_kpa = std::numeric_limits<double>::max();
   double pressure_kpa = 0;
   bool rising = false;
 };
 
-/// Computes the slopes of displacement over pressure at `pressure_kpa` for rising and falling pressure,
-/// immediately and at the end of a tick. Stores the smallest slope in `worst`.
+/// Computes the slopes of displacement over pressure at `pressure_kpa`, for rising and for falling pressure.
+/// Each slope is computed for an immediate change and for a change over a tick. Stores the smallest slope in
+/// `worst`.
 void look(const model::Chain<double>& chain, double pressure_kpa, double tick_s, Worst& worst) {
   constexpr double aside_kpa = 1e-7;
   for (const bool rising : {true, false}) {
@@ -63,10 +65,10 @@ void look(const model::Chain<double>& chain, double pressure_kpa, double tick_s,
   }
 }
 
-/// Moves a chain through its working range and checks every step. The first loading and the full unloading
-/// reach the outermost hysteresis states, regardless of the initial state. Inner loops and a slow pass cover
-/// the other states. In the slow pass, creep moves the blocks that depend on displacement. Pressures above
-/// and below 0 kPa are covered, up to the limits.
+/// Moves a chain through its working range and checks the slope at every step. The first loading and the full
+/// unloading reach the outermost hysteresis states, whatever the initial state is. Inner loops and a slow
+/// pass cover the other states. In the slow pass, creep changes the state of the blocks that depend on
+/// displacement. The pressures go from 0 kPa up and down to the limits.
 Worst worst_gain(const model::Model& model, const LimitSettings& limits, double tick_s) {
   constexpr int steps = 200;
   constexpr std::array<double, 10> turns{1, 0, 1, 0.3, 0.8, 0.5, 0.6, 0, 0.4, 0};
@@ -92,8 +94,8 @@ Worst worst_gain(const model::Model& model, const LimitSettings& limits, double 
   return worst;
 }
 
-/// Returns the sentence on a Bouc-Wen element with an inverse response, or an empty string. `stiff` is the
-/// immediate gain of the other elements, and `stiff_name` is the name of this gain.
+/// Returns the sentence about a Bouc-Wen element that has an inverse response; empty if the model has no such
+/// element. `stiff` is the immediate gain of the other elements, and `stiff_name` is the name of this gain.
 std::string wrong_way(const model::Model& model, double stiff, std::string_view stiff_name) {
   const model::Chain<double> chain(model);
   const auto* bouc_wen = chain.find<model::BoucWen<double>>();
@@ -121,8 +123,8 @@ tl::expected<void, Refusal> check_gain(const model::Model& model, const LimitSet
                                 backwards ? usual_cause : planned_needs_none});
 }
 
-/// Returns true if the feedforward inverts the block or needs no inverse of it. Blocks of the sensor do not
-/// move the finger, so they need no inverse.
+/// Returns true if the feedforward can invert the block, or if it needs no inverse of the block. Blocks of
+/// the sensor do not move the finger, so they need no inverse.
 bool is_undone(const BlockInfo& info) {
   if (info.station == Station::sensor || info.inverse == Inverse::ignored) return true;
   if (info.inverse == Inverse::implicit) return true;
@@ -136,7 +138,7 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
                                            double tick_s) {
   const auto part = model::only(model, [](const BlockInfo& info) {
     return model::is<model::BoucWen, model::AsymmetricBoucWen, model::DuhemHysteresis>(
-        info);  // the asymmetry is a part of the element
+        info);  // the asymmetry block is a part of the element
   });
   if (!model::position_of<model::BoucWen>(part)) {
     return tl::unexpected(
@@ -146,8 +148,8 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
   return check_gain(part, limits, tick_s, 0, "");
 }
 
-/// Checks that a plan can be computed for the model: the model must have an element that moves the finger,
-/// and a positive gain.
+/// Checks that a plan can be computed for the model. The model must have an element that moves the finger,
+/// and its gain must be positive.
 tl::expected<void, Refusal> check_planned(const model::Model& model, const LimitSettings& limits) {
   const auto elements = model::only(model, [](const BlockInfo& info) { return info.kind == Kind::element; });
   if (elements.blocks.empty())

@@ -1,5 +1,5 @@
 #pragma once
-// Checks if a feedforward exists for a model. The check runs once when a rig is loaded.
+// Checks if a feedforward is possible for a model. The check runs once when a rig is loaded.
 
 #include <span>
 #include <string>
@@ -21,15 +21,16 @@ struct Refusal {
   [[nodiscard]] std::string with_advice() const;
 };
 
-/// Checks that `settings.kind` can be computed for `model` over the working range, with each hysteresis state
-/// that can be reached. The range extends from 0 kPa to pressure_max_kpa, and down to pressure_min_kpa if
-/// that is below 0. A refusal names the block or the values that prevent it.
+/// Checks that `settings.kind` can be computed for `model` over the working range, in every hysteresis state
+/// that the model can reach. The range extends from 0 kPa to pressure_max_kpa. It extends down to
+/// pressure_min_kpa if pressure_min_kpa is below 0. A refusal names the block or the values that prevent the
+/// feedforward.
 [[nodiscard]] tl::expected<void, Refusal> check_feedforward(const model::Model& model,
                                                             const FeedforwardSettings& settings,
                                                             const LimitSettings& limits, double tick_s);
 
-/// Returns the names of the blocks that full_model cannot invert, as text: "`a`, `b`". At present it can
-/// invert all blocks.
+/// Returns the names of the blocks that full_model cannot invert, as text: "`a`, `b`". At present, full_model
+/// can invert all blocks.
 [[nodiscard]] std::string not_undone(std::span<const model::BlockInfo> blocks);
 
 }  // namespace softgrip::control

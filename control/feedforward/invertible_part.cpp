@@ -12,7 +12,8 @@
 namespace softgrip::control {
 namespace {
 
-/// Returns the displacements of the model on a pressure path above and below 0 kPa, up to the limits.
+/// Returns the displacements of the model while the pressure goes from 0 kPa to each end of the limits and
+/// back.
 std::vector<double> along_the_way(const model::Model& model, const LimitSettings& limits) {
   constexpr int steps = 100;
   constexpr double step_s = 0.05;

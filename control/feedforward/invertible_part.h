@@ -16,10 +16,10 @@ struct InvertiblePart {
 };
 
 /// Returns the model without the blocks that prevent `full_model`. First, the blocks without an inverse are
-/// removed. If `full_model` is still not possible, one more block is removed: the block with the smallest
-/// effect whose removal makes it possible. The effect is measured on a slow path from 0 kPa to each end of
-/// the limits and back, twice. Returns an empty value if no such part is accepted, or if the model is
-/// accepted unchanged.
+/// removed. If `full_model` is still impossible, one more block is removed. It is the block with the smallest
+/// effect among those whose removal makes `full_model` possible. The effect is measured on a slow path from 0
+/// kPa to each end of the limits and back, twice. Returns an empty value if no such model is accepted, or if
+/// the unchanged model is accepted.
 [[nodiscard]] std::optional<InvertiblePart> invertible_part(const model::Model& model,
                                                             const LimitSettings& limits, double tick_s);
 

@@ -6,14 +6,14 @@
 namespace softgrip::control {
 
 /// Returns the direction of a pressure change of `way_kpa` in a tick, -1 to 1. The magnitude is 1 for a real
-/// motion and smaller for a very small one: to add half a dead band to a very small change would only add
+/// motion. It is smaller for a very small change: adding half of a dead band to such a change would add
 /// noise.
 [[nodiscard]] double direction_of(double way_kpa, double tick_s) noexcept;
 
-/// Inverse of a regulator whose command is held for a tick (model/regulated_pressure.h). The command is
-/// computed in closed form from the present spool and integral. The formula assumes that the integral changes
-/// linearly over the tick and that the flow of the port is that of the last tick. An error of 0.1 % of the
-/// change remains. The next tick starts from the actual pressure and corrects it.
+/// Inverse of a pressure regulator whose command is held for a tick (model/regulated_pressure.h). A formula
+/// gives the command from the present state of the spool and of the integral. It assumes that the integral
+/// changes linearly during the tick and that the port has the flow of the last tick. The error is 0.1 % of
+/// the pressure change. The next tick starts from the actual pressure and corrects this error.
 class RegulatorInverse {
  public:
   /// @param tick_s  > 0.
@@ -22,7 +22,7 @@ class RegulatorInverse {
   /// Copies the state of `regulated`, which must have the same parameters.
   void take_over(const model::RegulatedPressure<double>& regulated) noexcept;
 
-  /// Returns the command for which the pressure is `next_kpa` at the end of the tick. If no port opens far
+  /// Returns the command for which the pressure is `next_kpa` at the end of the tick. If no port can open far
   /// enough for this pressure, returns a command that opens the port fully. Does not change the state.
   [[nodiscard]] double command_for(double next_kpa) const noexcept;
   /// Advances by one tick and returns the pressure at its end [kPa].
@@ -31,7 +31,8 @@ class RegulatorInverse {
  private:
   model::RegulatedPressure<double> regulated_;
   double tick_s_;
-  double filling_share_, venting_share_;  ///< share of the error beyond the overlap that is removed in a tick
+  double filling_share_, venting_share_;  ///< share of the error beyond the overlap that a tick of filling or
+                                          ///< venting removes
 };
 
 }  // namespace softgrip::control

@@ -14,8 +14,8 @@ bool runs(const BlockInfo& info) {
   return info.inverse != Inverse::preview && info.inverse != Inverse::ignored;
 }
 
-/// Returns true for the blocks of the valve that need time to follow the command. Memoryless blocks between
-/// valve and finger are inverted with the finger.
+/// Returns true for a valve block whose output needs time to follow the command. Memoryless blocks between
+/// valve and finger are inverted together with the finger.
 bool is_of_valve(const BlockInfo& info) {
   return info.station == Station::valve && info.inverse != Inverse::implicit;
 }
@@ -60,8 +60,8 @@ void RunningModel::reset(double command_kpa) noexcept {
 }
 
 void RunningModel::advance(double command_kpa) noexcept {
-  // The board holds its output: the command jumps, then stays constant for a tick. Behind a lag, the pressure
-  // moves only in the second part.
+  // The board holds its output, so the command jumps and then stays constant for a tick. Behind a lag, the
+  // pressure does not jump; it changes during the tick.
   double at_once = command_kpa;
   double at_end = command_kpa;
   if (has_valve_) {

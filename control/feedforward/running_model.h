@@ -1,5 +1,5 @@
 #pragma once
-// The model of a channel that runs in parallel to the finger with the commands that were really sent.
+// Runs the model of a channel in parallel to the finger, with the commands that were really sent.
 
 #include <cstddef>
 #include <vector>
@@ -9,38 +9,39 @@
 
 namespace softgrip::control {
 
-/// Time at a constant command after which a finger is at rest: only slow creep remains [s].
+/// Time after which a finger under a constant command counts as at rest, because only slow creep remains [s].
 inline constexpr double rests_after_s = 3;
 
-/// The running model without its dead times. A dead time may be exchanged with every block that does not
-/// depend on time. The dead times are therefore removed from the chain, and its output is read with a delay
-/// instead. The chain then runs ahead of the finger. A delay of any length costs one look-up, and the
-/// feedforward gets the state at which its plan begins.
+/// The running model, without its dead times. A dead time can exchange its place with every block that does
+/// not depend on time. Therefore, the dead times are removed from the chain, and the output of the chain is
+/// read with a delay. As a result, the chain runs ahead of the finger. A delay of any length costs one
+/// look-up in a table, and the feedforward gets the state at which its plan begins.
 class RunningModel {
  public:
   /// @param extra_latency_s  time from the computation of a command to the board's output.
-  /// @param longest_age_s  largest age of a reading; for an older reading, the oldest stored prediction is
-  /// used.
+  /// @param longest_age_s  largest age of a reading; for an older reading, the result is the oldest stored
+  /// prediction.
   RunningModel(const model::Model& model, double tick_s, double extra_latency_s, double longest_age_s);
 
-  /// Sets the state of rest under `command_kpa`.
+  /// Sets the state of a finger at rest under `command_kpa`.
   void reset(double command_kpa) noexcept;
 
-  /// Advances by one tick with the constant `command_kpa`.
+  /// Advances by one tick in which the command is `command_kpa`.
   void advance(double command_kpa) noexcept;
 
-  /// Returns the reading that the model predicts for `age_s` ago [mm]. Linear between ticks.
+  /// Returns the reading that the model predicts for the time `age_s` ago [mm]. Between ticks, the prediction
+  /// is interpolated linearly.
   [[nodiscard]] double reading_mm(double age_s) const noexcept { return past(past_mm_, age_s); }
-  /// Returns the pressure at the actuator for that prediction [kPa].
+  /// Returns the pressure at the actuator that belongs to reading_mm(age_s) [kPa].
   [[nodiscard]] double pressure_kpa(double age_s) const noexcept { return past(past_kpa_, age_s); }
 
   /// Returns the time by which the chain is ahead of the finger: dead times and extra latency [s].
   [[nodiscard]] double ahead_s() const noexcept { return ahead_s_; }
-  /// Returns the pressure at the actuator ahead_s() from now [kPa].
+  /// Returns the pressure at the actuator at the time ahead_s() from now [kPa].
   [[nodiscard]] double pressure_kpa() const noexcept { return pressure_kpa_; }
-  /// Returns the valve without its dead times, ahead_s() from now.
+  /// Returns the valve without its dead times, in the state at the time ahead_s() from now.
   [[nodiscard]] const model::Chain<double>& valve() const noexcept { return valve_; }
-  /// Returns the chain after the valve, ahead_s() from now.
+  /// Returns the chain after the valve, in the state at the time ahead_s() from now.
   [[nodiscard]] const model::Chain<double>& body() const noexcept { return body_; }
 
  private:
@@ -54,14 +55,14 @@ class RunningModel {
   model::Chain<double> body_;
   double pressure_kpa_ = 0;
   std::vector<double> past_mm_;   ///< ring with one entry per tick; the newest is at newest_
-  std::vector<double> past_kpa_;  ///< ring of the pressures with the same indices
+  std::vector<double> past_kpa_;  ///< ring buffer of the pressures, with the indices of past_mm_
   std::size_t newest_ = 0;
 };
 
 /// Returns the sum of the model's dead times [s].
 [[nodiscard]] double dead_time_s(const model::Model& model);
-/// Return the two parts of the model without dead times and noise: valve_of() the blocks of the valve that
-/// need time to follow the command, body_of() all others.
+/// Return the two parts of the model without dead times and noise. valve_of() returns the valve blocks whose
+/// output needs time to follow the command, and body_of() returns all other blocks.
 [[nodiscard]] model::Model valve_of(const model::Model& model);
 [[nodiscard]] model::Model body_of(const model::Model& model);
 

@@ -20,7 +20,7 @@ using document::Node;
 using document::Problems;
 
 constexpr std::size_t most_parameters = 16;
-/// Upper limit of all numbers of a sequence.
+/// Upper limit of the magnitude of all numbers in a sequence.
 constexpr double largest = 1e6;
 constexpr std::array<std::string_view, 6> units{"kpa", "mm", "s", "hz", "kpa_per_s", "mm_per_s"};
 constexpr const char* unit_hint =
@@ -32,7 +32,7 @@ const Node::Entry* entry_of(const Node& map, std::string_view key) {
   return found == map.entries.end() ? nullptr : &*found;
 }
 
-/// Returns "did you mean `squeeze_kpa`?", or a list of the parameters.
+/// Returns "did you mean `squeeze_kpa`?", or a list of the parameters if no name is similar.
 std::string hint_of(const std::string& name, const std::vector<Parameter>& parameters) {
   if (parameters.empty()) return "this sequence has no `parameters`";
   std::vector<std::string> names;
@@ -53,7 +53,8 @@ bool is_name(std::string_view name) {
          std::all_of(name.begin(), name.end(), allowed);
 }
 
-/// Returns the unit at the end of the name or of `unit:`. Both may be given if they agree.
+/// Returns the unit of a parameter: from the end of its name, or from its key `unit:`. If both give a unit,
+/// the units must be equal.
 std::string unit_of(MapReader& map, const std::string& name) {
   const std::string_view own = document::unit_at_end(name);
   const bool known = std::find(units.begin(), units.end(), own) != units.end();
@@ -99,7 +100,7 @@ Parameter read_parameter(const Document& document, const Node::Entry& entry, Pro
   return parameter;
 }
 
-/// Replaces the parameters in the steps of a copy of a document.
+/// Replaces the names of parameters in the steps of a copy of a document by their values.
 class Binder {
  public:
   Binder(const Document& document, const std::vector<Parameter>& parameters, Problems& problems)
@@ -217,7 +218,7 @@ Document with_values(const Document& document, const std::vector<Parameter>& par
   for (Node::Entry& entry : bound.root.entries) {
     if (entry.key == "steps") binder.bind(entry.value, {});
   }
-  // If the document could not be read completely, the missing part may use the parameter.
+  // If the document was not read completely, a step in the unread part may use the parameter.
   if (document.complete) binder.report_unused();
   return bound;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Reads `parameters:` of a sequence file, assigns their values, and inserts these into the steps.
+// Reads `parameters:` of a sequence file, assigns values to the parameters, and inserts the values into the
+// steps.
 
 #include <span>
 #include <vector>
@@ -9,18 +10,20 @@
 
 namespace softgrip::control {
 
-/// Returns the parameters that a document declares, each with its default as its value. Errors of a parameter
-/// are added to `problems`; the other parameters are still read.
+/// Returns the parameters that a document declares. The value of each parameter is its default. Errors of a
+/// parameter are added to `problems`, and the other parameters are still read.
 [[nodiscard]] std::vector<Parameter> read_parameters(const document::Document& document,
                                                      document::Problems& problems);
 
-/// Assigns the values that a start request gives to the parameters. An unknown name, a repeated name and a
-/// value out of range are problems. They are reported at the parameter, or at the top of the document.
+/// Assigns the values of a start request to the parameters. An unknown name, a repeated name and a value out
+/// of range are problems. They are reported at the parameter, or at the key `parameters` if the name is
+/// unknown.
 void set_values(std::span<const Argument> arguments, const document::Document& document,
                 std::vector<Parameter>& parameters, document::Problems& problems);
 
-/// Returns the document with each `$name` below `steps` replaced by the value of that parameter. Problems: an
-/// unknown name, a key with another unit, and a parameter that no step uses.
+/// Returns the document with each `$name` below `steps` replaced by the value of the parameter `name`. Adds a
+/// problem for an unknown name, for a key with a unit that differs from the parameter's unit, and for a
+/// parameter that no step uses.
 [[nodiscard]] document::Document with_values(const document::Document& document,
                                              const std::vector<Parameter>& parameters,
                                              document::Problems& problems);

@@ -18,8 +18,8 @@ namespace softgrip::control {
 namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Required ratio of the expected displacement shortfall to the detection margin, so that noise does not hide
-/// a detected part.
+/// The expected displacement shortfall of a detected part must be at least this multiple of the detection
+/// margin, so that noise does not hide the part.
 constexpr double seen_from = 1.2;
 
 using document::Problems;
@@ -174,7 +174,8 @@ class Fitting {
     }
   }
 
-  /// Reports a grip whose permitted pressure is too low to detect the part: it would never report HOLDING.
+  /// Reports a grip whose permitted pressure is too low to detect a part, so that the grip would never report
+  /// HOLDING.
   void check_squeeze(const Step& step, const ChannelSettings& channel, std::size_t index) {
     std::optional<double>& least_kpa = least_squeeze_kpa_[index];
     if (!least_kpa) {
@@ -276,7 +277,7 @@ class Fitting {
     }
   }
 
-  /// Reports a pressure bound that the rest pressure already satisfies: such a bound cannot verify a grip.
+  /// Reports a pressure bound that the rest pressure already satisfies. Such a bound cannot verify a grip.
   void check_pressure_bound(const Step& step, const ChannelSettings& channel) {
     const bool below = step.verify.below();
     const double bound_kpa = below ? step.verify.pressure_max_kpa : step.verify.pressure_min_kpa;
@@ -291,8 +292,8 @@ class Fitting {
            below ? "a lower pressure_max_kpa" : "pressure_max_kpa for a grip below the rest pressure");
   }
 
-  /// Reports a step that uses detection, contact or squeeze below the rest pressure. These functions compare
-  /// a finger that moves upward from rest with its free motion.
+  /// Reports a step that uses detection, contact or squeeze at pressures below rest. These functions need a
+  /// finger that moves upward from rest, because they compare it with its free motion.
   void check_side(const Step& step, const ChannelSettings& channel) {
     const double rest_kpa = resting_kpa(channel.limits);
     const bool detects = step.kind == StepKind::grip && step.verify.by == VerifyBy::detection;
@@ -309,7 +310,8 @@ class Fitting {
                : "on_contact: ignore");
   }
 
-  /// Returns the highest pressure of a step. For a displacement it comes from the free curve.
+  /// Returns the highest pressure of a step. For a step to a displacement, the free curve gives this
+  /// pressure.
   static double highest_kpa(const Step& step, const ChannelSettings& channel) {
     if (step.kind == StepKind::pressure) return range_of(step.profile).highest;
     const bool track = step.kind == StepKind::track;
@@ -350,18 +352,19 @@ class Fitting {
   Problems& problems_;
   document::Document source_;
   std::uint32_t gripped_ = 0;
-  /// By channel: the smallest gripping pressure that shows a part; empty until it is computed.
+  /// For each channel, the smallest gripping pressure that shows a part; empty until it is computed.
   std::vector<std::optional<double>> least_squeeze_kpa_ =
       std::vector<std::optional<double>>(settings_.channels.size());
-  /// The displacement that each channel follows before a step; NaN while it follows none.
+  /// The displacement that each channel follows at the end of the previous step; NaN if it follows none.
   std::vector<double> follows_mm_ = std::vector<double>(settings_.channels.size(), unknown);
 };
 
-/// A sequence with other values of its parameters. It is fitted to a rig without planning.
+/// A sequence with values of its parameters that differ from the defaults. It is fitted to a rig without
+/// planning.
 class Variation {
  public:
   Variation(const Sequence& sequence, const RigSettings& settings) : settings_(settings) {
-    Problems told;  // the problems were reported when the sequence was read first
+    Problems told;  // problems that were reported when the sequence was first read
     document_ = document::parse(sequence.file, sequence.text, told);
   }
 

@@ -20,7 +20,7 @@ using document::Node;
 using document::Problems;
 using document::Range;
 
-// Bounds that no rig of soft fingers exceeds; the rig's own, narrower limits are checked by prepare().
+// Bounds that no rig of soft fingers exceeds. The limits of the rig are narrower; prepare() checks them.
 constexpr Range displacement_mm{-100, 200};
 constexpr Range pressure_kpa{-100, 1000};
 constexpr Range squeeze_kpa{0.1, 1000};
@@ -38,7 +38,7 @@ std::vector<std::string> names(std::initializer_list<Enum> values) {
   return list;
 }
 
-/// Reads the parts of one file. Each function reports its problems and continues.
+/// Reads the parts of one file. After a problem, each function reports the problem and continues.
 class FileReader {
  public:
   FileReader(const Document& document, Problems& problems) : document_(document), problems_(problems) {}
@@ -54,7 +54,7 @@ class FileReader {
     if (const auto choice = map.optional_choice("interlock", {"start", "always"})) {
       result.interlock = *choice == 0 ? Interlock::start : Interlock::always;
     }
-    static_cast<void>(map.child("parameters", false));  // read_parameters() has read them
+    static_cast<void>(map.child("parameters", false));  // read_parameters() has already read this key
     const auto items = map.sequence("steps", true);
     if (items.size() > most_steps) {
       map.report("steps", "more than " + std::to_string(most_steps) + " steps");
@@ -161,7 +161,7 @@ class FileReader {
     }
   }
 
-  /// Reads displacement_mm or pressure_kpa, and the speed or duration.
+  /// Reads the target of a step: displacement_mm or pressure_kpa, and the speed or duration.
   void target(MapReader& map, Target& target) {
     const bool displacement = map.has("displacement_mm");
     const bool pressure = map.has("pressure_kpa");
@@ -192,8 +192,8 @@ class FileReader {
     target.duration_s = by_duration.value_or(0);
   }
 
-  /// Reads the tolerance of a move. A move can fail only if it has a tolerance, so the action on failure is
-  /// then required.
+  /// Reads the tolerance of a move. A move with a tolerance can fail, so the file must give the action on
+  /// failure.
   void tolerance(MapReader& map, Step& step) {
     step.tolerance_mm = map.optional_number("tolerance_mm", {0.01, 50});
     if (!step.tolerance_mm) return;
@@ -212,8 +212,8 @@ class FileReader {
         map.optional_number("squeeze_max_kpa", squeeze_kpa).value_or(bounds.squeeze_max_kpa);
   }
 
-  /// Reads the action on contact. If contact is a failure, the file must give the action on failure. For a
-  /// move with a tolerance, tolerance() has already read this action.
+  /// Reads the action on contact. If a contact is a failure, the file must also give the action on failure.
+  /// If the move has a tolerance, tolerance() has already read the action on failure.
   void on_contact(MapReader& map, Step& step, OnContact otherwise) {
     const auto choice = map.optional_choice(
         "on_contact", names({OnContact::hold, OnContact::grip, OnContact::fail, OnContact::ignore}));
@@ -225,8 +225,8 @@ class FileReader {
     step.on_fail = on_fail(map);
   }
 
-  /// Reads the gripping pressure. If the step has no squeeze_max_kpa, its gripping pressure is limited to the
-  /// final value.
+  /// Reads the gripping pressure. If the step has no squeeze_max_kpa, the final gripping pressure is also its
+  /// upper limit.
   static void squeeze(MapReader& map, Step& step) {
     const auto by = map.optional_number("squeeze_kpa", squeeze_kpa);
     if (!by) {
@@ -267,8 +267,8 @@ class FileReader {
     return result;
   }
 
-  /// Reads the bound for a verification by pressure. A grip above rest needs a lowest pressure, a grip below
-  /// rest a highest pressure.
+  /// Reads the pressure bound of a verification by pressure. A grip above the rest pressure needs a lower
+  /// bound, and a grip below the rest pressure needs an upper bound.
   void pressure_bound(MapReader& map, Verify& verify) {
     const auto most = map.optional_number("pressure_max_kpa", pressure_kpa);
     if (!most) {
@@ -299,7 +299,8 @@ class FileReader {
     return static_cast<std::uint32_t>(map.optional_integer("retries", 0, 10).value_or(0));
   }
 
-  /// Reads the required action after a failure. It has no default, because a default would be hidden.
+  /// Reads the action after a failure. The key is required, because a default action would not be visible in
+  /// the file.
   OnFail on_fail(MapReader& map) {
     return static_cast<OnFail>(map.choice(
         "on_fail", names({OnFail::vent, OnFail::hold, OnFail::abort, OnFail::release, OnFail::carry_on})));
@@ -338,8 +339,8 @@ class FileReader {
     }
   }
 
-  /// Reads the points of a pressure profile. Their number is limited by the largest number of values in a
-  /// document.
+  /// Reads the points of a pressure profile. The largest number of values in a document limits the number of
+  /// points.
   void points(MapReader& map, std::vector<Point>& points) {
     for (const Node* item : map.sequence("points", true)) {
       MapReader inner(document_, *item, problems_, "point");
@@ -359,7 +360,7 @@ class FileReader {
   Problems& problems_;
 };
 
-/// Returns true if the document has errors. Parsing continues after an error, so the part that was read can
+/// Returns true if the document has errors. Parsing continues after an error, so a document with errors can
 /// look complete.
 bool refused(const Document& document, const Problems& problems) {
   return !document.complete ||

@@ -10,20 +10,20 @@
 
 namespace softgrip::control {
 
-/// Reads a sequence from a parsed document. The values of `arguments`, which come with a start request,
-/// replace the defaults of the parameters. Adds all errors to `problems` and then returns nullopt. Returns
-/// nullopt also if a part of the document could not be parsed. The sequence must be valid with its defaults,
-/// at both ends of each parameter's range and with the requested values.
+/// Reads a sequence from a parsed document. The values in `arguments` are those of a start request; they
+/// replace the defaults of the parameters. Adds all errors to `problems` and returns nullopt if there are
+/// errors or if a part of the document could not be parsed. The sequence must be valid with its defaults, at
+/// both ends of each parameter's range and with the requested values.
 [[nodiscard]] std::optional<Sequence> read_sequence(const document::Document& document,
                                                     document::Problems& problems,
                                                     std::span<const Argument> arguments = {});
 
-/// Calls parse_file() and read_sequence().
+/// Reads a file with parse_file() and read_sequence().
 [[nodiscard]] std::optional<Sequence> load_sequence(const std::string& path, document::Problems& problems,
                                                     std::span<const Argument> arguments = {});
 
-/// Reads the sequence again with other values of its parameters. Adds the problems with these values to
-/// `problems`.
+/// Reads the sequence from the same document with other values of its parameters. Adds the problems of these
+/// values to `problems`.
 [[nodiscard]] std::optional<Sequence> read_with(const document::Document& document,
                                                 const std::vector<Parameter>& parameters,
                                                 document::Problems& problems);

@@ -13,9 +13,10 @@
 namespace softgrip::control {
 namespace {
 
-/// Longest part of a hold that a plan covers [s]. During a hold, the plan only compensates creep.
+/// Longest part of a hold that a plan covers [s]. During a hold, the plan compensates creep and has no other
+/// effect.
 constexpr double longest_hold_s = 20;
-/// A plan that misses its reference by more than this is reported.
+/// If a plan misses its reference by more than this, the plan is reported.
 constexpr double missed_mm = 0.2;
 
 bool planned(const ChannelSettings& channel) {
@@ -25,7 +26,7 @@ bool planned(const ChannelSettings& channel) {
 /// The expected motion of one channel in a sequence.
 class Walk {
  public:
-  /// `plans`: true to compute the plans, false to compute only their durations.
+  /// @param plans  true: compute the plans; false: compute only their durations.
   Walk(const ChannelSettings& channel, double margin_mm, double tick_s, bool plans)
       : planned_(planned(channel)),
         rest_kpa_(resting_kpa(channel.limits)),
@@ -53,8 +54,8 @@ class Walk {
 
   [[nodiscard]] PreparedStep* step() const noexcept { return step_; }
 
-  /// Returns the duration of the motion that must be planned for the present step if the channel's next step
-  /// begins at `time_s`; 0 if nothing must be planned [s].
+  /// Returns the duration of the motion that must be planned for the present step if the next step of the
+  /// channel begins at `time_s` [s]; 0 if there is nothing to plan.
   [[nodiscard]] double planned_s(double time_s) const {
     if (!planned_ || step_ == nullptr) return 0;
     const ChannelDemand demand = player_.demand(since_s_);
@@ -62,9 +63,9 @@ class Walk {
     return std::min({time_s, vent_s(), demand.reference->end_s() + longest_hold_s}) - since_s_;
   }
 
-  /// Moves the channel from the start of its present step to the start of its next step at `time_s`. For a
-  /// step to a displacement, returns the plan. For a step to a pressure, moves the model with the commands of
-  /// the step and returns an empty plan.
+  /// Moves the channel from the start of its present step to `time_s`, the start of its next step. For a step
+  /// to a displacement, returns the plan. For a step to a pressure, moves the model with the commands of the
+  /// step and returns an empty plan.
   PressurePlan go_on_until(double time_s, const std::stop_token& stop) {
     PressurePlan plan;
     if (planner_ && step_ != nullptr) {
@@ -83,7 +84,7 @@ class Walk {
   }
 
  private:
-  /// Returns the time at which a release begins to vent.
+  /// Returns the time at which a release step starts to vent.
   [[nodiscard]] double vent_s() const {
     return step_->step.kind == StepKind::release ? player_.motion_end_s() : infinite;
   }
@@ -170,7 +171,7 @@ class Planning {
   PreparedSequence& sequence_;
   bool plans_;
   const std::stop_token& stop_;
-  std::vector<std::size_t> like_;  ///< by channel: the first channel with the same motion
+  std::vector<std::size_t> like_;  ///< for each channel, the first channel that has the same motion
   std::vector<double> planned_s_;
   std::vector<std::unique_ptr<Walk>> walks_;
   std::vector<MissedPlan> missed_;

@@ -1,6 +1,6 @@
 #pragma once
-// Plans a sequence: for each channel with feedforward `planned`, computes the command for each step to a
-// displacement before the sequence starts.
+// Plans a sequence before it starts: for each channel with feedforward `planned`, computes the command for
+// each step to a displacement.
 
 #include <stop_token>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace softgrip::control {
 
-/// A plan with a large error: the model cannot follow the reference within the limits.
+/// A plan whose error is large, because the model cannot follow the reference within the limits.
 struct MissedPlan {
   std::size_t step = 0;
   std::size_t channel = 0;
@@ -18,14 +18,15 @@ struct MissedPlan {
   double worst_mm = 0;
 };
 
-/// Longest planned motion of a channel in one sequence [s]. It limits the time of planning.
+/// Longest planned motion of a channel in one sequence [s]. This limit bounds the computing time of the
+/// planning.
 inline constexpr double most_planned_s = 600;
 
-/// Computes the plans for the expected course of the sequence: each channel begins at rest under its rest
-/// pressure, no step fails, and each settling time and verification window is as short as possible. The
-/// references come from the same player that the loop uses, so they are the references that the loop will
-/// follow. A plan ends at the channel's next step. It covers at most 20 s of a hold, after which the last
-/// command remains. PlannedFeedforward (control/feedforward/feedforward_kinds.h) handles deviations. Fills
+/// Computes the plans for the expected execution of the sequence. Each channel begins at rest under its rest
+/// pressure, no step fails, and each settling time and verification window is as short as possible. The loop
+/// uses the same player, so the references of the plans are those that the loop will follow. A plan ends at
+/// the channel's next step. It covers at most 20 s of a hold; after this time, the last command remains.
+/// PlannedFeedforward (control/feedforward/feedforward_kinds.h) handles deviations. The function fills
 /// PreparedStep::plans and PreparedSequence::planned_s. For a sequence longer than most_planned_s, it fills
 /// only planned_s. After a stop request it returns soon, and the sequence must not be used.
 [[nodiscard]] std::vector<MissedPlan> plan_steps(PreparedSequence& sequence, const RigSettings& settings,

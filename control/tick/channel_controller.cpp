@@ -13,20 +13,20 @@ namespace {
 using DemandMode = ChannelDemand::Mode;
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-/// Time constant with which the offset follows the finger during re-synchronisation [s].
+/// Time constant with which the offset of the model follows the finger during resynchronisation [s].
 constexpr double follow_time_s = 0.1;
-/// Time for which the residual must stay within the noise until the finger counts as settled [s].
+/// A finger counts as settled after its residual has stayed within the noise for this time [s].
 constexpr double settled_after_s = 0.2;
 /// Largest residual of a settled finger, in standard deviations of the sensor's noise.
 constexpr double settled_sigma = 4;
 /// Time constant of the filter that removes the noise of the reading from ChannelOutput::free_kpa [s].
 constexpr double need_filter_s = 0.03;
-/// A smaller reduction of the command by a limit is not reported [kPa].
+/// A reduction of the command by a limit is not reported if it is smaller than this [kPa].
 constexpr double unnoticed_kpa = 0.5;
-/// Largest number of ticks that the model catches up after a gap. After a longer gap, the channel starts from
-/// rest.
+/// Largest number of missed ticks that the model computes after a gap. After a longer gap, the channel starts
+/// from rest.
 constexpr std::int64_t most_ticks = 1000;
-/// Longest gap over which a plan is continued [ticks]. After a longer gap the feedforward starts again.
+/// Longest gap after which a plan is continued [ticks]. After a longer gap, the feedforward restarts.
 constexpr std::int64_t most_planned_ticks = 10;
 
 FeedforwardSettings accepted(const ChannelSettings& settings, double tick_s) {
@@ -58,7 +58,7 @@ void ChannelController::start(double command_kpa, ChannelOutput& channel) noexce
   channel.command_kpa = limit(limits_, command_kpa, command_kpa, 0).command_kpa;
   channel.safe_kpa = channel.free_kpa = channel.command_kpa;
   channel.displacement_mm = channel.pressure_kpa = channel.temperature_c =
-      not_known;  // a value that was never read is unknown, not 0
+      not_known;  // a value that was never read is NaN, not 0
   running_.reset(channel.command_kpa);
   plausibility_.reset();
   jumps_.reset();
@@ -84,9 +84,10 @@ void ChannelController::tick(const ChannelInput& input, ChannelOutput& channel) 
 }
 
 /// Splits the pressure into free-motion pressure and gripping pressure. The free-motion pressure is the lower
-/// of two values: the pressure on the first loading, and the pressure in the present state of the model,
-/// which creep and hysteresis can lower. A moving finger is under more pressure than it needs at rest. If an
-/// object stops the finger, the difference becomes gripping pressure.
+/// of two values. One value is the pressure on the first loading. The other is the pressure in the present
+/// state of the model, which creep and hysteresis can lower. The pressure of a moving finger is higher than
+/// the pressure that it needs at rest. If an object stops the finger, this difference becomes gripping
+/// pressure.
 void ChannelController::weigh(double predicted_mm, ChannelOutput& channel) noexcept {
   channel.squeeze_kpa = not_known;
   if (!displacement_used_ || channel.validity != model::Validity::valid) return;
@@ -115,7 +116,7 @@ void ChannelController::send(const ChannelDemand& demand, double wanted_kpa,
                                                                  : BindingLimit::step_squeeze;
     return;
   }
-  // A vent is intended to move at the slew limit, so this limit is not reported.
+  // A vent moves at the slew limit on purpose, so the slew limit is not reported.
   const double behind_kpa = in_range(limits_, wanted_kpa) - limited.command_kpa;
   const bool slewed = limited.slewing && demand.mode != DemandMode::vent;
   channel.bound_by = !slewed || std::abs(behind_kpa) <= unnoticed_kpa ? BindingLimit::none
@@ -141,7 +142,7 @@ std::int64_t ChannelController::advance(Nanoseconds now, double command_kpa) noe
   return ticks;
 }
 
-/// Returns the reading that the model without offset predicts [mm].
+/// Returns the reading that the model predicts without its offset [mm].
 double ChannelController::take_reading(const ChannelInput& input, ChannelOutput& channel) noexcept {
   const model::Reading& reading = input.reading;
   const bool none_yet = reading.validity == model::Validity::none_yet;
@@ -158,8 +159,8 @@ double ChannelController::take_reading(const ChannelInput& input, ChannelOutput&
   return predicted_mm;
 }
 
-/// Processes a reading for the detection of repeated jumps. Readings that the plausibility check rejects are
-/// included, because a rejected jump is a jump too.
+/// Processes a reading for the detection of repeated jumps. A reading that the plausibility check rejects as
+/// a jump is processed too.
 void ChannelController::watch_jumps(const model::Reading& reading, double predicted_mm,
                                     ChannelOutput& channel) noexcept {
   if (reading.validity == model::Validity::valid && std::isfinite(reading.displacement_mm)) {
@@ -245,7 +246,7 @@ double ChannelController::track(const ChannelDemand& demand, std::int64_t ticks,
   if (entering || released) pid_.align(channel.command_kpa);
   loop_ = demand.feedback_held ? Loop::held : Loop::closed;
   if (loop_ == Loop::closed && displacement_used_ && channel.validity == model::Validity::valid) {
-    // The error is computed with the reference at the time of the reading.
+    // The control error is the difference between the reference at the time of the reading and the reading.
     const double then_mm =
         limit_reference(limits_, demand.reference->value_at(demand.time_s - channel.age_s)).reference_mm;
     channel.feedback_kpa = pid_.step(then_mm, channel.displacement_mm, planned.pressure_kpa);

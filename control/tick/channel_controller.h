@@ -1,6 +1,6 @@
 #pragma once
 // Computes the command of one finger in one tick from its reading and its reference. The limits apply to the
-// sum of feedforward and PID. The model runs in parallel with the commands that were really sent.
+// sum of feedforward and PID feedback. The model runs in parallel with the commands that were really sent.
 
 #include <cstdint>
 #include <optional>
@@ -23,41 +23,41 @@ struct ChannelInput {
   Nanoseconds now = 0;     ///< scheduled time of the tick
   model::Reading reading;  ///< reading that the driver returned
   ChannelDemand demand;    ///< demand of the player or the supervisor
-  /// Sets the model's offset to the difference between reading and model. Used only at rest, before motion
-  /// starts; see ChannelOutput::synchronised.
+  /// Sets the model's offset to the difference between reading and model. This is requested only at rest,
+  /// before a motion starts; see ChannelOutput::synchronised.
   bool resynchronise = false;
-  /// True if the finger moves without contact, as far as is known. Only then does the residual show the error
-  /// of the model.
+  /// True if the finger moves without contact, as far as is known. The residual shows the error of the model
+  /// only if this is true.
   bool free_motion = true;
 };
 
 /// The settings must be in the ranges that their headers state. If check_feedforward()
-/// (control/feedforward/invertibility.h) does not accept the model with the feedforward, the channel has no
+/// (control/feedforward/invertibility.h) refuses the model for the configured feedforward, the channel has no
 /// feedforward.
 class ChannelController {
  public:
   ChannelController(const ChannelSettings& settings, double tick_s);
 
-  /// Starts from rest. The output of the board is `command_kpa` after the limits.
+  /// Starts from rest. `command_kpa` is the present output of the board.
   void start(double command_kpa, ChannelOutput& channel) noexcept;
 
-  /// Runs one period. On entry, `channel` holds the result of start() or of the last tick. On return, it
-  /// holds the result of this tick, except result, evidence, step and safe_kpa. If calls are more than one
-  /// period apart (missed cycles), the model catches up.
+  /// Runs one period. On entry, `channel` contains the result of start() or of the last tick. On return, it
+  /// contains the result of this tick, except the members result, evidence, step and safe_kpa. If two calls
+  /// are more than one period apart (missed cycles), the model computes the missed ticks.
   void tick(const ChannelInput& input, ChannelOutput& channel) noexcept;
 
-  /// Returns the time by which the feedforward reads the reference ahead. A reference that is cut at now +
-  /// preview_s() changes without a step of the command.
+  /// Returns how far ahead of now the feedforward reads the reference. If the reference is cut at now +
+  /// preview_s(), the command changes without a step.
   [[nodiscard]] double preview_s() const noexcept { return feedforward_.preview_s(); }
   [[nodiscard]] const LimitSettings& limits() const noexcept { return limits_; }
-  /// Returns the offset that resynchronisation added to the model [mm].
+  /// Returns the offset that resynchronisation has added to the model [mm].
   [[nodiscard]] double offset_mm() const noexcept { return offset_mm_; }
 
  private:
   /// The source of the command.
   enum class Loop : std::uint8_t {
     stopped,  ///< no tick since start()
-    open,     ///< the command follows the demand alone: hold, vent, pressure
+    open,     ///< the demand gives the command without feedback: hold, vent, pressure
     closed,   ///< feedforward and feedback
     held,     ///< feedforward and constant feedback
   };
@@ -77,7 +77,7 @@ class ChannelController {
   double tick_s_;
   LimitSettings limits_;
   double noise_mm_;
-  double need_share_;  ///< share of the difference to a new value of ChannelOutput::free_kpa that is covered
+  double need_share_;  ///< share of the difference to a new value by which ChannelOutput::free_kpa changes
                        ///< per tick
   bool displacement_used_;
   RunningModel running_;
@@ -92,7 +92,7 @@ class ChannelController {
   Nanoseconds last_now_ = 0;
   std::uint32_t sequence_ = 0;  ///< sequence number of the last reading
   double offset_mm_ = 0;
-  /// During re-synchronisation: number of ticks since the residual settled.
+  /// during resynchronisation: number of ticks since the residual settled
   std::optional<std::int64_t> settled_ticks_;
 };
 

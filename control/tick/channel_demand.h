@@ -1,5 +1,5 @@
 #pragma once
-// Defines the demand of the sequence player or the supervisor for one channel in one tick.
+// Defines what the sequence player or the supervisor demands of one channel in one tick.
 
 #include <cstdint>
 #include <limits>
@@ -9,7 +9,7 @@
 
 namespace softgrip::control {
 
-/// The mode may change in each tick; the command remains continuous.
+/// The mode may change in each tick; the command does not jump at such a change.
 struct ChannelDemand {
   enum class Mode : std::uint8_t {
     hold,          ///< the command does not change
@@ -21,16 +21,18 @@ struct ChannelDemand {
   double pressure_kpa = 0;               ///< for mode pressure
   const Reference* reference = nullptr;  ///< for mode displacement [mm]; on the clock of `time_s`
   double time_s = 0;                     ///< present time on the clock of the reference
-  /// For mode displacement with feedforward `planned`: the plan for the reference; nullptr without a plan.
-  /// The time in the plan is the time on the reference's clock minus plan_origin_s.
+  /// Plan for the reference in mode displacement, if the feedforward is `planned`; nullptr if there is no
+  /// plan. The time in the plan is the time on the reference's clock minus plan_origin_s.
   const PressurePlan* plan = nullptr;
   double plan_origin_s = 0;
-  /// In mode displacement: the finger is in contact with an object. The feedback keeps its value, so the
-  /// finger does not press harder and harder against a stiff object. The feedforward continues.
+  /// True in mode displacement if the finger is in contact with an object. The feedback then keeps its value,
+  /// so the finger does not press harder and harder against a stiff object. The feedforward continues.
   bool feedback_held = false;
-  /// Bounds of the step in every mode. The command stays at or below both, regardless of the demand.
+  /// Upper bounds of the step for the command. They apply in every mode: the command never exceeds either of
+  /// them.
   double pressure_max_kpa = std::numeric_limits<double>::infinity();
-  /// Bound of the pressure above the command under which the free finger rests at the present displacement.
+  /// Upper bound of the gripping pressure. Gripping pressure is the pressure above the command under which
+  /// the free finger rests at the present displacement.
   double squeeze_max_kpa = std::numeric_limits<double>::infinity();
 };
 

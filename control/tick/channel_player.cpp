@@ -7,8 +7,8 @@
 namespace softgrip::control {
 
 namespace {
-/// Duration of the past reference that is kept [s], because feedback compares a reading with the reference at
-/// the time of this reading.
+/// Duration for which the past reference is kept [s]. It is needed because the feedback compares a reading
+/// with the reference at the time of the reading.
 constexpr double kept_s = 1;
 using Mode = ChannelDemand::Mode;
 
@@ -73,7 +73,8 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
       stage_ = Stage::ramp;
       break;
     case StepKind::release:
-      // A release that begins early may start below the target pressure. It must not increase the pressure.
+      // A release that begins early may start below its target pressure. In this case, the release must not
+      // increase the pressure.
       go_to(step.target,
             step.target.at_rest ? traits_.rest_kpa
                                 : no_further(traits_.rest_kpa, step.target.value, seen.command_kpa),
@@ -105,8 +106,8 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
   }
 }
 
-/// Starts the ramp to a target. A displacement continues from the present reference, or without one from the
-/// position of the finger; a pressure continues from the last command.
+/// Starts the ramp to a target. A ramp of the displacement continues from the present reference, or from the
+/// position of the finger if there is no reference. A ramp of the pressure continues from the last command.
 void ChannelPlayer::go_to(const Target& target, double value, double time_s,
                           const ChannelOutput& seen) noexcept {
   Reference& reference = target.quantity == Target::Quantity::displacement_mm ? displacement_ : pressure_;
@@ -126,7 +127,7 @@ void ChannelPlayer::go_to(const Target& target, double value, double time_s,
     mode_ = Mode::displacement;
   }
   if (!append_ramp(reference, target, value)) {
-    reference.forget_before(time_s);  // after many short steps, discard the past
+    reference.forget_before(time_s);  // discard the past, which needs space after many short steps
     append_ramp(reference, target, value);
   }
   ramp_end_s_ = reference.end_s();
@@ -163,8 +164,8 @@ bool ChannelPlayer::idle(double time_s, const ChannelOutput& seen) noexcept {
 
 Progress ChannelPlayer::tick(double time_s, const ChannelOutput& seen) noexcept {
   take(seen);
-  // While the sensor may be frozen, contact is evaluated only in a release, because a frozen sensor looks
-  // like a finger that an object stops.
+  // While the sensor may be frozen, contact is evaluated only in a release step. A frozen sensor looks like a
+  // finger that an object stops.
   feel(seen, !seen.stands_still || step_->kind == StepKind::release);
   look_for_contact(time_s, seen);
   Progress progress = advance(time_s, seen);
@@ -172,7 +173,7 @@ Progress ChannelPlayer::tick(double time_s, const ChannelOutput& seen) noexcept 
     pressure_kpa_ = squeezing_ ? squeezing_kpa(time_s, seen) : pressure_at(time_s);
   }
   if (progress == Progress::pending && time_s >= deadline_s_) {
-    // NO PART requires a window with usable readings. Otherwise the result is ERROR.
+    // The result NO PART requires a window with usable readings. Without them, the result is ERROR.
     const bool looked = stage_ == Stage::verify && !window_.blinded(time_s);
     failure_ = looked ? GripResult::no_part : GripResult::error;
     progress = Progress::failed;
@@ -210,7 +211,7 @@ Progress ChannelPlayer::advance(double time_s, const ChannelOutput& seen) noexce
     case Stage::done:
       break;
   }
-  // Without usable readings, the channel cannot confirm that it holds the part.
+  // Without usable readings, the channel cannot confirm that the finger still holds the part.
   return verified_ && !usable(step_->verify, seen) ? Progress::pending : Progress::passed;
 }
 
@@ -242,7 +243,7 @@ Progress ChannelPlayer::settle(double time_s, const ChannelOutput& seen) noexcep
   }
   if (time_s < stage_end_s_) return Progress::pending;
   if (step_->kind != StepKind::grip) return pass();
-  // The reached pressure is kept during verification and hold.
+  // The pressure that was reached at this time is kept during verification and hold.
   if (squeezing_) stay_at(pressure_kpa_, time_s);
   stage_ = Stage::verify;
   window_.start(time_s, step_->verify.window_s);
@@ -278,8 +279,8 @@ Progress ChannelPlayer::verify(double time_s, const ChannelOutput& seen) noexcep
   return Progress::pending;
 }
 
-/// Purges, then waits until the finger is where the free-motion model predicts. Without displacement
-/// feedback, the step passes after the purge.
+/// Executes a release: purges, then waits until the finger is at the displacement that the free-motion model
+/// predicts. Without displacement feedback, the step passes after the purge.
 Progress ChannelPlayer::release(double time_s) noexcept {
   if (time_s < stage_end_s_) return Progress::pending;
   stage_ = Stage::free;

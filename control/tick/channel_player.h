@@ -14,15 +14,15 @@
 
 namespace softgrip::control {
 
-/// The progress of a channel in its step.
+/// The progress of a channel in its present step.
 enum class Progress : std::uint8_t { pending, passed, failed };
 
 /// Constant properties of a channel.
 struct ChannelTraits {
   double margin_mm = 0;           ///< margin of grip detection
   double rest_kpa = 0;            ///< the rest pressure
-  double preview_s = 0;           ///< time by which the feedforward reads the reference ahead
-  bool displacement_used = true;  ///< the channel uses its displacement
+  double preview_s = 0;           ///< how far ahead of now the feedforward reads the reference
+  bool displacement_used = true;  ///< true: the displacement sensor of the channel is used
 };
 
 /// Executes the steps of a sequence for one channel. In all functions, `seen` is the output of the last tick.
@@ -31,42 +31,45 @@ class ChannelPlayer {
   explicit ChannelPlayer(const ChannelTraits& traits) noexcept
       : traits_(traits), contact_(traits.margin_mm) {}
 
-  /// Prepares the first step: keeps the command, assumes no contact, and clears the last result.
+  /// Prepares the first step of a sequence: keeps the command, assumes no contact, and clears the last
+  /// result.
   void reset() noexcept;
-  /// Starts an attempt at a step. `step` and `plan` (nullptr: none) must outlive the attempt. A hold step
-  /// continues with the plan of the previous step.
+  /// Starts an attempt at a step. `step` and `plan` (nullptr if there is no plan) must exist until the
+  /// attempt ends. A hold step continues with the plan of the previous step.
   void begin(const Step& step, const PressurePlan* plan, double time_s, const ChannelOutput& seen) noexcept;
-  /// Moves the channel back to the position or pressure at which the attempt began, with the speed of the
+  /// Moves the channel back to the position or pressure at which the attempt began. The speed is that of the
   /// step.
   void back_off(double time_s, const ChannelOutput& seen) noexcept;
-  /// Executes a tick of the step, or of the return after back_off(). For a return, `passed` means that it is
-  /// finished.
+  /// Executes a tick of the step, or of the return after back_off(). During a return, `passed` means that the
+  /// return is finished.
   Progress tick(double time_s, const ChannelOutput& seen) noexcept;
   /// Executes a tick outside a sequence. Returns true once if a held part is lost.
   bool idle(double time_s, const ChannelOutput& seen) noexcept;
 
-  /// Returns the demand of the last tick; `reference` points into this object.
+  /// Returns the demand of the last tick. Its `reference` points to a member of this object.
   [[nodiscard]] ChannelDemand demand(double time_s) const noexcept;
-  /// Returns true if the finger is in contact.
+  /// Returns true if the finger is in contact with an object.
   [[nodiscard]] bool touching() const noexcept { return contact_.touching(); }
   /// Returns true if the finger moves less than its model because an object is in its way.
   [[nodiscard]] bool held_back() const noexcept { return follow_.held(); }
-  /// Returns the action for a contact that occurred in the motion. Each contact is returned once. Returns
-  /// nothing if there is no new contact.
+  /// Returns the action for a contact that occurred in the motion. Each contact is returned only once.
+  /// Returns nothing if there is no new contact.
   [[nodiscard]] std::optional<OnContact> take_contact() noexcept;
-  /// Returns true if the finger stays at the pressure of its first contact.
+  /// Returns true if the finger stays at the pressure of its first contact with an object.
   [[nodiscard]] bool stopped_by_contact() const noexcept { return stopped_by_contact_; }
-  /// Returns the result that the channel gets if the step fails now: NO PART or ERROR.
+  /// Returns the result that the channel gets if its step fails in this tick: NO PART or ERROR.
   [[nodiscard]] GripResult failure() const noexcept { return failure_; }
 
   [[nodiscard]] GripResult result() const noexcept { return result_; }
   [[nodiscard]] GripEvidence evidence() const noexcept { return evidence_; }
   void answer(GripResult result, GripEvidence evidence) noexcept;
-  /// Sets HOLDING after a verified grip. The grip is then monitored with the step's criterion.
+  /// Sets the result HOLDING after a verified grip. From then on, the grip is monitored with the criterion of
+  /// the step.
   void answer_holding(double time_s) noexcept;
-  /// Returns the evidence on which a verification by this criterion is based.
+  /// Returns the evidence that a verification by the criterion `by` uses.
   [[nodiscard]] GripEvidence evidence_of(VerifyBy by) const noexcept;
-  /// Returns the displacement shortfall in the last tick: free motion minus reading [mm]; NaN if unknown.
+  /// Returns the displacement shortfall in the last tick [mm]: the displacement of free motion minus the
+  /// reading; NaN if it is unknown.
   [[nodiscard]] double shortfall_mm() const noexcept { return shortfall_mm_; }
 
   /// Keeps the present command.
@@ -78,7 +81,7 @@ class ChannelPlayer {
   [[nodiscard]] double motion_end_s() const noexcept {
     return stage_ == Stage::profile ? stage_end_s_ : ramp_end_s_;
   }
-  /// Returns the pressure of the present step at a time, in mode pressure [kPa].
+  /// Returns the pressure that the present step commands at a time in mode pressure [kPa].
   [[nodiscard]] double pressure_at(double time_s) const noexcept;
 
  private:
@@ -123,35 +126,35 @@ class ChannelPlayer {
   Stage stage_ = Stage::done;
   ChannelDemand::Mode mode_ = ChannelDemand::Mode::hold;
   Reference displacement_;  ///< reference for mode displacement [mm]
-  Reference pressure_;      ///< reference for mode pressure [kPa], except for profiles
+  Reference pressure_;      ///< reference for mode pressure [kPa]; not used for profiles
   const PressurePlan* plan_ = nullptr;
   double plan_origin_s_ = 0;
   double profile_start_s_ = 0;
   double pressure_kpa_ = 0;
-  double start_value_ = 0;  ///< start of the attempt, in the target's unit
+  double start_value_ = 0;  ///< value at the start of the attempt, in the target's unit
   double ramp_end_s_ = 0;
   double stage_end_s_ = 0;
   double deadline_s_ = 0;
   double shortfall_mm_ = 0;
-  bool within_ = false;   ///< the displacement is within the tolerance
-  Bounds bounds_;         ///< bounds of the step; in a hold, also those of the previous step
-  bool profile_ = false;  ///< the pressure follows the step's profile
-  bool closing_ = false;  ///< the step increases the displacement or the pressure
-  /// Time since which the finger has been in contact without interruption and the command has been at or
-  /// above rest.
+  bool within_ = false;   ///< true: the displacement is within the tolerance of the target
+  Bounds bounds_;         ///< bounds of the step; in a hold, also the bounds of the previous step
+  bool profile_ = false;  ///< true: the pressure follows the profile of the step
+  bool closing_ = false;  ///< true: the step increases the displacement or the pressure
+  /// Time since which two conditions have been true without interruption: the finger is in contact, and the
+  /// command is at or above the rest pressure.
   std::optional<double> touching_since_s_;
-  bool met_ = false;                      ///< contact occurred in this attempt
+  bool met_ = false;                      ///< true: a contact occurred in this attempt
   std::optional<OnContact> contact_met_;  ///< action for a contact that take_contact() has not returned yet
   bool stopped_by_contact_ = false;
-  bool squeezing_ = false;       ///< the pressure stays above the free-motion pressure by a fixed amount
-  double squeeze_from_kpa_ = 0;  ///< gripping pressure at squeeze_from_s_
+  bool squeezing_ = false;       ///< true: the pressure is kept a fixed amount above the free-motion pressure
+  double squeeze_from_kpa_ = 0;  ///< gripping pressure at the time squeeze_from_s_
   double squeeze_from_s_ = 0;
   Contact contact_;
   FollowWatch follow_;
   EvidenceWindow window_;
-  bool verified_ = false;  ///< the grip was verified in this attempt
+  bool verified_ = false;  ///< true: the grip was verified in this attempt
   HoldWatch hold_;
-  Verify held_by_;  ///< criterion for the held part
+  Verify held_by_;  ///< criterion by which the held part is monitored
   GripResult failure_ = GripResult::error;
   GripResult result_ = GripResult::none;
   GripEvidence evidence_ = GripEvidence::none;

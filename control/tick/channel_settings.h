@@ -1,6 +1,6 @@
 #pragma once
-// Defines the settings of one channel as plain values, in the units of the rig file. The caller checks them
-// (settings_problems() in settings.h); control does not check them again.
+// Defines the settings of one channel as plain values, in the units of the rig file. The caller checks the
+// settings (settings_problems() in settings.h); the controller does not check them again.
 
 #include <string>
 
@@ -13,7 +13,7 @@
 
 namespace softgrip::control {
 
-/// One finger.
+/// Settings of one finger.
 struct ChannelSettings {
   std::string name;
   model::Model model;  ///< model of the free finger, without contact
@@ -22,11 +22,11 @@ struct ChannelSettings {
   LimitSettings limits;
   PlausibilitySettings plausibility;
   ModelHealthSettings health;
-  /// The channel has an input for the measured pressure (a monitor output of the valve).
+  /// True: the channel has an input for the measured pressure (a monitor output of the valve).
   bool pressure_measured = false;
-  /// False: the displacement sensor is absent, or the work blocks it. Its readings are recorded, but they
-  /// cause no faults and are not used for feedback or detection. Only pressure targets and verification by
-  /// pressure (weaker) are possible.
+  /// False: the displacement sensor is absent, or the work blocks it. Its readings are recorded. However,
+  /// they cause no faults and are not used for feedback or detection. Then only pressure targets are
+  /// possible, and only the weaker verification by pressure.
   bool displacement_used = true;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// The parameters of a sequence: numbers that a start may choose.
+// Defines the parameters of a sequence: numbers whose values a start request may choose.
 
 #include <string>
 
@@ -10,13 +10,13 @@ namespace softgrip::control {
 /// A number that a sequence file declares under `parameters` and uses as `$name`.
 struct Parameter {
   std::string name;
-  std::string unit;  ///< as at the end of keys: "kpa", "mm_per_s"; empty for a plain number
-  double lower = 0;  ///< lower and upper are allowed values
+  std::string unit;  ///< unit as at the end of keys: "kpa", "mm_per_s"; empty for a number without a unit
+  double lower = 0;  ///< lower and upper are the smallest and the largest allowed value
   double upper = 0;
   double default_value = 0;
-  std::string about;      ///< one sentence
-  document::Location at;  ///< place of its name in the file
-  double value = 0;       ///< value with which the sequence was read
+  std::string about;      ///< description in one sentence
+  document::Location at;  ///< place of the parameter's name in the file
+  double value = 0;       ///< value of the parameter in this reading of the sequence
 };
 
 /// An argument of a start request: the name of a parameter and its value, in the parameter's unit.

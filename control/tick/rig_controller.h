@@ -1,6 +1,6 @@
 #pragma once
-// Computes the commands of one tick from its readings. It is the interface between control and the loop. This
-// class runs in softgripd, in `softgrip run`, in virtual time, in tests and in benchmarks.
+// Computes the commands of one tick from the readings of this tick. The class is the interface between
+// control and the loop. It runs in softgripd, in `softgrip run`, in virtual time, in tests and in benchmarks.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,20 +17,20 @@
 
 namespace softgrip::control {
 
-/// The control of a rig. The constructor may allocate and throws only std::bad_alloc, because
-/// settings_problems() has checked the settings. tick() does not allocate, does not call the system, and
-/// cannot fail.
+/// The controller of a rig. The constructor may allocate memory. It throws only std::bad_alloc, because
+/// settings_problems() has checked the settings. tick() does not allocate memory, does not call the operating
+/// system, and cannot fail.
 class RigController {
  public:
   explicit RigController(const RigSettings& settings);
-  // The loop reads the output in this object, so the object must not be copied.
+  // The loop reads the output inside this object, so the object must not be copied.
   RigController(const RigController&) = delete;
   RigController& operator=(const RigController&) = delete;
 
   /// Runs one period of 1/settings.rate_hz. Returns output().
   const TickOutput& tick(const TickInput& input) noexcept;
 
-  /// The output of the last tick. Before the first tick the commands are the rest pressures.
+  /// Returns the output of the last tick. Before the first tick, the commands are the rest pressures.
   [[nodiscard]] const TickOutput& output() const noexcept { return output_; }
 
  private:
@@ -45,12 +45,12 @@ class RigController {
     ChannelController controller;
     RestWatch rest;
     LimitWatch limits;
-    Nanoseconds longest_age;  ///< largest age of a reading
-    bool displacement_used;   ///< the channel uses its displacement
+    Nanoseconds longest_age;  ///< largest age of a usable reading
+    bool displacement_used;   ///< true: the displacement sensor of the channel is used
     bool valid_before = true;
     bool unsteady_before = false;
     bool resynchronise = false;
-    /// The reason why the finger had not settled at the last check.
+    /// The reason why the finger had not settled at the last check of rest.
     UnsettledReason unsettled = UnsettledReason::none;
   };
 
@@ -81,7 +81,7 @@ class RigController {
   double seeking_since_s_ = 0;
   Nanoseconds began_ = no_tick;
   Nanoseconds last_now_ = no_tick;
-  bool unheard_ = false;  ///< there was a gap, and the bus has reported no exchange since then
+  bool unheard_ = false;  ///< true: after a gap between two ticks, the bus has not reported an exchange yet
 
   static constexpr Nanoseconds no_tick = -1;
 };

@@ -9,7 +9,7 @@ namespace softgrip::control {
 
 namespace {
 
-/// FNV-1a hash over the bytes of the settings on which a prepared sequence depends.
+/// Computes an FNV-1a hash over the bytes of the settings on which a prepared sequence depends.
 class Key {
  public:
   void add(double value) { add_bits(std::bit_cast<std::uint64_t>(value)); }

@@ -1,7 +1,7 @@
 #pragma once
 // Defines grip sequences as plain values: as written in the file (Sequence), and fitted to one rig
-// (PreparedSequence). The keys of the file have the same names; docs/reference/sequence-file.md describes
-// them.
+// (PreparedSequence). The members have the names of the keys in the file; docs/reference/sequence-file.md
+// describes the keys.
 
 #include <cmath>
 #include <cstddef>
@@ -20,22 +20,22 @@
 
 namespace softgrip::control {
 
-/// An unlimited time or an unbounded pressure.
+/// Value of an unlimited time or of a missing pressure bound.
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Returns the bit of a channel in a mask.
+/// Returns the bit of a channel in a bit mask of channels.
 constexpr std::uint32_t channel_bit(std::size_t channel) noexcept {
   return 1U << channel;
 }
 
-/// The kind of a step; its name is the key of the step in the file.
+/// The kind of a step. The name of a kind is the key of the step in the file.
 enum class StepKind : std::uint8_t {
   move,      ///< moves to a target along a ramp
   grip,      ///< moves to a target, then verifies the grip: HOLDING or NO PART
   hold,      ///< keeps the command and verifies again: PART LOST when the object is lost
-  release,   ///< moves towards rest, then purges: RELEASED
-  track,     ///< follows a displacement over time, with feedback (studies)
-  pressure,  ///< follows a pressure over time, without feedback (experiments)
+  release,   ///< moves towards the rest pressure, then purges: RELEASED
+  track,     ///< follows a displacement over time with feedback, for studies
+  pressure,  ///< follows a pressure over time without feedback, for experiments
 };
 [[nodiscard]] std::string_view name_of(StepKind kind) noexcept;
 
@@ -44,29 +44,30 @@ enum class OnFail : std::uint8_t {
   vent,      ///< the sequence ends, and all channels go to the rest pressure
   hold,      ///< the sequence ends, and the command does not change
   abort,     ///< the sequence ends with the safe_action of the rig file for the present phase
-  release,   ///< the sequence continues with the next release step; if there is none, as for vent
-  carry_on,  ///< `continue` in the file: the sequence continues with the next step
+  release,   ///< the sequence continues with the next release step; without such a step, the action is vent
+  carry_on,  ///< `continue` in the file: the sequence continues with its next step
 };
 /// Returns the name in the file: "vent", "hold", "abort", "release", "continue".
 [[nodiscard]] std::string_view name_of(OnFail action) noexcept;
 
-/// The action if a finger meets an object during its motion.
+/// The action if a finger meets an object during the motion of its step.
 enum class OnContact : std::uint8_t {
-  hold,     ///< the finger stays at the pressure of the first contact, and its step is done
-  grip,     ///< as hold, and the sequence continues with its next grip step at once
-  fail,     ///< the finger stays at the pressure of the first contact, and the step fails
-  ignore,   ///< the motion continues without a reaction
+  hold,     ///< the finger stays at the pressure of the first contact, and its step is finished
+  grip,     ///< as hold; in addition, the sequence continues with its next grip step at once
+  fail,     ///< the finger stays at the pressure of the first contact, and its step fails
+  ignore,   ///< the motion continues as without a contact
   squeeze,  ///< for a grip with squeeze_kpa: adds this gripping pressure (not a value in files)
-  close,    ///< for any other grip: continues to its target with constant feedback (not a value in files)
+  close,    ///< for a grip without squeeze_kpa: continues to its target with constant feedback (not a value
+            ///< in files)
 };
 /// Returns "hold", "grip", "fail", "ignore", "squeeze" or "close".
 [[nodiscard]] std::string_view name_of(OnContact action) noexcept;
 
 /// The criterion by which a grip is verified.
 enum class VerifyBy : std::uint8_t {
-  detection,  ///< the finger moved less than its free-motion envelope
-  position,   ///< the displacement is within a window
-  pressure,   ///< weaker: the measured pressure is reached
+  detection,  ///< the finger moved less than its free-motion model
+  position,   ///< the displacement is between a lower and an upper value
+  pressure,   ///< weaker criterion: the measured pressure has reached a bound
 };
 [[nodiscard]] std::string_view name_of(VerifyBy by) noexcept;
 
@@ -75,23 +76,25 @@ struct Target {
   enum class Quantity : std::uint8_t { displacement_mm, pressure_kpa };
   Quantity quantity = Quantity::pressure_kpa;
   double value = 0;
-  bool at_rest = false;   ///< the rest pressure of the channel instead of value
-  double speed = 0;       ///< 0: use duration_s
-  double duration_s = 0;  ///< 0 and speed 0: as fast as the limits allow
+  bool at_rest = false;   ///< true: the target is the rest pressure of the channel; `value` is not used
+  double speed = 0;       ///< 0: the ramp has the duration duration_s
+  double duration_s = 0;  ///< if it is 0 and speed is 0, the ramp is as fast as the limits allow
 };
 
 struct Verify {
   VerifyBy by = VerifyBy::detection;
-  double window_s = 0.3;  ///< time for which the evidence must be present
-  double displacement_min_mm = -std::numeric_limits<double>::infinity();  ///< for position, or in addition
-                                                                          ///< for detection
-  double displacement_max_mm = std::numeric_limits<double>::infinity();   ///< for position, or in addition
-                                                                          ///< for detection
-  double pressure_min_kpa = 0;                                        ///< for pressure, if the grip is above
-                                                                      ///< rest
-  double pressure_max_kpa = std::numeric_limits<double>::infinity();  ///< for pressure, if the grip is below
-                                                                      ///< rest
-  /// Returns true for verification by a pressure below rest.
+  double window_s = 0.3;  ///< time for which the evidence must be present without interruption
+  double displacement_min_mm = -std::numeric_limits<double>::infinity();  ///< lower bound for position; for
+                                                                          ///< detection, an additional
+                                                                          ///< condition
+  double displacement_max_mm = std::numeric_limits<double>::infinity();   ///< upper bound for position; for
+                                                                          ///< detection, an additional
+                                                                          ///< condition
+  double pressure_min_kpa = 0;                                        ///< lower bound for pressure, if the
+                                                                      ///< grip is above the rest pressure
+  double pressure_max_kpa = std::numeric_limits<double>::infinity();  ///< upper bound for pressure, if the
+                                                                      ///< grip is below the rest pressure
+  /// Returns true for a verification by a pressure below the rest pressure.
   [[nodiscard]] bool below() const noexcept { return std::isfinite(pressure_max_kpa); }
 };
 
@@ -102,22 +105,25 @@ struct Point {
   bool operator==(const Point&) const = default;
 };
 
-/// Pressure over time of a pressure step: points or a test signal, `cycles` times.
+/// Pressure over time of a pressure step: points or a test signal, repeated `cycles` times.
 struct Profile {
-  std::vector<Point> points;  ///< times from 0, not decreasing; a jump is two points at one time
-  std::optional<model::SignalName> signal;  ///< test signal instead of points
-  double scale = 1;                         ///< factor for the signal
+  std::vector<Point> points;  ///< times start at 0 and do not decrease; two points at the same time are a
+                              ///< jump
+  std::optional<model::SignalName> signal;  ///< test signal, used in place of points
+  double scale = 1;                         ///< factor by which the values of the signal are multiplied
   std::uint32_t cycles = 1;
 };
 /// Returns the duration of one cycle [s].
 [[nodiscard]] double cycle_s(const Profile& profile) noexcept;
 /// Returns the duration of all cycles [s].
 [[nodiscard]] double duration_s(const Profile& profile) noexcept;
-/// Returns the pressure of the profile at `time_s` after its start [kPa]. Before the start it is the first
-/// value, after the end the last value, and at a jump the value after the jump. Does not allocate.
+/// Returns the pressure of the profile at the time `time_s` after its start [kPa]. Before the start, this is
+/// the first value; after the end, the last value; at a jump, the value after the jump. Does not allocate
+/// memory.
 [[nodiscard]] double value_at(const Profile& profile, double time_s) noexcept;
 
-/// Displacement of a track step over time: mean - amplitude cos(2 pi f t), which starts at its lowest value.
+/// Displacement of a track step over time: mean - amplitude cos(2 pi f t). The displacement starts at its
+/// lowest value.
 struct Sine {
   double mean_mm = 0;
   double amplitude_mm = 0;
@@ -128,44 +134,46 @@ struct Sine {
 /// Upper bounds of the command in a step.
 struct Bounds {
   double pressure_max_kpa = std::numeric_limits<double>::infinity();
-  /// Bound of the pressure above the command under which the free finger rests at the present displacement.
+  /// Upper bound of the gripping pressure. Gripping pressure is the pressure above the command under which
+  /// the free finger rests at the present displacement.
   double squeeze_max_kpa = std::numeric_limits<double>::infinity();
 };
 
 /// The gripping pressure of a grip after its first contact.
 struct Squeeze {
-  double by_kpa = 0;           ///< pressure above that of the free finger at the same displacement; 0: only
-                               ///< the target applies
+  double by_kpa = 0;           ///< pressure above that of the free finger at the same displacement; 0: the
+                               ///< grip has no gripping pressure of its own, and its target determines the
+                               ///< pressure
   double speed_kpa_per_s = 0;  ///< > 0 if by_kpa is above 0
 };
 
-/// One step as written.
+/// One step of a sequence, as written in the file.
 struct Step {
   StepKind kind = StepKind::move;
-  std::string name;  ///< name for messages; by default the kind
+  std::string name;  ///< name of the step for messages; the default is the name of its kind
   document::Location at;
   std::vector<std::string> channels;   ///< empty: all channels of the sequence
   Target target;                       ///< for move, grip, release
   Sine sine;                           ///< for track
   Profile profile;                     ///< for pressure
-  double settle_s = 0;                 ///< waiting time after the ramp
-  std::optional<double> tolerance_mm;  ///< for move: the step fails if the target is not reached within this
-                                       ///< by timeout_s
-  Bounds bounds;                       ///< for all kinds but release; for a hold only if the file gives
-                                       ///< bounds for it
+  double settle_s = 0;                 ///< waiting time after the end of the ramp
+  std::optional<double> tolerance_mm;  ///< for move: the step fails if the displacement is not within this
+                                       ///< tolerance of the target by timeout_s
+  Bounds bounds;                       ///< for all kinds except release; for hold only if the file gives
+                                       ///< bounds for the hold
   OnContact on_contact = OnContact::ignore;
-  bool on_contact_stated = false;  ///< the file gives on_contact
+  bool on_contact_stated = false;  ///< true: the file gives on_contact
   Squeeze squeeze;                 ///< for grip
   Verify verify;                   ///< for grip
-  double hold_s = 0;               ///< infinite: until a release is requested
-  double reverify_every_s = 0;     ///< for hold
-  double purge_s = 0;              ///< for release: time at the rest pressure
+  double hold_s = 0;               ///< infinite: the hold lasts until a release is requested
+  double reverify_every_s = 0;     ///< for hold: time between two verifications
+  double purge_s = 0;              ///< for release: time for which the channels stay at the rest pressure
   std::optional<double> timeout_s;
   std::uint32_t retries = 0;
   OnFail on_fail = OnFail::abort;
 };
 
-/// The time at which an open interlock has an effect.
+/// The time at which an open interlock input has an effect.
 enum class Interlock : std::uint8_t {
   start,   ///< a start is refused
   always,  ///< a start is refused, and a running sequence is stopped
@@ -183,33 +191,34 @@ struct Sequence {
   std::string text;  ///< the file's text, for messages and for the recording's provenance
 };
 
-/// A step fitted to a rig.
+/// A step that was fitted to a rig.
 struct PreparedStep {
   Step step;
-  std::uint32_t channels = 0;      ///< bit i: channel i takes part
-  std::uint16_t release_step = 0;  ///< next release step, for `on_fail: release`; the number of steps if
-                                   ///< there is none
-  std::uint16_t grip_step = 0;     ///< next grip step, for `on_contact: grip`; the number of steps if there
-                                   ///< is none
-  /// Plans by channel of the rig, for feedforward `planned`; empty without plans.
+  std::uint32_t channels = 0;      ///< bit i: channel i takes part in the step
+  std::uint16_t release_step = 0;  ///< index of the next release step, for `on_fail: release`; the number of
+                                   ///< steps if there is none
+  std::uint16_t grip_step = 0;     ///< index of the next grip step, for `on_contact: grip`; the number of
+                                   ///< steps if there is none
+  /// Plans for the feedforward `planned`, by channel of the rig; empty if there are no plans.
   std::vector<PressurePlan> plans;
-  /// Returns the plan of a channel; nullptr without one.
+  /// Returns the plan of a channel; nullptr if the channel has no plan.
   [[nodiscard]] const PressurePlan* plan_of(std::size_t channel) const noexcept {
     return channel < plans.size() && !plans[channel].empty() ? &plans[channel] : nullptr;
   }
 };
 
-/// A sequence fitted to one rig: names resolved, targets checked against the limits. Immutable while it runs.
+/// A sequence fitted to one rig: names are replaced by channels, and targets are checked against the limits.
+/// It does not change while it runs.
 struct PreparedSequence {
   std::string name;
   Interlock interlock = Interlock::start;
-  std::uint32_t channels = 0;         ///< channels of all steps
-  std::uint32_t needs_detection = 0;  ///< channels that are verified by detection: the free-motion model must
-                                      ///< agree with their reading at rest
-  std::uint64_t rig = 0;              ///< rig_key() of the settings it was prepared for
-  std::vector<Argument> parameters;   ///< values of its parameters, for status and events
+  std::uint32_t channels = 0;         ///< channels of all steps; bit i is channel i
+  std::uint32_t needs_detection = 0;  ///< channels that are verified by detection; at rest, their free-motion
+                                      ///< model must agree with their reading
+  std::uint64_t rig = 0;              ///< rig_key() of the settings for which the sequence was prepared
+  std::vector<Argument> parameters;   ///< values of the sequence's parameters, for status and events
   std::vector<PreparedStep> steps;
-  double planned_s = 0;  ///< duration of the planned motion of the channel for which it is longest
+  double planned_s = 0;  ///< duration of the planned motion of one channel: the longest of all channels
 };
 
 /// Returns a hash of the rig settings on which a prepared sequence depends.

@@ -40,7 +40,7 @@ SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const Chan
     const Progress progress = channels_[i].tick(time_s, seen[i]);
     to_grip |= take_contact(i, seen[i], events);
     if ((refused_ & channel_bit(i)) != 0) return;
-    // A channel that passed can become pending again while others are still running.
+    // A channel that passed its step can become pending again while other channels still execute the step.
     if (progress == Progress::pending) done_ &= ~channel_bit(i);
     if (progress == Progress::pending || (done_ & channel_bit(i)) != 0) return;
     done_ |= channel_bit(i);
@@ -50,7 +50,7 @@ SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const Chan
     }
   });
   if (to_grip) return go_to_step(now().grip_step, time_s, seen, events);
-  // The sequence reacts to a lost part at once. In all other cases it waits until every finger of the step
+  // The sequence reacts to a lost part at once. In all other cases, it waits until every finger of the step
   // has a result.
   if (done_ != now().channels && !(holds && refused_ != 0)) {
     return {};
@@ -75,7 +75,8 @@ SequencePlayer::Outcome SequencePlayer::next_step(std::size_t index, double time
   return finished(OnFail::hold, events);
 }
 
-/// Ends the present step and begins another one. Channels that are not in the new step keep their command.
+/// Ends the present step and begins another step. A channel that does not take part in the new step keeps its
+/// command.
 SequencePlayer::Outcome SequencePlayer::go_to_step(std::size_t index, double time_s,
                                                    std::span<const ChannelOutput> seen,
                                                    EventList& events) noexcept {
@@ -86,7 +87,7 @@ SequencePlayer::Outcome SequencePlayer::go_to_step(std::size_t index, double tim
   return next_step(index, time_s, seen, events);
 }
 
-/// Reports a new contact of the channel. Returns true if the sequence continues with its next grip step.
+/// Reports a new contact of the channel. Returns true if the sequence must continue with its next grip step.
 bool SequencePlayer::take_contact(std::size_t channel, const ChannelOutput& seen,
                                   EventList& events) noexcept {
   const std::optional<OnContact> met = channels_[channel].take_contact();
@@ -167,7 +168,7 @@ SequencePlayer::Outcome SequencePlayer::finished(OnFail action, EventList& event
   return {true, end_, action};
 }
 
-/// Sets ERROR for every channel of the sequence that has no result.
+/// Sets the result ERROR for every channel of the sequence that has no result.
 void SequencePlayer::answer_the_rest(EventList& events) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     if ((sequence_->channels & channel_bit(i)) != 0 && channels_[i].result() == GripResult::none) {
@@ -248,7 +249,8 @@ bool SequencePlayer::free_motion(std::size_t channel, bool at_rest) const noexce
   const ChannelPlayer& player = channels_[channel];
   if (player.result() == GripResult::holding) return false;
   if (player.stopped_by_contact()) return false;
-  // These steps expect no contact. A difference from the model means a blocked line or a changed finger.
+  // These steps expect no contact. If the displacement differs from the model, the reason is a blocked line
+  // or a changed finger.
   if (plays(StepKind::track) || plays(StepKind::pressure)) return true;
   const bool may_touch = plays(StepKind::grip) || plays(StepKind::hold) || plays(StepKind::release);
   return may_touch ? !player.touching() : at_rest || !player.held_back();

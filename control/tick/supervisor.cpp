@@ -27,7 +27,8 @@ SupervisorOutputs Supervisor::tick(const TickInput& input, const SupervisorInput
   return outputs;
 }
 
-/// Latches the first fault. Later faults are reported once each and can only turn a hold into a vent.
+/// Latches the first fault. A later fault is reported once. Its only other effect is that it can turn a hold
+/// into a vent.
 void Supervisor::latch(const SupervisorInputs& inputs, SupervisorOutputs& outputs,
                        EventList& events) noexcept {
   const Fault& fault = inputs.fault;
@@ -40,7 +41,8 @@ void Supervisor::latch(const SupervisorInputs& inputs, SupervisorOutputs& output
   told_ |= place;
   events.add(Event{Event::Kind::fault_latched, fault.channel, static_cast<std::uint16_t>(fault.code), 0,
                    fault.value, GripEvidence::none});
-  // After the first fault the player is idle, so the phase of the first fault determines which channels hold.
+  // After the first fault, the player is idle. Therefore, the phase in which the first fault occurred
+  // determines which channels hold.
   const bool first = state_ != State::faulted;
   if (first) fault_phase_ = inputs.phase;
   if (action_for(fault.code, fault_phase_) == SafeAction::vent) venting_ = all_;
@@ -53,10 +55,10 @@ void Supervisor::latch(const SupervisorInputs& inputs, SupervisorOutputs& output
 
 SafeAction Supervisor::action_for(FaultCode code, Phase phase) const noexcept {
   const auto number = static_cast<unsigned>(code);
-  // The board's output no longer has the command that would be held.
+  // The board's output has changed, so the command that a hold would keep is no longer present at the output.
   if (code == FaultCode::board_watchdog_tripped || code == FaultCode::outputs_overwritten)
     return SafeAction::vent;
-  // Inputs that cannot be read may hide an emergency stop.
+  // If the inputs cannot be read, an emergency stop may be hidden.
   if (code == FaultCode::emergency_stop || code == FaultCode::inputs_lost) {
     return safety_.on_emergency_stop;
   }
@@ -154,7 +156,7 @@ void Supervisor::answer_stop(const SupervisorInputs& inputs, const Request& requ
 }
 
 /// Stops the rig if the start that the request names is running. Only the loop knows which start runs in this
-/// tick, so the decision is made here and not at the client.
+/// tick. Therefore, the loop makes this decision, and not the client.
 void Supervisor::answer_stop_of(const SupervisorInputs& inputs, const Request& request,
                                 SupervisorOutputs& outputs, EventList& events) noexcept {
   if (playing() && start_request_ == request.of_start) {
@@ -165,8 +167,8 @@ void Supervisor::answer_stop_of(const SupervisorInputs& inputs, const Request& r
   events.add(Event::Kind::request_refused, RefusalCode::named_start_not_running, request.id);
 }
 
-/// Marks the start that a stop request names if this start may still wait in the queue. The start is then
-/// refused, because a stop overtakes waiting starts.
+/// Marks the start that a stop request names if this start may still be in the queue. The marked start is
+/// later refused, because a stop takes effect before the starts in the queue.
 void Supervisor::withdraw(const Request& stop) noexcept {
   const bool may_wait = stop.of_start > taken_ && stop.of_start < stop.id;
   if (!may_wait || withdrawn(stop.of_start)) return;
@@ -178,7 +180,8 @@ bool Supervisor::withdrawn(std::uint32_t start) const noexcept {
   return start != 0 && std::find(withdrawn_.begin(), withdrawn_.end(), start) != withdrawn_.end();
 }
 
-/// Vents all channels. The request is never refused, because it ends each hold, also after a fault.
+/// Vents all channels. This request is never refused, because it is the way to end a hold, also after a
+/// fault.
 void Supervisor::answer_vent(const Request& request, SupervisorOutputs& outputs, EventList& events) noexcept {
   venting_ = all_;
   if (state_ == State::faulted || state_ == State::starting) {
@@ -192,8 +195,8 @@ void Supervisor::answer_vent(const Request& request, SupervisorOutputs& outputs,
   go(State::stopping, request.id, events);
 }
 
-/// Ends a hold gently: a sequence continues with its release step. Without a sequence, pressurised channels
-/// go to rest at the slew limit.
+/// Ends a hold without a step of the pressure. If a sequence runs, it continues with its release step. If
+/// none runs, the pressurised channels go to the rest pressure at the slew limit.
 void Supervisor::answer_release(const SupervisorInputs& inputs, const Request& request,
                                 SupervisorOutputs& outputs, EventList& events) noexcept {
   const auto refuse = [&](RefusalCode code) { events.add(Event::Kind::request_refused, code, request.id); };

@@ -1,5 +1,5 @@
 #pragma once
-// The states of the rig. Latches faults, handles requests and decides the safe action.
+// Controls the states of the rig, latches faults, handles requests and decides the safe action.
 //
 //   starting -> idle -> resynchronising -> running -> idle
 //                             |               |
@@ -18,30 +18,36 @@
 
 namespace softgrip::control {
 
-/// Progress of the wait for rest before a sequence starts.
+/// Progress of the wait until the channels are at rest, before a sequence starts.
 enum class Rest : std::uint8_t { pending, at_rest, timed_out };
 
-/// Inputs of the supervisor in addition to the tick input. Masks: bit i is channel i.
+/// Inputs of the supervisor in addition to the tick input. In the bit masks, bit i is channel i.
 struct SupervisorInputs {
-  Fault fault;  ///< fault that is due now
-  Fault cause;  ///< present condition that is a fault or may become one
+  Fault fault;  ///< fault that must latch now
+  Fault cause;  ///< present condition that is a fault, or can become a fault if it lasts
   bool bus_good = false;
-  std::uint32_t ready = 0;    ///< channels that have a valid reading or need none
+  std::uint32_t ready = 0;    ///< channels that have a valid reading, or that need no reading
   std::uint32_t at_rest = 0;  ///< channels whose command is the rest pressure
-  Phase phase = Phase::idle;  ///< phase of the player
-  bool answers = false;       ///< there are grip results to acknowledge
+  Phase phase = Phase::idle;  ///< present phase of the sequence player
+  bool answers = false;       ///< true: there are grip results that `acknowledge` can reset
   Rest rest = Rest::pending;
 };
 
 /// Outputs of the supervisor for this tick.
 struct SupervisorOutputs {
-  std::optional<SequenceEnd> interrupt;          ///< the player must stop for this reason
-  std::optional<std::uint32_t> acknowledged_by;  ///< clear the grip results, because of this request
-  bool release = false;                          ///< the running sequence continues with its release step
+  std::optional<SequenceEnd> interrupt;          ///< reason for which the player must stop; empty: it
+                                                 ///< continues
+  std::optional<std::uint32_t> acknowledged_by;  ///< id of the request because of which the grip results must
+                                                 ///< be reset
+  bool release = false;                          ///< true: the running sequence must continue with its
+                                                 ///< release step
   std::uint32_t vented = 0;                      ///< channels that a stop has vented
-  std::uint32_t no_rest = 0;                     ///< channels that get ERROR: they did not come to rest
-  bool seek_rest = false;                        ///< a start was accepted: wait for rest
-  const PreparedSequence* begin = nullptr;       ///< all channels are at rest: start this sequence
+  std::uint32_t no_rest = 0;                     ///< channels that get ERROR, because they did not come to
+                                                 ///< rest
+  bool seek_rest = false;                        ///< true: a start was accepted, so the loop must wait until
+                                                 ///< the channels are at rest
+  const PreparedSequence* begin = nullptr;       ///< sequence that must start now, because all its channels
+                                                 ///< are at rest
 };
 
 class Supervisor {
@@ -49,15 +55,15 @@ class Supervisor {
   explicit Supervisor(const RigSettings& settings);
 
   SupervisorOutputs tick(const TickInput& input, const SupervisorInputs& inputs, EventList& events) noexcept;
-  /// Called when the player has reached the end of the sequence.
+  /// The caller calls this function when the player has reached the end of the sequence.
   void sequence_ended(SequenceEnd end, OnFail action, Phase phase, EventList& events) noexcept;
 
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] const Fault& first_fault() const noexcept { return first_fault_; }
-  /// Returns the channels that go to their rest pressure while the state is not `running`. The others keep
-  /// their command.
+  /// Returns the channels that go to their rest pressure while the state is not `running`. All other channels
+  /// keep their command.
   [[nodiscard]] std::uint32_t venting() const noexcept { return venting_; }
-  /// Returns the channels to vent if the loop ends now while the player is in `phase`.
+  /// Returns the channels that must vent if the loop ends now while the player is in `phase`.
   [[nodiscard]] std::uint32_t venting_on_leaving(Phase phase) const noexcept;
   [[nodiscard]] const PreparedSequence* sequence() const noexcept { return sequence_; }
 
@@ -97,20 +103,21 @@ class Supervisor {
   std::uint64_t rig_;
   State state_ = State::starting;
   Fault first_fault_;
-  Phase fault_phase_ = Phase::idle;  ///< phase of the player when the fault occurred
-  std::uint32_t told_ = 0;           ///< bit mask of the faults reported since the first fault latched; bit i
-                                     ///< is entry i of all_faults()
+  Phase fault_phase_ = Phase::idle;  ///< phase of the player when the first fault occurred
+  std::uint32_t told_ = 0;           ///< bit mask of the faults that were reported since the first fault; bit
+                                     ///< i is entry i of all_faults()
   std::uint32_t venting_ = 0;
-  const PreparedSequence* sequence_ = nullptr;  ///< from the accepted start to the end of the sequence
+  const PreparedSequence* sequence_ = nullptr;  ///< set from the acceptance of a start until the end of the
+                                                ///< sequence
   std::uint32_t start_request_ = 0;
-  std::uint32_t halted_by_ = 0;  ///< id of the newest request to stop any sequence, or to vent
-  std::uint32_t taken_ = 0;      ///< id of the newest request of another kind; these arrive in the order of
-                                 ///< their ids
-  /// Ids of starts that were named by a stop request before they arrived. The queue of the loop cannot hold
-  /// more starts.
+  std::uint32_t halted_by_ = 0;  ///< id of the newest request to vent, or to stop whatever sequence runs
+  std::uint32_t taken_ = 0;      ///< id of the newest request of any other kind; such requests arrive in the
+                                 ///< order of their ids
+  /// Ids of starts that a stop request named before they arrived. The array is large enough, because the
+  /// queue of the loop cannot hold more starts.
   static constexpr std::size_t most_withdrawn = 64;
   std::array<std::uint32_t, most_withdrawn> withdrawn_{};
-  std::size_t next_withdrawn_ = 0;  ///< index of the next entry
+  std::size_t next_withdrawn_ = 0;  ///< index of the next entry of withdrawn_ to be written
 };
 
 }  // namespace softgrip::control

@@ -19,60 +19,66 @@ namespace softgrip::control {
 
 struct PreparedSequence;  // defined in control/tick/sequence.h
 
-/// States of the supervisor; status and recordings use these names.
+/// States of the supervisor. Status and recordings use the names of these states.
 enum class State : std::uint8_t {
-  starting,         ///< not all channels have a valid reading yet; the commands are at rest, or as a fault
-                    ///< left them
+  starting,         ///< not all channels have a valid reading yet; the commands are the rest pressures, or
+                    ///< those after a fault
   idle,             ///< ready; nothing moves
-  resynchronising,  ///< a start was accepted: waits for rest and adjusts the models to the readings
+  resynchronising,  ///< a start was accepted; waits until the fingers are at rest, and adjusts the models to
+                    ///< the readings
   running,          ///< a sequence runs
-  stopping,         ///< a sequence was stopped; the stop action is in progress
-  faulted,          ///< a fault is latched; outputs as the rig file states for the phase in which it occurred
+  stopping,         ///< a sequence was stopped; the stop action is not finished yet
+  faulted,          ///< a fault is latched; the rig file gives the outputs for the phase in which the fault
+                    ///< occurred
 };
 [[nodiscard]] std::string_view name_of(State state) noexcept;
-/// Returns true if the rig moves after a request: resynchronising, running or stopping.
+/// Returns true if a request makes the rig move in this state: resynchronising, running or stopping.
 [[nodiscard]] constexpr bool moves(State state) noexcept {
   return state == State::resynchronising || state == State::running || state == State::stopping;
 }
 
-/// Returns true if a pressure may move away from rest: a sequence was started and has not ended.
+/// Returns true if a pressure may move away from rest in this state: a sequence was started and has not
+/// ended.
 [[nodiscard]] constexpr bool may_rise(State state) noexcept {
   return state == State::resynchronising || state == State::running;
 }
 
-/// Reason why a finger has not settled although a start needs it at rest: the finger moves, or its reading
-/// differs from the model.
+/// The reason why a finger has not settled, although a start needs it at rest. Either the finger moves, or
+/// its reading differs from the model.
 enum class UnsettledReason : std::uint8_t { none, moves, off_model };
 
 /// The reason why a sequence ended.
 enum class SequenceEnd : std::uint8_t { done, failed, stopped, faulted };
 [[nodiscard]] std::string_view name_of(SequenceEnd end) noexcept;
 
-/// A request to the controller; at most one per tick (the loop queues them).
+/// A request to the controller. Each tick gets at most one request; the loop queues the others.
 struct Request {
   enum class Kind : std::uint8_t {
     none,
     start,
-    check,  ///< answered like a start at this time, but without another effect
+    check,  ///< the reply is that of a start at this time, but there is no other effect
     stop,
     vent,
     acknowledge,
     release,
   };
   Kind kind = Kind::none;
-  std::uint32_t id = 0;                        ///< repeated in the events that answer the request
-  const PreparedSequence* sequence = nullptr;  ///< for start and check; must outlive the run
-  std::uint32_t of_start = 0;                  ///< for stop: id of the one start to stop; 0: any
+  std::uint32_t id = 0;                        ///< id of the request; the events that answer the request
+                                               ///< contain it
+  const PreparedSequence* sequence = nullptr;  ///< for start and check; must exist until the sequence has
+                                               ///< ended
+  std::uint32_t of_start = 0;                  ///< for stop: id of the only start that must stop; 0: any
+                                               ///< start
 };
 
 /// State of the bus since the last tick.
 struct BusHealth {
-  bool connected = false;             ///< a session is open
-  FaultCode fault = FaultCode::none;  ///< cause of the last failed exchange; none after a successful one
+  bool connected = false;             ///< a connection to the board is open
+  FaultCode fault = FaultCode::none;  ///< cause of the last exchange if it failed; none if it was successful
   std::uint32_t consecutive_failures = 0;
-  /// Number of times that the bus thread has stopped applying the commands. After an increase, it writes no
-  /// pressure that is further from rest than TickInput::outputs_kpa, and `fault` gives the reason. It applies
-  /// commands again when they come from a tick that has read the new number.
+  /// Number of times that the bus thread has stopped applying the commands. After such a stop, the bus thread
+  /// writes no pressure that is further from rest than TickInput::outputs_kpa, and `fault` gives the reason.
+  /// The bus thread applies commands again when they come from a tick that has read the new number.
   std::uint32_t inhibit = 0;
 };
 
@@ -80,57 +86,62 @@ struct TickInput {
   Nanoseconds now = 0;
   std::span<const model::Reading> readings;  ///< one per channel
   BusHealth bus;
-  /// One value per channel: the pressure at the board's output, or a pressure that is nearer to rest. Empty:
+  /// For each channel, the pressure at the board's output or a pressure that is nearer to rest. Empty:
   /// unknown.
   std::span<const double> outputs_kpa;
   Request request;
-  bool emergency_stop = false;       ///< the level of the input, true = stop
-  bool interlock_open = false;       ///< a start is refused while true; a sequence with Interlock::always is
+  bool emergency_stop = false;       ///< state of the emergency stop input; true: stop
+  bool interlock_open = false;       ///< true: a start is refused, and a sequence with Interlock::always is
                                      ///< stopped
-  bool inputs_lost = false;          ///< the digital inputs cannot be read, so their state is unknown
-  std::uint32_t overrun_cycles = 0;  ///< cycles that the loop missed just before this tick
+  bool inputs_lost = false;          ///< true: the digital inputs cannot be read, so their state is unknown
+  std::uint32_t overrun_cycles = 0;  ///< number of cycles that the loop missed just before this tick
 };
 
-/// One channel in one tick. It is changed in place: the values of the last tick are the basis of the
-/// decisions of this tick. Commands, rows of the recording and the status are copied from it.
+/// The output of one channel in one tick. Each tick changes the output of the last tick, because the last
+/// values are the basis of its decisions. Commands, rows of the recording and the status are copied from it.
 struct ChannelOutput {
-  double command_kpa = 0;      ///< command for the board: within the range and the slew limits
-  double safe_kpa = 0;         ///< command if the loop stops now; it depends on the phase
-  double reference_mm = 0;     ///< limited reference at the time of this tick; NaN without tracking
+  double command_kpa = 0;      ///< command for the board, within the pressure range and the slew limits
+  double safe_kpa = 0;         ///< command that is written if the loop stops now; it depends on the phase
+  double reference_mm = 0;     ///< limited reference at the time of this tick; NaN if no reference is
+                               ///< followed
   double displacement_mm = 0;  ///< last valid reading; NaN before the first one
   double pressure_kpa = 0;     ///< measured pressure, or NaN
   double temperature_c = 0;    ///< measured temperature, or NaN; only recorded
-  double feedforward_kpa = 0;  ///< feedforward part of the request; 0 without tracking
-  double feedback_kpa = 0;     ///< feedback part of the request; 0 without tracking
-  double residual_mm = 0;      ///< reading minus (model + offset) at the time of the reading; NaN without a
-                               ///< reading
-  double shortfall_mm = 0;     ///< displacement shortfall against free motion; NaN if it is unknown
+  double feedforward_kpa = 0;  ///< feedforward part of the request; 0 if no reference is followed
+  double feedback_kpa = 0;     ///< feedback part of the request; 0 if no reference is followed
+  double residual_mm = 0;      ///< reading minus (model output + offset) at the time of the reading; NaN
+                               ///< without a reading
+  double shortfall_mm = 0;     ///< displacement of free motion minus reading; NaN if it is unknown
   double free_kpa = 0;         ///< command under which the free finger rests at the last valid reading
-  /// gripping pressure that corresponds to the displacement shortfall; NaN without displacement feedback
+  /// gripping pressure: the pressure above free_kpa; NaN without displacement feedback
   double squeeze_kpa = 0;
   double age_s = 0;          ///< age of the reading
-  double health_rms_mm = 0;  ///< root mean square of the residual; a large value makes the model unfit
-  std::uint16_t step = 0;    ///< index in the sequence
+  double health_rms_mm = 0;  ///< root mean square of the residual; above a limit, the model is unfit
+  std::uint16_t step = 0;    ///< index of the step in the sequence
   model::Validity validity = model::Validity::none_yet;
   GripResult result = GripResult::none;
-  GripEvidence evidence = GripEvidence::none;  ///< evidence for the result
+  GripEvidence evidence = GripEvidence::none;  ///< evidence on which the grip result is based
   HealthState health = HealthState::unknown;   ///< state of the model
   bool health_changed = false;
-  BindingLimit bound_by = BindingLimit::none;  ///< limit because of which the command differs noticeably from
+  BindingLimit bound_by = BindingLimit::none;  ///< limit that changes the command noticeably compared with
                                                ///< the request
-  BindingLimit limit = BindingLimit::none;     ///< the same limit, after it has been active for
+  BindingLimit limit = BindingLimit::none;     ///< limit bound_by, after it has been active for
                                                ///< LimitWatch::moment_s
-  bool saturated = false;                      ///< the request was outside the pressure range
-  bool slewing = false;                        ///< the request was further from the last command than the
-                                               ///< slew limits allow
-  bool request_invalid = false;                ///< the request was not a number: the command was held
-  bool reference_clamped = false;              ///< the reference was outside the displacement range
-  bool out_of_reach = false;         ///< the feedforward cannot reach the reference within the limits
-  bool stands_still = false;         ///< the reading is constant for an implausible time for this sensor
-  bool unsteady = false;             ///< the reading jumps back and forth repeatedly
-  double jump_mm = 0;                ///< last jump; the sign is the direction
-  bool displacement_beyond = false;  ///< the reading is outside the displacement range and its margin
-  bool synchronised = false;         ///< resynchronisation was requested and residual_mm has settled
+  bool saturated = false;                      ///< true: the request was outside the pressure range
+  bool slewing = false;                        ///< true: the request was further from the last command than
+                                               ///< the slew limits allow
+  bool request_invalid = false;                ///< true: the request was not a number, so the last command
+                                               ///< was held
+  bool reference_clamped = false;              ///< true: the reference was outside the displacement range, so
+                                               ///< it was limited
+  bool out_of_reach = false;         ///< true: the feedforward cannot reach the reference within the limits
+  bool stands_still = false;         ///< true: the reading has been constant for a time that is implausible
+                                     ///< for this sensor
+  bool unsteady = false;             ///< true: the reading jumps back and forth repeatedly
+  double jump_mm = 0;                ///< size of the last jump; the sign gives the direction
+  bool displacement_beyond = false;  ///< true: the reading is outside the displacement range and the margin
+                                     ///< around the range
+  bool synchronised = false;         ///< true: resynchronisation was requested, and residual_mm has settled
 };
 
 /// `Event::channel` of events that concern the complete rig.
@@ -140,10 +151,11 @@ inline constexpr std::uint8_t whole_rig = 0xff;
 struct Fault {
   FaultCode code = FaultCode::none;
   std::uint8_t channel = whole_rig;
-  double value = 0;  ///< value of the condition: an age, a displacement, a read-back, a number of cycles
+  double value = 0;  ///< value of the fault condition: an age, a displacement, a read-back or a number of
+                     ///< cycles
 };
 
-/// An event to report; at most a few per tick.
+/// An event that the daemon must report. A tick has at most a few events.
 struct Event {
   enum class Kind : std::uint8_t {
     state_changed,
@@ -157,28 +169,28 @@ struct Event {
     model_health_changed,
     reading_invalid,
     reading_valid,
-    contact,           ///< a finger has come into contact during a motion
+    contact,           ///< a finger has come into contact with an object during a motion
     limit_binds,       ///< a limit has restricted a command for longer than LimitWatch::moment_s
     limit_free,        ///< the limit no longer restricts the command
-    release_asked,     ///< the sequence continues with the release step
+    release_asked,     ///< the sequence continues with its release step
     reading_unsteady,  ///< the reading jumps back and forth repeatedly
     reading_steady,    ///< the reading has not jumped for JumpWatch::calm_s
-    start_checked,     ///< a start would be accepted now
-    not_at_rest,       ///< reason why a start found no rest. detail: UnsettledReason; value: model offset
-                       ///< [mm]
+    start_checked,     ///< the result of a check: a start would be accepted now
+    not_at_rest,       ///< the reason why a start found no rest. `detail` is an UnsettledReason; `value` is
+                       ///< the model offset [mm]
   };
   Kind kind = Kind::state_changed;
   std::uint8_t channel = whole_rig;
-  /// State, FaultCode, GripResult, step, RefusalCode, HealthState, Validity, SequenceEnd, OnContact,
-  /// BindingLimit or UnsettledReason, depending on `kind`.
+  /// Detail of the event. Its type depends on `kind`: State, FaultCode, GripResult, step, RefusalCode,
+  /// HealthState, Validity, SequenceEnd, OnContact, BindingLimit or UnsettledReason.
   std::uint16_t detail = 0;
-  std::uint32_t request = 0;  ///< id of the request that the event answers, or 0
-  /// value of the event (a displacement shortfall, an age, a contact position), or 0
+  std::uint32_t request = 0;  ///< id of the request that the event answers; 0 if there is none
+  /// Value of the event (a displacement shortfall, an age, a contact position); 0 if there is none.
   double value = 0;
-  GripEvidence evidence = GripEvidence::none;  ///< of grip_result: its evidence
+  GripEvidence evidence = GripEvidence::none;  ///< for a grip result: the evidence on which it is based
 };
 
-/// The events of one tick. Events beyond the capacity are not stored, but counted.
+/// The events of one tick. Events beyond the capacity of the list are counted, but not stored.
 class EventList {
  public:
   void add(const Event& event) noexcept {
@@ -214,10 +226,10 @@ class EventList {
 
 struct TickOutput {
   State state = State::starting;
-  Fault first_fault;  ///< first fault that latched
-  Fault cause;        ///< present condition that is a fault or may become one
-  /// Channels under pressure without motion: after a sequence that ended in a hold, or after a stop or a
-  /// fault with the action hold. Bit i is channel i.
+  Fault first_fault;  ///< the fault that latched first
+  Fault cause;        ///< present condition that is a fault, or can become a fault if it lasts
+  /// Channels that are under pressure but do not move: after a sequence that ended in a hold, or after a stop
+  /// or a fault with the action hold. Bit i is channel i.
   std::uint32_t under_pressure = 0;
   std::size_t channel_count = 0;
   std::array<ChannelOutput, max_channels> channels{};

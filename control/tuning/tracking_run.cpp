@@ -23,7 +23,7 @@ namespace {
 
 constexpr double rest_s = 0.5;
 constexpr double approach_s = 3;
-/// Frequencies at which the response of a loop is computed.
+/// Lowest frequency at which the response of a loop is computed, and the factor between two frequencies.
 constexpr double lowest_hz = 1e-3;
 constexpr double step_factor = 1.005;
 
@@ -42,7 +42,7 @@ double quantised(double value, double step) {
   return step > 0 ? step * std::round(value / step) : value;
 }
 
-/// Simulated finger, board and clock.
+/// A simulated finger with a simulated board and clock.
 class Bench {
  public:
   explicit Bench(const TrackingRun& run)
@@ -52,7 +52,8 @@ class Bench {
         finger_(run.finger, {}, tick_s_, run.seed),
         seed_(derived_seed(run.seed, 1)) {}
 
-  /// Advances to the exchange of the tick and writes the command. Returns the reading of the same exchange.
+  /// Advances to the exchange of the tick and writes the command. Returns the reading that was taken in the
+  /// same exchange.
   double exchange(double command_kpa) {
     if (exchange_s_ > 0) finger_.step(exchange_s_, out_kpa_);
     out_kpa_ = quantised(command_kpa, run_.command_step_kpa);
@@ -60,8 +61,8 @@ class Bench {
     return quantised(finger_.reading_mm() + run_.noise_mm * normal_at(seed_, readings_++),
                      run_.reading_step_mm);
   }
-  /// Returns the finger's displacement in the middle between the exchange and the end of the tick, and at the
-  /// end.
+  /// Advances to the end of the tick. Returns the finger's displacement in the middle between the exchange
+  /// and the end of the tick, and its displacement at the end.
   std::array<double, 2> rest_of_tick() {
     std::array<double, 2> places{};
     for (double& place : places) {
@@ -82,8 +83,8 @@ class Bench {
   double out_kpa_ = 0;
 };
 
-/// Smallest and largest instantaneous slope of the model over its working range in two cycles. The hysteresis
-/// in the second cycle may differ from the first.
+/// Smallest and largest instantaneous slope of the model over its working range in two cycles. The second
+/// cycle is needed, because its hysteresis may differ from that of the first cycle.
 struct GainRange {
   double smallest = std::numeric_limits<double>::max();
   double largest = 0;
@@ -112,7 +113,7 @@ GainRange gain_range(const model::Model& body, const LimitSettings& limits) {
   return range;
 }
 
-/// Returns the compliance of the creep, without the instantaneous part [mm/kPa].
+/// Returns the compliance of the creep at the frequency s, without the instantaneous part [mm/kPa].
 std::complex<double> creep(const model::Model& body, std::complex<double> s) {
   std::complex<double> sum = 0;
   for (const model::BlockSpec& block : body.blocks) {
@@ -211,7 +212,7 @@ LoopMargins loop_margins(const model::Model& model, const PidSettings& pid, cons
   const double dead_s = dead_time_s(model) + 0.5 * tick_s + age_s;
   LoopMargins margins;
   for (const double gain : {gains.smallest, gains.largest}) {
-    bool beyond = true;  // true while |L| > 1; this holds at the lowest frequency with an integrator
+    bool beyond = true;  // true while |L| > 1; with an integrator, |L| > 1 at the lowest frequency
     double phase = 0;
     std::complex<double> before = 0;
     const auto steps = static_cast<int>(std::log(0.5 / tick_s / lowest_hz) / std::log(step_factor));

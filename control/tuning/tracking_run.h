@@ -10,7 +10,7 @@
 
 namespace softgrip::control {
 
-/// The finger's motion in the measured cycles, one value per tick. Times count from the start of these
+/// The motion of the finger in the measured cycles, one value per tick. Time 0 is the start of the measured
 /// cycles.
 struct TrackingTrace {
   std::vector<double> time_s;
@@ -18,41 +18,43 @@ struct TrackingTrace {
   std::vector<double> displacement_mm;
 };
 
-/// One run consists of a rest, a ramp to the lowest point of the sine, and cycles of the sine. The board
-/// outputs each command for the duration of a tick, beginning `exchange_s` after the tick. The reading is
-/// taken in the same exchange, so a reading is a tick old when it is used.
+/// One simulation consists of a rest, a ramp to the lowest point of the sine, and cycles of the sine. The
+/// board outputs each command for the duration of a tick, beginning `exchange_s` after the tick. The reading
+/// is taken in the same exchange, so a reading is one tick old when the controller uses it.
 struct TrackingRun {
-  ChannelSettings settings;  ///< the controller with its model
+  ChannelSettings settings;  ///< settings of the controller, including its model
   model::Model finger;       ///< the simulated finger
   double rate_hz = 200;
   double mean_mm = 13;
   double amplitude_mm = 7;
   double frequency_hz = 0.1;
-  double settling_cycles = 1;  ///< cycles before the measured ones
+  double settling_cycles = 1;  ///< number of cycles before the measured cycles
   double measured_cycles = 2;
-  double exchange_s = 0;        ///< time from the tick to the exchange; less than a period
+  double exchange_s = 0;        ///< time from the tick to the exchange; less than one period of the tick
   double noise_mm = 0.03;       ///< standard deviation of the sensor's white noise
-  double reading_step_mm = 0;   ///< quantisation of the reading; 0: none
-  double command_step_kpa = 0;  ///< quantisation of the output; 0: none
+  double reading_step_mm = 0;   ///< quantisation of the reading; 0: no quantisation
+  double command_step_kpa = 0;  ///< quantisation of the output; 0: no quantisation
   std::uint64_t seed = 1;
-  /// For feedforward `planned`: plan_for() of this run; if it is null, the plan is computed for the run.
+  /// Result of plan_for(), for the feedforward `planned`. If the pointer is null, the plan is computed for
+  /// this simulation.
   const PressurePlan* plan = nullptr;
   TrackingTrace* trace = nullptr;  ///< filled if it is not null
 };
 
-/// Returns the plan for a run's reference, computed with the model of the controller.
+/// Returns the plan for the reference of a simulation, computed with the model of the controller.
 [[nodiscard]] PressurePlan plan_for(const TrackingRun& run);
 
-/// The result over the measured cycles, for the finger itself (not for its noisy reading).
+/// The result over the measured cycles. It refers to the displacement of the finger itself, without sensor
+/// noise.
 struct TrackingResult {
   double rmse_mm = 0;
   double worst_mm = 0;
   double pressure_mean_kpa = 0;  ///< mean of the commands
   double pressure_most_kpa = 0;
-  double residual_rms_mm = 0;                 ///< residual of the running model
+  double residual_rms_mm = 0;                 ///< root mean square residual of the controller's running model
   double out_of_reach_share = 0;              ///< share of the ticks in which the reference was out of reach
-  double cut_share = 0;                       ///< share of the ticks in which limits changed the request
-  HealthState health = HealthState::unknown;  ///< the worst state during the run
+  double cut_share = 0;                       ///< share of the ticks in which a limit changed the request
+  HealthState health = HealthState::unknown;  ///< worst state of the model's health during the simulation
 };
 [[nodiscard]] TrackingResult track(const TrackingRun& run);
 
@@ -60,14 +62,15 @@ struct TrackingResult {
 /// relative, 1 + relative]. Whole numbers do not change.
 [[nodiscard]] model::Model with_scatter(const model::Model& model, double relative, std::uint64_t seed);
 
-/// Stability margins of a loop of PID and model. The model is linearised at the slopes of its hysteresis.
+/// Stability margins of the loop of PID and model. The model is linearised; its gain is the slope of the
+/// hysteresis.
 struct LoopMargins {
   double sensitivity = 0;   ///< Ms, the largest |1/(1+L)|; infinite for an unstable loop
   double crossover_hz = 0;  ///< lowest frequency at which |L| = 1
 };
 /// Returns the worst margins over the smallest and the largest instantaneous gain of the model. The gains are
-/// taken on both sides of 0 kPa, within the pressure range. The loop includes the model's dead time, half a
-/// tick for the hold, and the age `age_s` of the reading.
+/// searched within the pressure range, on both sides of 0 kPa. The loop includes the model's dead time, half
+/// a tick for the hold of the output, and the age `age_s` of the reading.
 [[nodiscard]] LoopMargins loop_margins(const model::Model& model, const PidSettings& pid,
                                        const LimitSettings& limits, double tick_s, double age_s);
 

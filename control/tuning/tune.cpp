@@ -14,12 +14,12 @@
 namespace softgrip::control {
 namespace {
 
-/// ln kp, ln ki, derivative time [s] (negative: none)
+/// Search variables: ln kp, ln ki, derivative time [s]; a negative derivative time means no derivative.
 using Point = GainPoint;
 
 constexpr double filter_share = 0.125;
-/// Smallest cost of a loop whose stability margin is too small [mm]. The cost increases with the missing
-/// margin.
+/// Smallest cost of a loop whose stability margin is too small [mm]. The cost increases with the amount by
+/// which the margin is too small.
 constexpr double no_margin_mm = 100;
 constexpr double most_error_mm = 50;
 
@@ -56,7 +56,7 @@ class Cost {
     return rmse(pid, fingers_, task_.noise_mm);
   }
 
-  /// Returns the worst margins of all fingers.
+  /// Returns the worst stability margins over all fingers.
   [[nodiscard]] LoopMargins margins(const PidSettings& pid) const {
     LoopMargins worst;
     worst.crossover_hz = 0.5 * task_.rate_hz;

@@ -1,5 +1,5 @@
 #pragma once
-// Tunes PID gains for fingers that differ from their model.
+// Tunes PID gains for fingers whose parameters differ from those of the model.
 
 #include <cstdint>
 #include <string>
@@ -12,9 +12,10 @@
 
 namespace softgrip::control {
 
-/// The task of a tuning. The fingers are random variations of `finger`; the controller uses `channel.model`.
+/// The task of a tuning. The simulated fingers are random variations of `finger`; the controller uses
+/// `channel.model`.
 struct TuneTask {
-  ChannelSettings channel;  ///< model, feedforward and limits; its gains are not used
+  ChannelSettings channel;  ///< model, feedforward and limits; the gains in it are not used
   model::Model finger;
   double rate_hz = 200;
   double exchange_s = 0;  ///< time from the tick to the exchange, as in TrackingRun
@@ -23,33 +24,34 @@ struct TuneTask {
   std::vector<double> frequencies_hz{0.1, 0.3};  ///< frequencies of the tracked sines
   double noise_mm = 0.03;
   double mismatch = 0.05;       ///< largest relative error of each parameter of a finger
-  int draws = 6;                ///< number of fingers
-  double most_sensitivity = 2;  ///< largest Ms of each finger; 2: gain margin 2, phase margin 29 degrees
+  int draws = 6;                ///< number of random fingers
+  double most_sensitivity = 2;  ///< largest permitted Ms of each finger; Ms = 2 means a gain margin of 2 and
+                                ///< a phase margin of 29 degrees
   std::uint64_t seed = 1;
   int iterations = 40;  ///< iterations of the simplex search after the grid search
 };
 
-/// The optimum, its margin and its errors.
+/// The best gains, their stability margin and their tracking errors.
 struct Tuned {
   PidSettings pid;
-  double sensitivity = 0;   ///< worst Ms of the fingers
-  double crossover_hz = 0;  ///< lowest crossover of the fingers
-  double rmse_mm = 0;       ///< root mean square over fingers and frequencies
+  double sensitivity = 0;   ///< worst Ms over the fingers
+  double crossover_hz = 0;  ///< lowest crossover frequency over the fingers
+  double rmse_mm = 0;       ///< root mean square tracking error over fingers and frequencies
   double exact_mm = 0;      ///< tracking error for `finger` without variation and noise
   double noisy_mm = 0;      ///< tracking error for `finger` without variation, with noise
   double mismatch_mm = 0;   ///< tracking error for the random fingers, without noise
   int evaluations = 0;
-  std::string limited_by;  ///< limiting factor, as text
+  std::string limited_by;  ///< factor that limits the result, as text
 };
 
 /// Minimises the tracking error over all fingers. The largest Ms must stay within its bound. A grid search in
-/// kp and ki is followed by the simplex of Nelder and Mead (Computer Journal 7, 1965). The simplex varies kp,
-/// ki and the derivative time. The filter time of the derivative is an eighth of the derivative time, at
-/// least two ticks.
+/// kp and ki is followed by the simplex search of Nelder and Mead (Computer Journal 7, 1965). The simplex
+/// search varies kp, ki and the derivative time. The filter time of the derivative is an eighth of the
+/// derivative time, but at least two ticks.
 [[nodiscard]] Tuned tune(const TuneTask& task);
 
-/// Chooses a sine that the model reaches. Mean and amplitude are shares of the model's displacement at the
-/// highest pressure.
+/// Chooses a sine that the model can reach. Its mean and its amplitude are fixed shares of the displacement
+/// at the highest pressure.
 void choose_reference(TuneTask& task);
 
 }  // namespace softgrip::control
