@@ -20,8 +20,7 @@ namespace softgrip::control {
 ///   a regulator without a lag: the command that moves the regulator's spool through the overlap, minus the
 ///                   effect of its integral (RegulatorInverse).
 ///   a dead band before one of these: u plus half of the band in the direction of the change. A dead band
-///   after
-///                   them is ignored.
+///                   after them is ignored.
 class ValveInverse {
  public:
   /// @param model  the complete model.
