@@ -13,15 +13,15 @@
 
 namespace softgrip::daemon {
 
-/// Does nothing. Tests replace this class by one that interrupts each copy in the middle.
+/// Has no effect. Tests replace this class by a class that interrupts each copy in the middle.
 struct NoInterruption {
   static void halfway() noexcept {}
 };
 
 /// Distributes items from one thread to any number of readers. The writer never waits: if the buffer is full,
-/// a new item replaces the oldest. Each reader has its own thread and pace. A reader that lags by more than
-/// the capacity loses items, which are counted, and does not delay any other thread. Memory is allocated at
-/// construction only. T is a plain value.
+/// a new item replaces the oldest one. Each reader has its own thread and reads at its own speed. A reader
+/// that lags by more than the capacity loses items, which are counted. Such a reader does not delay any other
+/// thread. The constructor is the only function that allocates memory. T is a plain value.
 template <class T, class Interruption = NoInterruption>
 class Broadcast {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -37,7 +37,7 @@ class Broadcast {
     std::memcpy(words.data(), &item, sizeof(T));
     Slot& slot = slot_of(pushed_);
     slot.turn.store(writing, std::memory_order_relaxed);
-    // A reader that sees one of the new words also sees that the slot is being written.
+    // If a reader reads one of the new words, it must also see that the slot is being written.
     for (std::size_t i = 0; i < words.size(); ++i) {
       if (i == words.size() / 2) Interruption::halfway();
       slot.words[i].store(words[i], std::memory_order_release);
@@ -94,7 +94,7 @@ class Broadcast {
   static constexpr std::uint64_t writing = UINT64_MAX;
 
   struct Slot {
-    std::atomic<std::uint64_t> turn{0};  ///< number of the item in this slot, from 1
+    std::atomic<std::uint64_t> turn{0};  ///< number of the item that this slot contains, from 1
     std::array<std::atomic<std::uint64_t>, std::tuple_size_v<Words>> words{};
   };
   [[nodiscard]] Slot& slot_of(std::uint64_t index) noexcept { return slots_[index & (slots_.size() - 1)]; }
@@ -103,7 +103,7 @@ class Broadcast {
   }
 
   std::vector<Slot> slots_;
-  std::uint64_t pushed_ = 0;  // used by the writer only
+  std::uint64_t pushed_ = 0;  // used only by the writer
   alignas(64) std::atomic<std::uint64_t> newest_{0};
 };
 

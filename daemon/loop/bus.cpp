@@ -13,14 +13,14 @@ using drivers::BusStatus;
 
 namespace {
 
-/// Returns true if the board has responded to the request, even with a rejection.
+/// Returns true if the board has responded to the request; a rejection is a response too.
 bool is_answer(BusStatus status) noexcept {
   return status != BusStatus::disconnected && status != BusStatus::closed_at_once &&
          status != BusStatus::timed_out && status != BusStatus::bad_reply;
 }
 
-/// Returns true if the session cannot be used again: the board may still send the response to an old request,
-/// or it waits for the set-up of a new session.
+/// Returns true if the connection cannot be used any more: the board may still send the response to an old
+/// request, or it waits for the set-up of a new connection.
 bool loses_session(BusStatus status) noexcept {
   return !is_answer(status) || status == BusStatus::watchdog_tripped;
 }
@@ -87,7 +87,8 @@ void Bus::step(Nanoseconds due) noexcept {
   if (!listen()) return;
   const bool connected = session_ != Session::none;
   if (ensure_session()) {
-    // Opening a session takes time, so the commands that arrived during this time are used.
+    // Opening a connection takes time. The commands that arrived during this time are newer, so they are
+    // used.
     if (!connected && shared_.commands.fetch()) unheard_ = 0;
     exchange();
   } else {
@@ -96,7 +97,7 @@ void Bus::step(Nanoseconds due) noexcept {
   publish();
 }
 
-/// Fetches the commands of the loop and detects their time-out. Returns false until the loop has sent its
+/// Fetches the commands of the loop and detects if they time out. Returns false until the loop has sent its
 /// first commands.
 bool Bus::listen() noexcept {
   if (shared_.commands.fetch()) {
@@ -131,7 +132,7 @@ bool Bus::ensure_session() noexcept {
   if (session_ != Session::none) return true;
   if (clock_.now() < next_attempt_) return false;
   report_.health.connected = false;
-  publish();  // connect() may take long; the loop must know the state before
+  publish();  // connect() may take long, so the loop must know the state before the call
   statistics_.attempts.fetch_add(1, std::memory_order_relaxed);
   const BusStatus status = board_.connect(reconnect_.connect_deadline);
   if (status == BusStatus::ok) {
@@ -169,7 +170,7 @@ void Bus::exchange() noexcept {
   }
   if (status != BusStatus::ok) {
     if (loses_session(status)) {
-      // If each session fails at its first exchange, the daemon must not connect to the board in each cycle.
+      // If every new connection fails at its first exchange, the daemon must not reconnect in every cycle.
       if (session_ != Session::proven) put_off_next_attempt();
       session_ = Session::none;
     }
@@ -180,8 +181,8 @@ void Bus::exchange() noexcept {
     return;
   }
   report_.outputs_kpa = written_kpa_;
-  // If this thread was stopped during the exchange, the commands may have reached the board after its
-  // watchdog time, when it had already changed its outputs.
+  // If this thread was stopped during the exchange, the commands may have reached the board after the
+  // watchdog time. In this case, the board had already changed its outputs.
   judge_gap(ended, 0);
   last_good_ = began;
   note_success(ended - began);
@@ -213,9 +214,9 @@ void Bus::note_success(Nanoseconds duration) noexcept {
   note_clients();
 }
 
-/// Reports another client once per session, so that a client that reconnects often does not fill the log.
-/// This is done only if reading feeds the board's watchdog. If only writing feeds it, another client that
-/// writes is detected by the change of the outputs.
+/// Reports another client once per connection, so that a client that reconnects often does not fill the log.
+/// This report is needed only if a client that reads feeds the board's watchdog. If only a client that writes
+/// feeds the watchdog, such a client is detected by the change of the outputs.
 void Bus::note_clients() noexcept {
   if (told_clients_ || !board_.fed_by_readers()) return;
   const unsigned clients = board_.clients();
@@ -227,7 +228,7 @@ void Bus::note_clients() noexcept {
 }
 
 void Bus::note_failure(BusStatus status) noexcept {
-  // It is not known if the board has applied the write.
+  // After a failed exchange, it is unknown if the board has applied the write.
   for (std::size_t i = 0; i < channels_; ++i) {
     report_.outputs_kpa[i] = control::no_further(rest_kpa_[i], written_kpa_[i], report_.outputs_kpa[i]);
   }
@@ -240,7 +241,8 @@ void Bus::note_failure(BusStatus status) noexcept {
   }
   const bool others = status == BusStatus::overwritten;
   if (others || status == BusStatus::watchdog_tripped) rest_outputs();
-  // A watchdog that has tripped changes the outputs too, so this change does not show another client.
+  // A tripped watchdog changes the outputs too, so a change after it does not prove that there is another
+  // client.
   const bool known = others && inhibited_ == FaultCode::board_watchdog_tripped;
   if (control::inhibits(fault_of(status)) && !known) inhibit(fault_of(status));
   statistics_.failures.add();
@@ -251,10 +253,10 @@ void Bus::note_failure(BusStatus status) noexcept {
   tell(BusEvent::Kind::failed, status, board_.detail());
 }
 
-/// Accepts outputs that are nearer to rest, according to the board, than the written commands. To write the
-/// last commands again would move these outputs away from rest. Outputs whose safe action is hold are
-/// excluded, because a gateway that repeats an old reading must not open a grip. This exclusion ends with the
-/// first commands without this action.
+/// Accepts the outputs that the board reports if they are nearer to rest than the written commands. Writing
+/// the last commands again would move these outputs away from rest. Outputs whose safe action is hold are not
+/// accepted, because a gateway that repeats an old reading must not open a grip. They are accepted again when
+/// commands with another safe action arrive.
 void Bus::respect_found_outputs() noexcept {
   const Commands& commands = shared_.commands.value();
   for (std::size_t i = 0; i < channels_; ++i) {
@@ -264,15 +266,15 @@ void Bus::respect_found_outputs() noexcept {
   }
 }
 
-/// Reports once per outage the reason why no new session can be opened, if this reason differs from the one
-/// for which the last session ended. Example: a converter was removed, and another one has its name.
+/// Reports once per outage why no new connection can be opened, if the reason differs from the reason for the
+/// loss of the last connection. Example: a converter was removed, and another converter has its name.
 void Bus::note_refusal(BusStatus status) noexcept {
   if (told_refused_ || std::strncmp(told_.data(), board_.detail(), told_.size() - 1) == 0) return;
   told_refused_ = true;
   tell(BusEvent::Kind::not_connected, status, board_.detail());
 }
 
-/// Assumes that the board has set its safe outputs if it was not fed for longer than its watchdog time.
+/// If the board was not fed for longer than its watchdog time, assumes that it has set its safe outputs.
 void Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
   if (watchdog_ == 0 || !last_good_ || now - *last_good_ < watchdog_ - margin) return;
   rest_outputs();
@@ -283,7 +285,7 @@ void Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
                 seconds(now - *last_good_), seconds(watchdog_));
   tell(BusEvent::Kind::failed, BusStatus::watchdog_tripped, detail.data());
   told_failed_ = true;
-  last_good_.reset();  // once per gap: the rest pressures are written until the next successful exchange
+  last_good_.reset();  // once per gap; until the next successful exchange, the rest pressures are written
 }
 
 void Bus::rest_outputs() noexcept {

@@ -1,5 +1,5 @@
 #pragma once
-// Checks that the essential threads are still running.
+// Checks that the threads without which the daemon cannot work are still running.
 
 #include <cstdint>
 #include <vector>
@@ -8,15 +8,16 @@
 
 namespace softgrip::daemon {
 
-/// Checks counters that the threads increase. Each counter has its own time-out: a bus thread may stop for as
-/// long as opening a session takes, but a loop may not.
+/// Checks counters that the threads increase. Each counter has its own time-out. Opening a connection may
+/// block the bus thread for a long time, but nothing may block the loop.
 class Heartbeat {
  public:
-  /// `patience` has the time-out of each counter [ns]. The times begin with the first call of beats().
+  /// `patience` contains the time-out of each counter [ns]. The time-outs start with the first call of
+  /// beats().
   explicit Heartbeat(const std::vector<Nanoseconds>& patience);
 
-  /// Returns false if a counter has not changed for longer than its time-out. `counts` has the counters in
-  /// the same order.
+  /// Returns false if a counter has not changed for longer than its time-out. `counts` contains the counters
+  /// in the order of their time-outs.
   [[nodiscard]] bool beats(Nanoseconds now, const std::vector<std::uint64_t>& counts);
 
  private:

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t ns_per_us = 1000;
 
-/// Only the recording thread writes, so a load and a store are sufficient instead of a locked addition.
+/// Only one thread writes the counters, so a load and a store can replace an atomic addition.
 void add_to(std::atomic<std::uint64_t>& counter, std::uint64_t amount) noexcept {
   counter.store(counter.load(std::memory_order_relaxed) + amount, std::memory_order_relaxed);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Histograms of durations that are always active: one thread records, and any thread may read.
+// Histograms of durations that are always recorded. One thread adds durations, and any thread may read them.
 
 #include <array>
 #include <atomic>
@@ -11,16 +11,17 @@
 
 namespace softgrip::daemon {
 
-/// Counts of durations in nanoseconds. Bins are exact below 128 ns. Above 128 ns, the width of a bin is 1/128
-/// of the start of its octave, so the error is below 0.8 % from 1 ns to 68 s. The bins need 30 kB. Negative
-/// durations are counted as 0, and durations above 68 s in the last bin. add() needs a few plain loads and
-/// stores, without locks and locked instructions.
+/// Numbers of durations per bin, in nanoseconds. A bin has a width of 1 ns below 128 ns. Above 128 ns, its
+/// width is 1/128 of the start of its octave, so the error is below 0.8 % up to 68 s. The bins need 30 kB. A
+/// negative duration is added to the bin of 0, and a duration above 68 s to the last bin. add() needs a few
+/// plain loads and stores. It uses no locks and no atomic additions.
 class Histogram {
  public:
-  /// Called by one thread only.
+  /// Adds a duration. Only one thread may call this function.
   void add(std::int64_t duration_ns) noexcept;
 
-  /// Returns the counts so far. If add() runs at the same time, the newest counts may be missing.
+  /// Returns a summary of all durations so far. If add() runs at the same time, the newest durations may be
+  /// missing.
   struct Summary {
     std::uint64_t count = 0;
     std::int64_t min_ns = 0;
@@ -32,26 +33,26 @@ class Histogram {
   };
   [[nodiscard]] Summary summary() const;
 
-  /// Returns the upper end of the smallest bin that contains the quantile, at most the maximum; 0 if empty. q
-  /// in [0, 1].
+  /// Returns the upper end of the bin that contains the quantile q (0 to 1), but at most the largest
+  /// duration; 0 if there are no durations.
   [[nodiscard]] std::int64_t quantile_ns(double q) const;
 
-  /// Returns the bins that are not empty, as lower end in ns and count.
+  /// Returns the lower end [ns] and the number of durations of each bin that is not empty.
   struct Bin {
     std::int64_t lower_ns;
     std::uint64_t count;
   };
   [[nodiscard]] std::vector<Bin> bins() const;
 
-  /// Returns the histogram in the form of `cyclictest --histogram`: one line per microsecond with its count,
-  /// then minimum, average and maximum. Above 131 us, a bin is wider than 1 us and is listed at its lower
-  /// end.
+  /// Returns the histogram in the form of `cyclictest --histogram`: one line per microsecond with the number
+  /// of durations, then minimum, average and maximum. Above 131 us, a bin is wider than 1 us. Such a bin is
+  /// listed at its lower end.
   [[nodiscard]] std::string cyclictest_text(std::string_view title) const;
 
  private:
   static constexpr int sub_bits = 7;
   static constexpr std::size_t sub_count = std::size_t{1} << sub_bits;
-  static constexpr int top_bit = 36;  // durations below 2^36 ns
+  static constexpr int top_bit = 36;  // durations are below 2^36 ns
   static constexpr std::size_t bin_count = sub_count * (top_bit - sub_bits + 1);
 
   [[nodiscard]] static std::size_t index_of(std::uint64_t duration_ns) noexcept;

@@ -9,7 +9,7 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// The loop is the only writer, so a locked addition is not needed.
+/// The loop is the only thread that writes the counter, so a load and a store can replace an atomic addition.
 void add(std::atomic<std::uint64_t>& counter, std::uint64_t amount) noexcept {
   counter.store(counter.load(std::memory_order_relaxed) + amount, std::memory_order_relaxed);
 }
@@ -62,8 +62,9 @@ void Loop::read(control::TickInput& input) noexcept {
   input.bus = report.health;
   input.outputs_kpa = std::span(report.outputs_kpa).first(channels_);
   inhibit_ = report.health.inhibit;
-  // A blocked exchange reports nothing until its deadline, but its cycles count as failed. One missing report
-  // is normal jitter between the two schedules.
+  // A blocked exchange reports nothing until its deadline, but the cycles in this time count as failed. One
+  // missing report is not a failure, because it can come from the jitter between the schedules of loop and
+  // bus.
   if (unreported_ > 1) input.bus.consecutive_failures += unreported_ - 1;
   input.emergency_stop = shared_.inputs.emergency_stop.load(std::memory_order_relaxed);
   input.interlock_open = shared_.inputs.interlock_open.load(std::memory_order_relaxed);
@@ -109,7 +110,7 @@ void Loop::tell_events() noexcept {
 void Loop::record_rows(bool last) noexcept {
   const bool room = shared_.records.push(channels_, [&](Record& row, std::size_t i) {
     row = {woken_, output_.state, static_cast<std::uint8_t>(i), output_.channels[i]};
-    // The last row of the recording contains the last outputs of the board.
+    // The last row of the recording must contain the last outputs of the board.
     if (last) row.output.command_kpa = row.output.safe_kpa;
   });
   if (!room) add(shared_.records_dropped, channels_);

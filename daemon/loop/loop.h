@@ -1,5 +1,5 @@
 #pragma once
-// The control loop: waits, reads, computes the commands, sends and records them.
+// The control loop: waits for the next tick, reads, computes the commands, sends them and records them.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,20 +16,22 @@ class RigController;
 
 namespace softgrip::daemon {
 
-/// No function here allocates, locks, logs, throws or enters the kernel, except for the clock and the sleep.
+/// No function of this class allocates memory, locks, logs, throws or calls the kernel, except to read the
+/// clock and to sleep.
 class Loop {
  public:
-  /// A row is recorded every `decimation` (>= 1) ticks. All references must outlive the loop.
+  /// Records a row in every `decimation`-th tick (>= 1). All referenced objects must exist longer than the
+  /// loop.
   Loop(control::RigController& controller, std::uint32_t decimation, const Clock& clock, SharedState& shared,
        LoopStatistics& statistics) noexcept;
 
   /// Executes ticks on the schedule until shared.shutdown_requested is set, then calls leave().
   void run(PeriodicSchedule schedule) noexcept;
 
-  /// Executes a tick that was due at `due`, for callers with their own timing.
+  /// Executes a tick that was due at `due`. Callers that do not use run() call this function.
   void tick(Nanoseconds due) noexcept;
 
-  /// Sends the safe outputs of the present phase, marked as last, and records them.
+  /// Sends the safe outputs of the present phase, marks them as the last commands, and records them.
   void leave() noexcept;
 
  private:
@@ -50,8 +52,8 @@ class Loop {
   std::uint32_t decimation_;
   std::uint64_t ticks_ = 0;
   std::uint32_t unreported_ = 0;      // ticks since the bus last reported
-  std::uint32_t inhibit_ = 0;         // newest BusHealth::inhibit that the bus has reported
-  std::uint32_t overrun_cycles_ = 0;  // cycles missed before the next tick
+  std::uint32_t inhibit_ = 0;         // newest value of BusHealth::inhibit that the bus has reported
+  std::uint32_t overrun_cycles_ = 0;  // number of cycles that were missed before the next tick
   Nanoseconds woken_ = 0;
   Nanoseconds ended_ = 0;
 };

@@ -35,7 +35,7 @@ long page_bytes() {
   return sysconf(_SC_PAGESIZE);
 }
 
-/// Returns the page faults of the calling thread so far.
+/// Returns the number of page faults of the calling thread so far.
 long page_faults() {
   rusage usage{};
   getrusage(RUSAGE_THREAD, &usage);
@@ -46,7 +46,7 @@ void touch(volatile char* memory, std::size_t bytes) {
   for (std::size_t at = 0; at < bytes; at += static_cast<std::size_t>(page_bytes())) memory[at] = 1;
 }
 
-/// Returns the number of page faults during allocation and use of a heap block.
+/// Returns the number of page faults while a heap block of this size is allocated and written.
 long faults_of_a_heap_block(std::size_t bytes) {
   const long before = page_faults();
   const std::unique_ptr<char[]> block(new char[bytes]);
@@ -58,7 +58,7 @@ RealTimeStep prepare_heap(std::size_t bytes) {
   RealTimeStep step{"heap", Outcome::not_asked, "",
                     "an allocation of the threads beside the loop may page-fault"};
   if (bytes == 0) return step;
-  // Keeps freed blocks in the process, and allocates large blocks from the same heap instead of new mappings.
+  // Keeps freed blocks in the process. Large blocks also come from the heap, and not from new mappings.
   const bool accepted = mallopt(M_TRIM_THRESHOLD, -1) == 1 && mallopt(M_MMAP_MAX, 0) == 1;
   faults_of_a_heap_block(bytes);
   const long faults = faults_of_a_heap_block(bytes);
@@ -73,8 +73,8 @@ RealTimeStep prepare_heap(std::size_t bytes) {
   return step;
 }
 
-/// Tests MCL_FUTURE with a new page. Returns the reason if the page is not known to be resident, or an empty
-/// text if it is resident.
+/// Tests on a new page if MCL_FUTURE works. Returns an empty text if the page is resident in memory,
+/// otherwise the reason why this is not certain.
 std::string doubt_of_a_new_mapping() {
   const auto bytes = static_cast<std::size_t>(page_bytes());
   void* page = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -91,7 +91,7 @@ std::string doubt_of_a_new_mapping() {
   return (resident & 1) != 0 ? "" : "a page mapped afterwards was not resident";
 }
 
-/// Returns true if the limit on locked memory does not apply to this process.
+/// Returns true if the limit on locked memory (RLIMIT_MEMLOCK) does not apply to this process.
 bool may_lock_without_limit() {
   rlimit limit{};
   getrlimit(RLIMIT_MEMLOCK, &limit);
@@ -108,7 +108,7 @@ RealTimeStep lock_memory(bool wanted) {
       "the first use of a page, or its return from swap, can stop the loop for several milliseconds"};
   if (!wanted) return step;
   step.outcome = Outcome::failed;
-  // Under a limit, the lock might succeed now, and later mappings could be refused.
+  // If a limit applies, the lock might succeed now, but the kernel could refuse later mappings.
   const bool unlimited = may_lock_without_limit();
   if (!unlimited || mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
     const int error = unlimited ? errno : EPERM;
@@ -181,8 +181,8 @@ RealTimeStep set_processors(const std::vector<int>& cpus, std::string_view who) 
 RealTimeStep set_scheduling(int priority, std::string_view who) {
   RealTimeStep step{fmt::format("scheduling of {}", who), Outcome::not_asked, "",
                     "the thread waits behind every other process: wake-ups may come milliseconds late"};
-  // The timer slack matters only without SCHED_FIFO: the kernel may then delay each wake-up by 50 us to save
-  // power.
+  // The timer slack has an effect only without SCHED_FIFO. In that case, the kernel may delay each wake-up by
+  // 50 us to save power.
   prctl(PR_SET_TIMERSLACK, 1UL);
   if (priority <= 0) return step;
   step.outcome = Outcome::failed;
@@ -210,8 +210,8 @@ RealTimeStep set_scheduling(int priority, std::string_view who) {
   return step;
 }
 
-/// Uses the part of the stack that the thread will need later. The function is not inlined, because this part
-/// is its own frame.
+/// Writes to the part of the stack that the thread will need later. The compiler must not inline the
+/// function, because its own stack frame is this part.
 [[gnu::noinline]] long touch_stack(std::size_t bytes) {
   const long before = page_faults();
   auto* memory = static_cast<volatile char*>(__builtin_alloca(bytes));
@@ -219,7 +219,8 @@ RealTimeStep set_scheduling(int priority, std::string_view who) {
   return page_faults() - before;
 }
 
-/// Returns the unused bytes of the calling thread's stack, less a margin for the calls below.
+/// Returns the number of unused bytes of the calling thread's stack, minus a margin for the functions that
+/// are called next.
 std::size_t stack_left() {
   constexpr std::size_t margin = 64 * 1024;
   pthread_attr_t attributes;
@@ -316,7 +317,7 @@ RealTimeStep kernel_step() {
   RealTimeStep step{"kernel", Outcome::not_asked, "", ""};
   utsname name{};
   uname(&name);
-  // /sys/kernel/realtime is missing on some real-time kernels from 6.12 on, but their version text contains
+  // Some real-time kernels from 6.12 on have no /sys/kernel/realtime, but their version text contains
   // PREEMPT_RT.
   const bool real_time = std::string_view(name.version).find("PREEMPT_RT") != std::string_view::npos ||
                          access("/sys/kernel/realtime", F_OK) == 0;

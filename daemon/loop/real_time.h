@@ -1,5 +1,5 @@
 #pragma once
-// Requests real-time settings from the operating system and reads each of them back.
+// Requests real-time settings from the operating system and reads each setting back.
 
 #include <string>
 #include <string_view>
@@ -14,20 +14,20 @@ struct RealTimeStep {
   enum class Outcome { verified, failed, not_asked };
   std::string name;
   Outcome outcome = Outcome::not_asked;
-  std::string detail;  ///< value that was read back, or reason of the failure and usual remedy
+  std::string detail;  ///< value that was read back; after a failure, its reason and the usual remedy
   std::string cost;    ///< consequence of a failure, in one sentence
 };
 [[nodiscard]] std::string_view name_of(RealTimeStep::Outcome outcome) noexcept;
 
-/// The results of all steps of one thread or of the process.
+/// The results of all real-time settings of one thread, or of the whole process.
 class RealTimeReport {
  public:
   void add(RealTimeStep step) { steps_.push_back(std::move(step)); }
   void append(const RealTimeReport& other);
   [[nodiscard]] const std::vector<RealTimeStep>& steps() const noexcept { return steps_; }
-  /// Returns true if a requested setting could not be verified.
+  /// Returns true if a setting was requested but could not be verified.
   [[nodiscard]] bool degraded() const noexcept;
-  /// Returns one line per step, and for a failed step a second line with its consequence.
+  /// Returns one line per setting. A failed setting has a second line with the consequence of the failure.
   [[nodiscard]] std::string format() const;
 
  private:
@@ -49,16 +49,16 @@ class ProcessorLatencyRequest {
   int descriptor_ = -1;
 };
 
-/// Prepares the process before its threads start: heap, locked memory, processor latency.
+/// Prepares the process before its threads start: heap, memory lock and processor latency.
 [[nodiscard]] ProcessorLatencyRequest prepare_process(const rig::RealTimeSettings& settings,
                                                       RealTimeReport& report);
 
-/// Prepares the calling thread: its processors, its scheduling at `priority` and its stack. `who` is the name
-/// of the thread in the report.
+/// Prepares the calling thread: its processors, its scheduling with `priority`, and its stack. `who` is the
+/// name of the thread in the report.
 void prepare_thread(const rig::RealTimeSettings& settings, int priority, std::string_view who,
                     RealTimeReport& report);
 
-/// Returns a step that states if the running kernel is PREEMPT_RT. This step never fails.
+/// Returns an entry that states if the running kernel is PREEMPT_RT. This entry is never a failure.
 [[nodiscard]] RealTimeStep kernel_step();
 
 }  // namespace softgrip::daemon

@@ -1,5 +1,5 @@
 #pragma once
-// A bounded queue for rows, events and requests from one thread to another, without a lock.
+// A bounded lock-free queue from one thread to another, for rows, events and requests.
 
 #include <algorithm>
 #include <atomic>
@@ -10,9 +10,9 @@
 
 namespace softgrip::daemon {
 
-/// A queue for a single producer and a single consumer. Neither side waits: push() fails if there is no
-/// space, and pop() returns the available items. Memory is allocated at construction only. T is a plain
-/// value.
+/// A queue for a single producer and a single consumer. Neither of them waits: push() fails if there is no
+/// space, and pop() returns the items that are available. The constructor is the only function that allocates
+/// memory. T is a plain value.
 template <class T>
 class Ring {
  public:
@@ -21,8 +21,8 @@ class Ring {
 
   [[nodiscard]] std::size_t capacity() const noexcept { return items_.size(); }
 
-  /// Called by the producer. Adds `count` items and returns true; fill(item, index) writes each item in
-  /// place. If there is no space for all of them, adds none and returns false.
+  /// For the producer. Adds `count` items and returns true; fill(item, index) writes each item into its place
+  /// in the queue. If there is no space for all items, adds none and returns false.
   template <class Fill>
   bool push(std::size_t count, Fill&& fill) noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
@@ -39,7 +39,7 @@ class Ring {
   }
   bool push(const T& item) noexcept { return push(std::span<const T>(&item, 1)); }
 
-  /// Called by the consumer. Moves up to items.size() items out and returns their number.
+  /// For the consumer. Moves up to items.size() items out of the queue and returns their number.
   std::size_t pop(std::span<T> items) noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     if (known_tail_ - head < items.size()) known_tail_ = tail_.load(std::memory_order_acquire);
@@ -50,7 +50,7 @@ class Ring {
   }
   bool pop(T& item) noexcept { return pop(std::span<T>(&item, 1)) == 1; }
 
-  /// Called by either side. Returns the number of waiting items, which may change at any time.
+  /// For producer and consumer. Returns the number of waiting items, which may change at any time.
   [[nodiscard]] std::size_t size() const noexcept {
     const std::size_t head = head_.load(std::memory_order_acquire);
     return tail_.load(std::memory_order_acquire) - head;
@@ -61,12 +61,12 @@ class Ring {
 
   std::vector<T> items_;
   std::size_t mask_;
-  // Each side keeps the last known position of the other side, so that most calls access no shared cache
-  // line.
+  // Producer and consumer each store the position of the other one that they read last. Therefore, most calls
+  // do not access the cache line of the other thread.
   alignas(cache_line) std::atomic<std::size_t> head_{0};  // written by the consumer
-  std::size_t known_tail_ = 0;                            // used by the consumer only
+  std::size_t known_tail_ = 0;                            // used only by the consumer
   alignas(cache_line) std::atomic<std::size_t> tail_{0};  // written by the producer
-  std::size_t known_head_ = 0;                            // used by the producer only
+  std::size_t known_head_ = 0;                            // used only by the producer
 };
 
 }  // namespace softgrip::daemon

@@ -1,7 +1,7 @@
 #pragma once
-// State that the loop shares with the threads around it. One thread writes each member. One thread reads each
-// TripleBuffer and each Ring. The log and the recorder both read the events of the loop. Any thread may read
-// an atomic.
+// The state that the loop shares with other threads. Each member has exactly one writing thread. Each
+// TripleBuffer and each Ring has exactly one reading thread. The events of the loop have two readers: the
+// event log and the recorder. Any thread may read an atomic member.
 
 #include <array>
 #include <atomic>
@@ -17,20 +17,20 @@
 
 namespace softgrip::daemon {
 
-/// From the loop to the bus: the outputs for the board.
+/// Passed from the loop to the bus: the outputs for the board.
 struct Commands {
   Nanoseconds at = 0;  ///< scheduled time of the tick that computed them
   std::array<double, control::max_channels> command_kpa{};
-  /// The output if the loop stops sending commands.
+  /// Outputs that the bus writes if the loop stops sending commands.
   std::array<double, control::max_channels> safe_kpa{};
-  bool may_rise = false;      ///< a sequence runs; if not, a command further from rest is an old one that
-                              ///< arrived late
-  std::uint32_t inhibit = 0;  ///< control::BusHealth::inhibit that this tick had read
-  bool last = false;          ///< the loop has ended; the bus writes these commands until the board confirms
-                              ///< them
+  bool may_rise = false;      ///< true: a sequence runs; false: a command that is further from rest is an old
+                              ///< command that arrived late
+  std::uint32_t inhibit = 0;  ///< value of control::BusHealth::inhibit that the tick had read
+  bool last = false;          ///< true: the loop has ended, and the bus writes these commands until the board
+                              ///< confirms them
 };
 
-/// From the bus to the loop: readings and state of the bus.
+/// Passed from the bus to the loop: readings and the state of the bus.
 struct BusReport {
   static constexpr auto anything = [] {
     std::array<double, control::max_channels> outputs_kpa{};
@@ -38,24 +38,24 @@ struct BusReport {
     return outputs_kpa;
   }();
   std::array<model::Reading, control::max_channels> readings{};
-  /// Bound of the outputs [kPa]: no output is nearer to rest than this. The bound is the last write. If the
-  /// board has not confirmed the last write, it is the one of the last two writes that is nearer to rest. If
-  /// these writes are on different sides of rest, or if the board's watchdog has acted, it is the rest
-  /// pressure. Before the first write it is infinite.
+  /// Bound of the outputs [kPa]: no output is nearer to rest than this. The bound is the last written value.
+  /// If the board has not confirmed the last write, the bound is the one of the last two written values that
+  /// is nearer to rest. If these values are on different sides of rest, or if the board's watchdog has acted,
+  /// the bound is the rest pressure. Before the first write, the bound is infinite.
   std::array<double, control::max_channels> outputs_kpa = anything;
   control::BusHealth health;
 };
 
-/// From the bus to the log: a change of the bus.
+/// Passed from the bus to the event log: a change of the state of the bus.
 struct BusEvent {
   enum class Kind : std::uint8_t {
-    connected,       ///< the board has answered in a new session
-    failed,          ///< the first failure after a successful exchange, with `status` and `detail`
-    recovered,       ///< the first successful exchange after failures
-    loop_silent,     ///< no new commands from the loop: the safe outputs are written
-    loop_back,       ///< the loop's commands are written again
-    another_client,  ///< another client feeds the board's watchdog; `detail`: number of clients
-    not_connected,   ///< no session can be opened again, and the reason differs from that of `failed`
+    connected,       ///< the board has responded on a new connection
+    failed,          ///< the first failure after a successful exchange; `status` and `detail` give the reason
+    recovered,       ///< the first successful exchange after a failure
+    loop_silent,     ///< the commands of the loop timed out, so the safe outputs are written
+    loop_back,       ///< the commands of the loop are written again
+    another_client,  ///< another client feeds the board's watchdog; `detail` is the number of clients
+    not_connected,   ///< no new connection can be opened, and the reason differs from the reason in `failed`
   };
   Kind kind = Kind::connected;
   Nanoseconds at = 0;
@@ -63,7 +63,7 @@ struct BusEvent {
   std::array<char, 256> detail{};  ///< message of the board, terminated by 0
 };
 
-/// From the loop to the recorder: a row of one channel.
+/// Passed from the loop to the recorder: a row of one channel.
 struct Record {
   Nanoseconds at = 0;
   control::State state = control::State::starting;
@@ -71,37 +71,39 @@ struct Record {
   control::ChannelOutput output;
 };
 
-/// From the loop to the log and to the recorder: an event. The events of a tick are pushed before its rows.
+/// Passed from the loop to the event log and to the recorder: an event. The events of a tick are pushed
+/// before the rows of the tick.
 struct StampedEvent {
   Nanoseconds at = 0;
   control::Event event;
 };
 
-/// One tick, from the loop to the readers of the status.
+/// The state after one tick, passed from the loop to the readers of the status.
 struct Snapshot {
   Nanoseconds at = 0;
   std::uint64_t ticks = 0;
   control::State state = control::State::starting;
   control::Fault first_fault;
-  control::Fault cause;              ///< present condition that is a fault or may become one
-  std::uint32_t under_pressure = 0;  ///< as in control::TickOutput
+  control::Fault cause;              ///< present condition that is a fault, or can become a fault if it lasts
+  std::uint32_t under_pressure = 0;  ///< channels under pressure that do not move; bit mask as in
+                                     ///< control::TickOutput
   std::size_t channel_count = 0;
   std::array<control::ChannelOutput, control::max_channels> channels{};
   control::BusHealth bus;
 };
 
-/// Inputs that are levels, not requests. The thread that reads the digital lines (daemon/panel/panel.h)
-/// stores them.
+/// Inputs that have a level; they are not requests. The thread that reads the digital lines
+/// (daemon/panel/panel.h) writes them.
 struct InputLevels {
   std::atomic<bool> emergency_stop{false};
   std::atomic<bool> interlock_open{false};
-  std::atomic<bool> lost{false};          ///< the lines cannot be read
+  std::atomic<bool> lost{false};          ///< true: the lines cannot be read
   std::atomic<Nanoseconds> looked_at{0};  ///< time of the last read of the lines
-  /// The lines are lost if the last read is older than this [ns]; 0: there are no lines.
+  /// If the last read is older than this, the lines count as lost [ns]; 0: the rig has no lines.
   Nanoseconds longest_silence = 0;
 };
 
-/// From the reader of the digital lines to the log.
+/// Passed from the reader of the digital lines to the event log.
 struct PanelEvent {
   enum class Kind : std::uint8_t {
     emergency_stop_pressed,
@@ -110,16 +112,16 @@ struct PanelEvent {
     part_away,
     enable_on,
     enable_off,
-    loop_hangs,  ///< no tick for too long: the enable output was switched off
-    gpio_lost,   ///< the chip failed
+    loop_hangs,  ///< the loop has executed no tick for too long, so the enable output was switched off
+    gpio_lost,   ///< the GPIO chip failed
   };
   Kind kind = Kind::gpio_lost;
   Nanoseconds at = 0;
 };
 
 struct SharedState {
-  /// `record_capacity`: largest number of rows by which the recorder may lag. `event_capacity`: largest
-  /// number of events by which a reader may lag.
+  /// `record_capacity` is the largest number of rows by which the recorder may lag. `event_capacity` is the
+  /// largest number of events by which a reader may lag.
   explicit SharedState(std::size_t record_capacity, std::size_t event_capacity = 4096)
       : records(record_capacity), events(event_capacity) {}
 
@@ -130,21 +132,26 @@ struct SharedState {
   Ring<Record> records;
   Broadcast<StampedEvent> events;
   Ring<PanelEvent> panel_events{64};
-  Ring<control::Request> vents{16};  ///< requests to vent; read first
-  Ring<control::Request> stops{16};  ///< requests to stop any sequence; read second
-  /// Requests to stop one given start, at most one for each start; read third. The capacity covers all
-  /// waiting starts and some that were read a moment ago.
+  Ring<control::Request> vents{16};  ///< requests to vent; the loop reads this queue first
+  Ring<control::Request> stops{16};  ///< requests to stop whatever sequence runs; the loop reads this queue
+                                     ///< second
+  /// Requests to stop one particular start, at most one request per start; the loop reads this queue third.
+  /// The capacity is sufficient for all starts that wait and for some that were read just before.
   Ring<control::Request> named_stops{128};
   Ring<control::Request> requests{64};
-  std::atomic<control::State> state{control::State::starting};  ///< state in the last tick
-  std::atomic<bool> under_pressure{false};                      ///< a finger is pressurised without motion
-  std::atomic<bool> enable_on{false};                           ///< last written level of the enable output
+  std::atomic<control::State> state{control::State::starting};  ///< state of the supervisor in the last tick
+  std::atomic<bool> under_pressure{false};                      ///< true: a finger is pressurised but does
+                                                                ///< not move
+  std::atomic<bool> enable_on{false};                           ///< level of the enable output that was
+                                                                ///< written last
   InputLevels inputs;
-  std::atomic<std::uint64_t> records_dropped{0};  ///< rows dropped because the recorder lagged
-  std::atomic<std::uint64_t> events_dropped{0};   ///< events dropped because a tick had more events than its
-                                                  ///< capacity
-  std::atomic<bool> shutdown_requested{false};    ///< to the loop: end after a last, safe tick
-  std::atomic<bool> safe_state_confirmed{false};  ///< from the bus: the board confirmed the last commands
+  std::atomic<std::uint64_t> records_dropped{0};  ///< number of rows that were dropped because the recorder
+                                                  ///< lagged
+  std::atomic<std::uint64_t> events_dropped{0};   ///< number of events that were dropped because one tick had
+                                                  ///< too many events
+  std::atomic<bool> shutdown_requested{false};    ///< request to the loop: end after a last tick with the
+                                                  ///< safe outputs
+  std::atomic<bool> safe_state_confirmed{false};  ///< from the bus: the board has confirmed the last commands
 };
 
 }  // namespace softgrip::daemon

@@ -1,5 +1,6 @@
 #pragma once
-// Statistics of the loop and the bus. They are always active; loop and bus write them, any thread may read.
+// Statistics of the loop and the bus. They are always recorded. Loop and bus write them, and any thread may
+// read them.
 
 #include <atomic>
 #include <cstdint>
@@ -8,7 +9,7 @@
 
 namespace softgrip::daemon {
 
-/// A count with one writer; any thread may read.
+/// A counter that one thread increases and that any thread may read.
 class Counter {
  public:
   void add(std::uint64_t amount = 1) noexcept {
@@ -20,25 +21,26 @@ class Counter {
   std::atomic<std::uint64_t> value_{0};
 };
 
-/// An overrun (missed cycle) is a period of the schedule in which no tick started.
+/// Statistics of the loop. An overrun (missed cycle) is a period of the schedule in which no tick started.
 struct LoopStatistics {
-  Histogram wake_up;      ///< from the scheduled time to the first instruction of the tick
-  Histogram compute;      ///< from the first instruction to the end of the tick
-  Histogram reading_age;  ///< age of the oldest reading at the tick that uses it
+  Histogram wake_up;      ///< time from the scheduled time to the first instruction of the tick
+  Histogram compute;      ///< time from the first instruction to the end of the tick
+  Histogram reading_age;  ///< age of the oldest reading when the tick uses it
   Counter ticks;
-  Counter overruns_woken_late;  ///< overruns because the thread woke a period late or more
+  Counter overruns_woken_late;  ///< overruns because the thread woke up a period late, or later
   Counter overruns_took_long;   ///< overruns because a tick took too long
 };
 
 struct BusStatistics {
   Histogram wake_up;
   Histogram exchange;  ///< duration of successful exchanges
-  Counter steps;       ///< steps of the schedule, with or without an exchange
+  Counter steps;       ///< number of steps of the schedule, with or without an exchange
   Counter exchanges;
   Counter failures;
   Counter overruns;
   Counter sessions;                         ///< number of successful connections to the board
-  std::atomic<std::uint64_t> attempts{0};   ///< attempts to connect since the last successful exchange
+  std::atomic<std::uint64_t> attempts{0};   ///< number of attempts to connect since the last successful
+                                            ///< exchange
   std::atomic<Nanoseconds> retry_pause{0};  ///< upper limit of the time until the next attempt
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// A named thread with a stack of known size. Exceptions in it are reported.
+// A thread with a name and a stack of known size. Exceptions in the thread are reported.
 
 #include <pthread.h>
 
@@ -9,18 +9,18 @@
 
 namespace softgrip::daemon {
 
-/// The destructor joins the thread. The body must end by itself on request.
+/// The destructor waits until the thread has ended. The function of the thread must end by itself on request.
 class Thread {
  public:
   struct Options {
     std::string name;  ///< at most 15 bytes, as shown by `ps -L` and the kernel
-    /// Size of the stack. std::thread would need 8 MiB, and mlockall() would make all of it resident.
+    /// Size of the stack. The stack of a std::thread has 8 MiB, and mlockall() would make all of it resident.
     std::size_t stack_bytes = 1024 * 1024;
   };
 
   Thread() = default;
-  /// Throws std::system_error if the thread cannot be created. `on_exception` is called in the new thread
-  /// with the text of an exception from `body`.
+  /// Starts the thread. Throws std::system_error if the thread cannot be created. If `body` throws an
+  /// exception, `on_exception` is called in the new thread with the text of the exception.
   Thread(const Options& options, std::function<void()> body,
          std::function<void(const std::string&)> on_exception);
   Thread(const Thread&) = delete;

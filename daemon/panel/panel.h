@@ -16,36 +16,38 @@
 
 namespace softgrip::daemon {
 
-/// Runs in a separate thread, because a read or write of a line is a system call. On a USB or I2C expander it
-/// takes milliseconds, which is too long for a tick or an exchange. The thread waits for an edge, and also
-/// reads the levels every `look_interval_s`. The loop gets two flags and the time of the last read.
+/// Runs in a separate thread, because reading or writing a line is a system call. On a USB or I2C expander,
+/// this call takes milliseconds, which is too long for a tick or an exchange. The thread waits for an edge,
+/// and also reads the levels every `look_interval_s`. The loop gets two flags and the time of the last read.
 ///
-/// If fingers are pressurised although nothing moves, the active lamp blinks, 0.5 s on and 0.5 s off. This is
-/// the ready lamp of an idle rig, or the fault lamp of a faulted rig.
+/// If fingers are pressurised but nothing moves, a lamp blinks, 0.5 s on and 0.5 s off. In an idle rig, this
+/// is the ready lamp; in a faulted rig, it is the fault lamp.
 ///
-/// The emergency stop counts as pressed at start-up. It counts as released after the loop has latched it and
-/// the line has been released for the debounce time without interruption. Before a motion, a reset
-/// (acknowledge) is still needed.
+/// At start-up, the emergency stop counts as pressed. It counts as released when two conditions are met: the
+/// loop has latched it, and the line has been released for the debounce time without interruption. Before a
+/// motion, the user must also reset the fault (`acknowledge`).
 class Panel {
  public:
-  /// All references must outlive the object. Sets the inputs of `shared` to their values for unknown lines.
+  /// All referenced objects must exist longer than this object. Sets the inputs of `shared` to their values
+  /// for lines that have not been read yet.
   Panel(std::unique_ptr<drivers::GpioLines> lines, const rig::GpioSettings& settings, const Clock& clock,
         SharedState& shared, const LoopStatistics& loop) noexcept;
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
   Panel(Panel&&) = delete;
   Panel& operator=(Panel&&) = delete;
-  /// Calls drop().
+  /// Switches the outputs off with drop().
   ~Panel();
 
-  /// Calls step() until stop().
+  /// Calls step() repeatedly until stop() is called.
   void run() noexcept;
   void stop() noexcept { stopped_.store(true); }
-  /// Waits for an edge, at most until an action is due or the look interval is over, and then acts.
+  /// Waits for an edge, but not longer than until the next action is due or the look interval is over. Then
+  /// acts.
   void step() noexcept;
 
-  /// Switches the enable output and the ready lamp off permanently. May be called in any thread and in a
-  /// signal handler.
+  /// Switches the enable output and the ready lamp off permanently. Any thread and any signal handler may
+  /// call this function.
   void drop() noexcept;
 
  private:
@@ -69,9 +71,10 @@ class Panel {
   Nanoseconds stale_after_;
   std::optional<TripInput> emergency_stop_;
   std::optional<TripInput> part_;
-  bool latched_ = false;  // the loop has latched the emergency stop that counts as pressed at start-up
+  bool latched_ = false;  // true: the loop has latched the emergency stop, which counts as pressed at
+                          // start-up
   bool lost_ = false;
-  std::uint64_t ticks_ = 0;  // number of ticks of the loop, unchanged since ticked_
+  std::uint64_t ticks_ = 0;  // number of ticks of the loop; it has not changed since ticked_
   Nanoseconds ticked_ = 0;
   bool hung_ = false;
   std::array<std::optional<bool>, drivers::gpio_role_count> written_{};

@@ -17,9 +17,9 @@ std::atomic<Panel*> guarded{nullptr};
 std::array<struct sigaction, endings.size()> before;
 
 extern "C" void softgrip_drop_panel(int signal) {
-  // Writing a line is one system call of the driver library without locks or allocation.
+  // The driver library writes a line with one system call, and uses no locks and no allocation.
   if (Panel* const panel = guarded.exchange(nullptr)) panel->drop();
-  // SA_RESETHAND has restored the default action.
+  // SA_RESETHAND has restored the default action of the signal, so raise() ends the process.
   ::raise(signal);
 }
 

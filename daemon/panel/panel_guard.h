@@ -5,9 +5,9 @@ namespace softgrip::daemon {
 
 class Panel;
 
-/// While this object exists, signals of a crash (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS, SIGQUIT,
-/// SIGXCPU) switch the panel's enable output off before they end the process. SIGKILL cannot be handled. Only
-/// one object may exist.
+/// While this object exists, the signals of a crash (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS,
+/// SIGQUIT, SIGXCPU) switch the panel's enable output off before they end the process. A program cannot
+/// handle SIGKILL. Only one object may exist at a time.
 class PanelGuard {
  public:
   explicit PanelGuard(Panel& panel) noexcept;

@@ -19,12 +19,12 @@ void TripInput::change(bool trips, Nanoseconds at) noexcept {
   known_ = true;
   asks_ = trips;
   since_ = at;
-  // Any edge on a clear line makes the line suspect, even if the opposite edge is missing.
+  // Any edge on a line at its clear level makes the line suspect, even if the opposite edge is missing.
   if (suspect_ == never) suspect_ = at;
 }
 
 void TripInput::edge(bool trips, Nanoseconds at) noexcept {
-  // If the level was read between the interrupt and its event, the change is already known.
+  // If the level was read after the edge occurred, the change of the level is already known.
   if (known_ && at <= since_) {
     if (trips != asks_) change(trips, since_);
     return;

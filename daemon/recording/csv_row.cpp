@@ -12,14 +12,14 @@ namespace softgrip::daemon {
 namespace {
 
 constexpr double decimals_scale = 1e6;
-constexpr double largest_scaled = 9e18;  // below 2^63
+constexpr double largest_scaled = 9e18;  // largest scaled number; it is below 2^63
 constexpr std::string_view columns =
     "time_s,channel,pressure_command_kpa,displacement_mm,pressure_kpa,temperature_c,reference_mm,"
     "feedforward_kpa,feedback_kpa,residual_mm,"
     "deficit_mm,"  // words-ok: a documented column
     "age_s,state,step,validity,result,saturated,slewing";
 constexpr std::string_view pressure_column = "pressure_kpa,", temperature_column = "temperature_c,";
-/// Largest total length of the words in a row, without the numbers and the channel's name.
+/// Largest total length of the texts in a row, without numbers and the name of the channel.
 constexpr std::size_t longest_words = 128;
 
 /// The texts "00" to "99".
@@ -32,7 +32,7 @@ constexpr std::array<char, 200> digit_pairs = [] {
   return pairs;
 }();
 
-/// Writes `digits` decimals of `fraction` without trailing zeros. Writes nothing if `fraction` is 0.
+/// Writes `fraction` as `digits` decimals without trailing zeros. If `fraction` is 0, writes nothing.
 template <int digits>
 char* write_fraction(char* to, std::uint64_t fraction) noexcept {
   static_assert(digits % 2 == 0);

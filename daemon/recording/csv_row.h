@@ -10,23 +10,23 @@
 
 namespace softgrip::daemon {
 
-/// Length of the longest text of write_decimal().
+/// Length of the longest text that write_decimal() writes [bytes].
 inline constexpr std::size_t longest_decimal = 32;
 
-/// Writes a number with at most six decimals, without trailing zeros, and returns the end of the text. A
-/// nanometre or a millipascal is far below the resolution of any sensor of a rig. Six decimals take a quarter
-/// of the time of a shortest round-trip text. Writes nothing for a number that is not finite. Above 1e12, the
-/// number is written as the shortest round-trip text.
+/// Writes a number with at most six decimals and without trailing zeros, and returns the end of the text. Six
+/// decimals are sufficient: a nanometre or a millipascal is far below the resolution of any sensor of a rig.
+/// They take a quarter of the time of the shortest text from which the same double can be read. A number
+/// above 1e12 is written as this shortest text. For a number that is not finite, nothing is written.
 [[nodiscard]] char* write_decimal(char* to, double value) noexcept;
 
 /// Writes nanoseconds as seconds, exactly and without trailing zeros.
 [[nodiscard]] char* write_seconds(char* to, Nanoseconds duration) noexcept;
 
-/// The rows of one recording. Columns: see docs/reference/recording.md.
+/// Writes the rows of one recording. docs/reference/recording.md describes the columns.
 class CsvRows {
  public:
-  /// `with_pressure`: adds the column of the measured pressure, for rigs that measure it. `with_temperature`:
-  /// adds the column of the temperature.
+  /// `with_pressure` adds the column of the measured pressure, for rigs that measure the pressure.
+  /// `with_temperature` adds the column of the temperature.
   CsvRows(std::vector<std::string> channel_names, bool with_pressure, bool with_temperature = false);
 
   [[nodiscard]] std::string header() const;

@@ -28,7 +28,7 @@ struct Words {
 };
 using enum Severity;
 
-/// In the order of BusEvent::Kind.
+/// Texts of the bus events, in the order of BusEvent::Kind.
 constexpr std::array<Words, 7> bus_words{{
     {"bus_connected", information, "Connected to the board: the board responds."},
     {"bus_failed", error, ""},
@@ -40,7 +40,7 @@ constexpr std::array<Words, 7> bus_words{{
 }};
 static_assert(static_cast<std::size_t>(BusEvent::Kind::not_connected) + 1 == bus_words.size());
 
-/// In the order of PanelEvent::Kind.
+/// Texts of the panel events, in the order of PanelEvent::Kind.
 constexpr std::array<Words, 8> panel_words{{
     {"emergency_stop_pressed", warning, "The emergency stop is pressed."},
     {"emergency_stop_released", information,
@@ -66,7 +66,7 @@ EventEntry entry_of(const Table& table, Which which) {
 
 using Sequence = control::PreparedSequence;
 
-/// Returns the cause because of which a reset was refused.
+/// Returns the present cause because of which a reset was refused.
 control::FaultCode refused_because_of(const Event& event) {
   return static_cast<control::FaultCode>(static_cast<std::uint16_t>(event.value));
 }
@@ -108,7 +108,8 @@ void describe_result(const Event& event, const Sequence*, EventEntry& entry) {
 void describe_refusal(const Event& event, const Sequence*, EventEntry& entry) {
   const auto refusal = static_cast<control::RefusalCode>(event.detail);
   entry.code = control::id_of(refusal);
-  // The names of channels are not passed: describe() puts the channel before the text.
+  // The names of the channels are not passed, because describe() puts the name of the channel before the
+  // text.
   entry.text =
       fmt::format("The request was refused. {}", sentences_of(refusal, {refused_because_of(event)}, {}));
   entry.severity = Severity::warning;
@@ -230,7 +231,7 @@ struct Telling {
   std::string_view kind;
   void (*describe)(const Event& event, const Sequence* sequence, EventEntry& entry);
 };
-/// In the order of control::Event::Kind.
+/// Functions that describe the events, in the order of control::Event::Kind.
 constexpr std::array<Telling, 19> tellings{{
     {"state_changed", describe_state},
     {"fault_latched", describe_fault},
@@ -317,8 +318,8 @@ std::string_view name_of(Severity severity) noexcept {
 std::uint64_t EventLog::add(EventEntry entry) {
   const std::scoped_lock lock(mutex_);
   entry.id = ++last_id_;
-  // Clients choose the names of sequences, so these codes are not counted separately: the number of counts
-  // would grow without limit.
+  // Clients choose the names of sequences and steps, so events with these names are not counted separately.
+  // Otherwise, the number of counters could grow without limit.
   const bool named = entry.kind == "sequence_started" || entry.kind == "step_started";
   ++counts_[{entry.kind, named ? std::string() : entry.code, entry.channel}];
   entries_.push_back(std::move(entry));
@@ -329,7 +330,7 @@ std::uint64_t EventLog::add(EventEntry entry) {
 std::vector<EventEntry> EventLog::since(std::uint64_t id, std::size_t limit) const {
   const std::scoped_lock lock(mutex_);
   if (id >= last_id_) return {};
-  // The ids of the stored events are consecutive.
+  // The ids of the stored events are consecutive numbers.
   const std::uint64_t known = last_id_ - entries_.size();
   const auto first = entries_.begin() + static_cast<std::ptrdiff_t>(std::max(id, known) - known);
   const auto count = std::min<std::size_t>(limit, static_cast<std::size_t>(entries_.end() - first));

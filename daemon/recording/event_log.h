@@ -19,19 +19,19 @@ namespace softgrip::daemon {
 /// The importance of an event for users.
 enum class Severity : std::uint8_t { information, warning, error };
 
-/// One event in the form for users and clients.
+/// One event in the form in which users and clients get it.
 struct EventEntry {
-  std::uint64_t id = 0;  ///< from 1, without gaps
-  double time_s = 0;     ///< since the start of the daemon or of the recording
+  std::uint64_t id = 0;  ///< id of the event: 1, 2, 3, ...
+  double time_s = 0;     ///< time since the start of the daemon or of the recording
   std::string kind;      ///< "fault_latched", "bus_failed", ...; clients may depend on these names
   Severity severity = Severity::information;
   std::string channel;        ///< name of the channel; empty for the complete rig
-  std::string code;           ///< depends on the kind: "F101", "R02", "HOLDING", a state, a step; may be
-                              ///< empty
+  std::string code;           ///< code of the event: "F101", "R02", "HOLDING", a state or a step, depending
+                              ///< on the kind; may be empty
   std::string text;           ///< one sentence
-  std::uint32_t request = 0;  ///< id of the request that the event answers, or 0
+  std::uint32_t request = 0;  ///< id of the request that the event answers; 0: none
   std::string client;         ///< name of the client that made the request; empty: unknown
-  double value = 0;           ///< a number that belongs to the event, or 0
+  double value = 0;           ///< a number that belongs to the event; 0 if there is none
   std::vector<control::Argument> parameters;  ///< for sequence_started: the values of the parameters
 };
 
@@ -46,38 +46,39 @@ struct EventEntry {
 /// Returns "information", "warning" or "error".
 [[nodiscard]] std::string_view name_of(Severity severity) noexcept;
 
-/// Returns "F202 reading_out_of_range of left", or only the code and the name if the fault concerns the
-/// complete rig.
+/// Returns "F202 reading_out_of_range of left", or the code and the name without a channel if the fault
+/// concerns the complete rig.
 [[nodiscard]] std::string title_of(const control::Fault& fault,
                                    const std::vector<std::string>& channel_names);
 
 /// Returns the meaning of a refusal and its remedy, as sentences. For the refusal cause_persists, `cause` is
-/// the cause that is still present.
+/// the fault condition that is still present.
 [[nodiscard]] std::string sentences_of(control::RefusalCode refusal, const control::Fault& cause,
                                        const std::vector<std::string>& channel_names);
 
-/// The number of events of one kind since the daemon's start.
+/// The number of events of one kind, code and channel since the daemon's start.
 struct EventCount {
   std::string kind;
-  std::string code;     ///< empty for kinds whose codes are names or numbers of a sequence
+  std::string code;     ///< code of the events; empty for kinds whose codes are names or numbers from a
+                        ///< sequence
   std::string channel;  ///< empty for the complete rig
   std::uint64_t count = 0;
 };
 
-/// Stores the newest events for all threads except the loop, and counts the events of each kind.
+/// Stores the newest events for all threads except the loop. Also counts the events of each kind.
 class EventLog {
  public:
   explicit EventLog(std::size_t capacity) : capacity_(capacity) {}
 
   /// Assigns an id to the event, stores it and returns the id.
   std::uint64_t add(EventEntry entry);
-  /// Returns the events after `id`, oldest first, at most `limit`.
+  /// Returns the events whose id is larger than `id`, oldest first, but at most `limit` events.
   [[nodiscard]] std::vector<EventEntry> since(std::uint64_t id, std::size_t limit) const;
   /// Returns the id of the newest event; 0 if there is none.
   [[nodiscard]] std::uint64_t newest() const;
   /// Returns the id of the oldest stored event; 0 if there is none.
   [[nodiscard]] std::uint64_t oldest() const;
-  /// Returns the counts by kind, code and channel, without events that never occurred.
+  /// Returns the number of events by kind, code and channel. Events that never occurred are not in the list.
   [[nodiscard]] std::vector<EventCount> counts() const;
 
  private:

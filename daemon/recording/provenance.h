@@ -1,5 +1,5 @@
 #pragma once
-// The provenance of a recording: the contents of run.json except events.
+// The provenance of a recording: all contents of run.json except the events.
 
 #include <cstdint>
 #include <optional>
@@ -8,26 +8,28 @@
 
 namespace softgrip::daemon {
 
-/// A file that the run used, with its hash.
+/// A file that the recorded run used, with its hash.
 struct SourceFile {
   std::string role;  ///< "rig", "board", "model", "plant"
   std::string path;
   std::string sha256;
 };
 
-/// Data that all recordings of a daemon share.
+/// Data that are the same in all recordings of a daemon.
 struct Provenance {
   std::string software_version;
   std::string rig;  ///< name of the rig
   std::vector<SourceFile> files;
   std::vector<std::string> channel_names;
-  bool simulated = false;          ///< there is no board: fingers, valves and sensors are simulated
-  bool measures_pressure = false;  ///< at least one channel has a measured pressure
+  bool simulated = false;          ///< true: there is no real board; fingers, valves and sensors are
+                                   ///< simulated
+  bool measures_pressure = false;  ///< true: at least one channel has a measured pressure
   bool measures_temperature = false;
   double rate_hz = 0;
   std::uint32_t decimation = 1;
   std::optional<std::uint64_t> seed;  ///< seed of a simulated board
-  bool virtual_time = false;          ///< true: a recording contains no wall-clock time
+  bool virtual_time = false;          ///< true: the run is in virtual time, so its recording contains no
+                                      ///< wall-clock time
 };
 
 }  // namespace softgrip::daemon

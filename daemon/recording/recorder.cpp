@@ -17,17 +17,17 @@ namespace {
 
 constexpr std::size_t batch_records = 256;
 constexpr std::size_t text_bytes = 256 * 1024;
-/// Recorded time after the last motion, in which the finger settles [ns].
+/// Time after the last motion that is recorded too, because the finger settles in this time [ns].
 constexpr Nanoseconds tail = ns_per_s / 2;
-/// Time between two versions of run.json [ns].
+/// Shortest time between two versions of run.json [ns].
 constexpr Nanoseconds json_pause = ns_per_s / 4;
-/// Time after a disk error until the next attempt [ns].
+/// Time from a disk error to the next attempt to record [ns].
 constexpr Nanoseconds retry_pause = 60 * ns_per_s;
 constexpr std::size_t events_per_file = 10'000;
 
 using Kind = control::Event::Kind;
 
-/// Returns a name with letters, digits, '-' and '_' only; other characters become '_'.
+/// Returns the name with every character except letters, digits, '-' and '_' replaced by '_'.
 std::string file_name_of(std::string_view name) {
   std::string text;
   for (const char c : name.substr(0, 60)) {
@@ -75,8 +75,8 @@ void Recorder::drain() {
     for (std::size_t i = 0; i < count; ++i) take(batch_[i]);
     if (recording_ && recording_->text.size() >= text_bytes) flush(false);
   }
-  // In virtual time, hours pass in seconds, and no program reads the file while it grows. The kernel
-  // therefore gets complete buffers only.
+  // In virtual time, hours of a run pass in seconds, and no program reads the file while it grows. Therefore,
+  // only complete buffers are passed to the kernel.
   if (recording_ && !provenance_.virtual_time) flush(false);
   show();
 }
@@ -112,7 +112,7 @@ void Recorder::take(const Record& row) {
 void Recorder::take(const StampedEvent& event) {
   now_ = event.at;
   const bool starts = event.event.kind == Kind::sequence_started;
-  // A start during the tail of the last run begins a new recording.
+  // A start within the settling time after the last motion ends the present recording and begins a new one.
   if (recording_ && !always_ && starts && recording_->story.sequence != nullptr) end("complete");
   const bool opens = always_ || starts || event.event.kind == Kind::fault_latched;
   if (!recording_ && may_begin(event.at) && opens) begin(event.at, &event.event);
@@ -254,7 +254,8 @@ void Recorder::end(const char* state) {
 }
 
 void Recorder::block() {
-  // The user's folder exists already, so a second attempt would fail with the same error.
+  // A folder that the user has chosen already exists after the error, so a second attempt would fail with the
+  // same error.
   blocked_ = only_folder_.empty() ? now_ + retry_pause : std::numeric_limits<Nanoseconds>::max();
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The recorder: reads rows and events of the loop and writes recordings.
+// The recorder: takes rows and events from the loop and writes recordings.
 
 #include <cstdint>
 #include <deque>
@@ -23,20 +23,22 @@ namespace softgrip::daemon {
 /// Status of the recorder.
 struct RecorderStatus {
   bool active = false;
-  std::string folder;  ///< folder of the present or last recording; empty before the first
+  std::string folder;  ///< folder of the present or last recording; empty before the first recording
   std::uint64_t rows = 0;
   std::uint64_t dropped_rows = 0;  ///< rows that were lost since the daemon's start
-  std::string error;               ///< error of the present or last recording
+  std::string error;               ///< disk error of the present or last recording
 };
 
 /// Decides when recordings start and end, and writes them. A recording starts with a sequence and ends 0.5 s
-/// after its motion. A fault outside a sequence gets its own recording, which starts history_s before the
-/// fault. A disk error is reported as an event and ends the recording. A new recording is tried after a
-/// pause. All calls except status() come from one thread.
+/// after the last motion of the sequence. A fault outside a sequence gets its own recording, which starts
+/// history_s before the fault. A disk error is reported as an event and ends the recording. After a pause,
+/// the recorder tries to begin a new recording. All functions except status() must be called from the same
+/// thread.
 class Recorder {
  public:
-  /// `only_folder`: if it is not empty, all data are recorded in this folder from start to stop, for every
-  /// recording mode. `origin`: time 0 of the event log. All references must outlive the recorder.
+  /// If `only_folder` is not empty, all data from start to stop are recorded in this folder, whatever the
+  /// recording mode is. `origin` is time 0 of the event log. All referenced objects must exist longer than
+  /// the recorder.
   Recorder(const rig::RecorderSettings& settings, const Provenance& provenance, std::string only_folder,
            Nanoseconds origin, SharedState& shared, EventLog& events, const SequenceStore& sequence_store);
   Recorder(const Recorder&) = delete;
@@ -45,19 +47,19 @@ class Recorder {
   Recorder& operator=(Recorder&&) = delete;
   ~Recorder();
 
-  /// Reads the new rows and events of the loop and passes the rows to the kernel. Must be called at least
-  /// every flush_interval_s.
+  /// Takes the new rows and events of the loop and passes the rows to the kernel. The caller must call this
+  /// function at least every flush_interval_s.
   void drain();
-  /// Calls drain() and ends the recording.
+  /// Takes the last rows and events with drain(), and ends the recording.
   void finish();
 
-  /// Returns the status. May be called from any thread.
+  /// Returns the status. Any thread may call this function.
   [[nodiscard]] RecorderStatus status() const;
 
  private:
   struct Recording;
 
-  /// Takes the events of the loop up to and including a time.
+  /// Takes the events of the loop whose time is not after `until`.
   void take_events(Nanoseconds until);
   void take(const Record& row);
   void take(const StampedEvent& event);
@@ -65,7 +67,7 @@ class Recorder {
   void write(const StampedEvent& event);
   [[nodiscard]] bool may_begin(Nanoseconds at) const;
   void forget_before(Nanoseconds at);
-  /// `event`: first event of the recording; nullptr: the recording begins with a row.
+  /// `event` is the first event of the recording. nullptr means that the recording begins with a row.
   void begin(Nanoseconds at, const control::Event* event);
   [[nodiscard]] std::string folder_for(Nanoseconds at, const control::Event* event) const;
   void end(const char* state);
@@ -78,22 +80,22 @@ class Recorder {
   const rig::RecorderSettings& settings_;
   const Provenance& provenance_;
   std::string only_folder_;
-  bool always_;  // one recording from start to stop
+  bool always_;  // true: one recording contains everything from start to stop
   Nanoseconds origin_;
   SharedState& shared_;
   Broadcast<StampedEvent>::Reader loop_events_;
-  std::optional<StampedEvent> waiting_;  // an event that is newer than the newest row
-  std::uint64_t events_lost_ = 0;        // number of lost events at the last report
+  std::optional<StampedEvent> waiting_;  // an event whose time is after the newest row
+  std::uint64_t events_lost_ = 0;        // number of lost events that were already reported
   EventLog& events_;
   const SequenceStore& sequence_store_;
   CsvRows rows_;
   std::vector<Record> batch_;
-  std::deque<Record> past_rows_;  // kept while no recording is active
+  std::deque<Record> past_rows_;  // rows from before the recording, kept while no recording is active
   std::deque<StampedEvent> past_events_;
   std::unique_ptr<Recording> recording_;
   std::uint32_t recordings_ = 0;
-  Nanoseconds now_ = 0;      // time of the newest record
-  Nanoseconds blocked_ = 0;  // no new recording before this time, because of a disk error
+  Nanoseconds now_ = 0;      // time of the newest row or event
+  Nanoseconds blocked_ = 0;  // because of a disk error, no recording begins before this time
   mutable std::mutex status_mutex_;
   RecorderStatus status_;
 };

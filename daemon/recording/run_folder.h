@@ -1,5 +1,5 @@
 #pragma once
-// The folder of one recorded run: run.csv, which grows, and run.json, which is always complete.
+// The folder of one recording. Its file run.csv grows, and its file run.json is complete at any time.
 
 #include <cstdint>
 #include <string>
@@ -9,18 +9,18 @@
 
 namespace softgrip::daemon {
 
-/// Returns a sentence if `path` already holds a recording, because a recording is never overwritten. Returns
-/// an empty string if a run may be recorded in `path`, or if `path` is empty. The caller can thus check the
-/// folder before any motion.
+/// Returns a sentence if `path` already contains a recording, because a recording is never overwritten.
+/// Returns an empty text if a recording may be written to `path`, or if `path` is empty. With this function,
+/// the caller can check the folder before any motion.
 [[nodiscard]] std::string recorded_already(const std::string& path);
 
-/// Writes a recording and handles errors of the disk. After the first failed write of run.csv it writes no
-/// more rows: the file is truncated to its last complete line, and error() gives the reason.
+/// Writes a recording and handles errors of the disk. After the first failed write to run.csv, no more rows
+/// are written. The file is truncated to its last complete line, and error() gives the reason.
 class RunFolder {
  public:
-  /// Creates `path`, its parent folders, and run.csv with `header`. Refuses a folder with a run.csv, because
-  /// recordings are never overwritten. `durable`: run.json is written to the disk before it is renamed. The
-  /// error is a sentence.
+  /// Creates `path`, its parent folders, and run.csv with `header`. Refuses a folder that contains a run.csv,
+  /// because recordings are never overwritten. If `durable` is true, run.json is written to the disk before
+  /// it is renamed. The error is a sentence.
   [[nodiscard]] static tl::expected<RunFolder, std::string> create(const std::string& path,
                                                                    std::string_view header, bool durable);
 
@@ -32,13 +32,13 @@ class RunFolder {
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   /// Passes complete lines to the kernel, so that they are not lost if the process is killed. Returns false
-  /// after a failure.
+  /// if this write or an earlier one failed.
   bool append(std::string_view lines);
   /// Waits until the appended lines are on the disk.
   bool sync();
-  /// Replaces run.json atomically. A failure is reported but does not end the recording of rows.
+  /// Replaces run.json by a new version in one step. A failure is reported, but rows are still recorded.
   bool replace_json(std::string_view text);
-  /// Returns the sentence of the first failure; empty if there was none.
+  /// Returns the sentence about the first failure; empty if there was no failure.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
   /// Returns true if rows can still be written.
   [[nodiscard]] bool healthy() const noexcept { return descriptor_ >= 0; }

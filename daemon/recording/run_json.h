@@ -1,5 +1,5 @@
 #pragma once
-// Writes the text of run.json.
+// Creates the text of run.json.
 
 #include <cstdint>
 #include <memory>
@@ -15,19 +15,19 @@
 
 namespace softgrip::daemon {
 
-/// State and contents of one recording.
+/// State of one recording, and data that only this recording has.
 struct RunStory {
   std::string state = "recording";  ///< "recording", "complete", "stopped_early" (rows could not be written)
-  std::string reason;               ///< reason for the recording: "sequence", "fault", "always"
-  std::string started_at;           ///< UTC, ISO 8601; empty in virtual time
+  std::string reason;               ///< reason why the recording was started: "sequence", "fault", "always"
+  std::string started_at;           ///< start time, UTC, ISO 8601; empty in virtual time
   double duration_s = 0;
   std::uint64_t rows = 0;
   std::uint64_t dropped_rows = 0;
   std::shared_ptr<const LoadedSequence> sequence;
-  std::uint32_t request = 0;  ///< the request that started the sequence
+  std::uint32_t request = 0;  ///< id of the request that started the sequence
   std::vector<EventEntry> events;
-  std::uint64_t events_left_out = 0;  ///< events beyond the capacity of one file
-  std::string error;                  ///< error of the disk
+  std::uint64_t events_left_out = 0;  ///< number of events that did not fit into the file
+  std::string error;                  ///< disk error; empty if there was none
 };
 
 /// Returns the parameters of a sequence as an object: {"squeeze_kpa": 4}.

@@ -31,11 +31,11 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Prefix of an IPv4 address in IPv6 notation.
+/// The first bytes of an IPv4 address that is written as an IPv6 address.
 constexpr std::array<unsigned char, 12> mapped_prefix{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff};
 
-/// Returns the normal form of an address, because "::1" and "0:0::1" are the same board, and so are
-/// "::ffff:10.0.0.5" and "10.0.0.5".
+/// Returns the normal form of an address. Two notations of one address give the same board, such as "::1" and
+/// "0:0::1", or "::ffff:10.0.0.5" and "10.0.0.5".
 std::string numeric(const std::string& host) {
   std::array<unsigned char, sizeof(in6_addr)> address{};
   std::array<char, INET6_ADDRSTRLEN> text{};
@@ -58,11 +58,12 @@ std::string real_path(const std::string& path) {
 std::string name_of(const drivers::ModbusAddress& link, std::uint8_t unit) {
   if (const auto* tcp = std::get_if<drivers::TcpAddress>(&link))
     return fmt::format("modbus {} port {} unit {}", numeric(tcp->host), tcp->port, unit);
-  // A serial line has one client (master), regardless of the unit addresses.
+  // A serial line has only one client (master), whatever unit addresses are used.
   return "serial " + real_path(std::get<drivers::SerialLine>(link).device);
 }
 
-/// Returns a name for a converter. The name does not depend on the word with which the rig file selects it.
+/// Returns a name for a converter. The same converter gets the same name, whatever word the rig file uses for
+/// it.
 std::string name_of(const std::vector<ComputerDevice>& there, const std::string& word,
                     const std::string& root) {
   const auto device = only_device(there, word, "converter");
@@ -85,7 +86,7 @@ sockaddr_un address_of(const std::string& board, socklen_t& length) {
   return address;
 }
 
-/// Returns " (process 4711)", or an empty text.
+/// Returns a text such as " (process 4711)"; empty if the process is unknown.
 std::string in_brackets(pid_t process) {
   return process > 0 ? fmt::format(" (process {})", process) : "";
 }
@@ -97,7 +98,7 @@ std::string taken(const std::string& board, pid_t process) {
       board, in_brackets(process));
 }
 
-/// Returns the state of a process as in /proc: R, S, D, T ...; returns nothing if the process is not visible.
+/// Returns the state letter of a process in /proc (R, S, D, T, ...); nothing if the process is not visible.
 std::optional<char> state_of(pid_t process) {
   std::ifstream file(fmt::format("/proc/{}/stat", process));
   std::string text;
@@ -107,7 +108,8 @@ std::optional<char> state_of(pid_t process) {
   return text[name_end + 2];
 }
 
-/// Returns true if the process is stopped, dead or blocked in a system call, so that it cannot drive a board.
+/// Returns true if the process is stopped, dead or blocked in a system call during all checks. Such a process
+/// cannot drive a board.
 bool stands_still(pid_t process) {
   constexpr int looks = 5;
   constexpr Nanoseconds pause = 50'000'000;
@@ -119,8 +121,8 @@ bool stands_still(pid_t process) {
   return true;
 }
 
-/// Returns the process that locked the file. The process has written its id into the file. Returns 0 if it is
-/// unknown.
+/// Returns the process that locked the file. This process has written its id into the file. Returns 0 if the
+/// id is unknown.
 pid_t holder_of(int file) {
   std::array<char, 16> text{};
   if (::pread(file, text.data(), text.size() - 1, 0) <= 0) return 0;
@@ -129,15 +131,15 @@ pid_t holder_of(int file) {
 
 void write_holder(int file) {
   const std::string text = std::to_string(::getpid()) + "\n";
-  // The process id is used for messages only, so an error of the write is ignored.
+  // Only messages use the process id, so an error of the write is ignored.
   if (::ftruncate(file, 0) == 0) [[maybe_unused]]
     const ssize_t written = ::pwrite(file, text.data(), text.size(), 0);
 }
 
-/// Returns the process that holds the name of a socket. Returns nothing if the process is not visible because
-/// it does not listen, or because its queue is full.
+/// Returns the process that has bound the name of a socket. Returns nothing if the process is not visible
+/// because it does not listen, or because its queue is full.
 std::optional<Peer> holder_of(const sockaddr_un& address, socklen_t length) {
-  // Between bind() and listen(), a softgrip program is not visible yet.
+  // Between its calls of bind() and listen(), a softgrip program is not visible, so the check is repeated.
   constexpr int attempts = 5;
   constexpr Nanoseconds pause = 2'000'000;
   for (int i = 0; i < attempts; ++i) {
@@ -155,7 +157,7 @@ std::string standing_still(const std::string& board, pid_t process) {
                      in_brackets(process));
 }
 
-/// Returns the sentence about a holder that is ignored.
+/// Returns the sentence that reports a holder of the lock that is ignored.
 std::string without_right(const std::string& board, const std::optional<Peer>& holder) {
   if (holder && holder->trusted) return standing_still(board, holder->process);
   const std::string who =
@@ -194,8 +196,8 @@ LockedFile& LockedFile::operator=(LockedFile&& other) noexcept {
 }
 
 LockedFile::~LockedFile() {
-  // Another program may have opened the same file meanwhile. The missing name shows this program that it must
-  // create a new file.
+  // Another program may have opened this file before it is removed. That program later finds that the name is
+  // missing, and creates a new file.
   if (file_ && folder_->still_names(name_, file_.get())) folder_->remove(name_);
 }
 
@@ -216,8 +218,8 @@ tl::expected<void, std::string> BoardLock::add_file(const std::shared_ptr<const 
       remarks_.push_back(standing_still(board, process));
       return {};
     }
-    // If the previous holder ended between open() and flock(), it has removed the name, and the file must be
-    // opened again.
+    // If the previous holder ended between open() and flock(), it has removed the name of this file. Then the
+    // file must be opened again.
     if (!folder->still_names(name, file->get())) continue;
     write_holder(file->get());
     files_.emplace_back(folder, name, std::move(*file));
@@ -230,7 +232,8 @@ tl::expected<void, std::string> BoardLock::add_name(const std::string& board, Lo
   const sockaddr_un address = address_of(board, length);
   Descriptor held(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   if (bind(held.get(), reinterpret_cast<const sockaddr*>(&address), length) == 0 &&
-      listen(held.get(), SOMAXCONN) == 0) {  // the kernel reports the holder only of a socket that listens
+      listen(held.get(), SOMAXCONN) == 0) {  // the kernel can report the holder of a socket only if the
+                                             // socket listens
     names_.push_back(std::move(held));
     return {};
   }

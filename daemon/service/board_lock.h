@@ -1,11 +1,10 @@
 #pragma once
-// Ensures that only one softgrip program drives a board. The program holds a lock, which ends with the
-// process.
+// Ensures that only one softgrip program drives a board. The program holds a lock until its process ends.
 //
-// The lock has two parts. The first is a locked file in the runtime folder, which only root and the service
-// can create. The second is the name of an abstract socket. This name also protects the board after the
-// removal of the file, and between the users of the service's group. Each user of the machine can bind such a
-// name, so the holder of the name is respected only if it is trusted (trusted_user.h).
+// The lock has two parts. The first part is a locked file in the runtime folder, which only root and the
+// service can create. The second part is the name of an abstract socket. This name also protects the board if
+// the file is removed, and it works between the users of the service's group. Every user of the machine can
+// bind such a name. Therefore, the holder of the name is respected only if it is trusted (trusted_user.h).
 
 #include <cstdint>
 #include <memory>
@@ -43,21 +42,23 @@ class LockedFile {
 /// The purpose of a lock.
 enum class LockPurpose : std::uint8_t {
   drive,
-  /// To write the safe outputs. This purpose yields to another softgrip program that runs. It ignores a lock
-  /// that cannot be created, and a holder that does not run (stopped, or blocked in a system call).
+  /// Writes the safe outputs. For this purpose, a lock of another softgrip program that runs is respected. A
+  /// lock that cannot be created is ignored. A holder that does not run (stopped, or blocked in a system
+  /// call) is also ignored.
   vent,
 };
 
-/// The lock on the boards of a rig. The process holds it until it ends in any way. The lock excludes other
-/// processes of the machine that share /run, and other processes of the network namespace. Another machine on
-/// the same Modbus TCP board is detected on the network (F304).
+/// The lock on the boards of a rig. The process holds the lock until the process ends for any reason. The
+/// lock excludes other processes of this machine that share /run, and other processes of the network
+/// namespace. Another machine that drives the same Modbus TCP board is detected on the network (F304).
 class BoardLock {
  public:
   /// Locks all boards of the rig. The error names the program that holds a lock, or gives another reason.
   [[nodiscard]] static tl::expected<BoardLock, std::string> take(const rig::RigFile& rig,
                                                                  LockPurpose purpose = LockPurpose::drive);
 
-  /// Returns one sentence for each ignored holder, such as a user without the right to the lock.
+  /// Returns one sentence for each holder of a lock that was ignored, for example a user who is not entitled
+  /// to the lock.
   [[nodiscard]] const std::vector<std::string>& remarks() const noexcept { return remarks_; }
 
  private:

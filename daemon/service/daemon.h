@@ -1,6 +1,6 @@
 #pragma once
-// softgripd without its command line: creates board, loop, bus, recorder and socket from a rig file.
-// `softgripd` and `softgrip run` use it.
+// The daemon without its command line: creates board, loop, bus, recorder and socket from a rig file.
+// `softgripd` and `softgrip run` use this class.
 
 #include <cstdint>
 #include <functional>
@@ -27,76 +27,78 @@ namespace softgrip::daemon {
 
 struct DaemonOptions {
   std::string program = "softgripd";  ///< name of the program in messages
-  /// Runs without sleeping and without a clock: as fast as possible, with equal results for equal seeds.
-  /// Requires a simulated board, and has no socket.
+  /// Runs as fast as possible, without sleeping and without the machine's clock. Equal seeds give equal
+  /// results. Requires a simulated board, and has no socket.
   bool virtual_time = false;
   std::shared_ptr<const LoadedSequence> sequence;  ///< sequence that is started when the rig is idle; run()
-                                                   ///< ends after it
-  std::optional<double> duration_s;  ///< run() ends after this time; virtual time needs a sequence or a
-                                     ///< duration
+                                                   ///< ends after this sequence
+  std::optional<double> duration_s;  ///< run() ends after this time; in virtual time, a sequence or a
+                                     ///< duration is required
   std::string record_folder;         ///< all data are recorded in this folder
   bool listen = true;                ///< opens the socket of the rig file
-  /// Opens the digital lines; if empty, the GPIO chips of this machine are used.
+  /// Opens the digital lines; if it is empty, the lines of this machine's GPIO chips are opened.
   std::function<tl::expected<std::unique_ptr<drivers::GpioLines>, drivers::GpioFailure>(
       std::span<const drivers::GpioLineSettings>)>
       open_gpio;
-  /// Called for each event in order, in the thread that called run().
+  /// Called for each event, in the order of the events, in the thread that called run().
   std::function<void(const EventEntry&)> on_event;
-  /// Called once with the start-up report after the set-up and before any motion, in the thread that called
+  /// Called once with the start-up report, after the set-up and before any motion, in the thread that called
   /// run().
   std::function<void(const std::string&)> on_start;
 };
 
 /// The reason why run() ended.
 enum class Ending : std::uint8_t {
-  asked,              ///< a signal or the duration ended a run without a sequence
+  asked,              ///< a signal or the duration ended a run that had no sequence
   interrupted,        ///< a signal or the duration ended the run before its sequence had ended
-  sequence_ended,     ///< see Outcome::sequence_end
+  sequence_ended,     ///< the sequence ended; see Outcome::sequence_end
   sequence_refused,   ///< the state of the rig did not permit the start
   not_idle,           ///< the rig did not become idle, so the sequence was not started
-  real_time_refused,  ///< `real_time: required: true`, and a setting could not be verified
+  real_time_refused,  ///< the rig file has `real_time: required: true`, and a setting could not be verified
   socket_failed,      ///< the socket could not be opened
   board_taken,        ///< another program drives the board
-  gpio_refused,       ///< a digital line of the rig file does not exist or does not match
-  gpio_failed,        ///< a digital line is in use, or this user has no permission
-  broken,             ///< an exception in a thread, or a loop that did not end
+  gpio_refused,       ///< a digital line of the rig file does not exist, or differs from the settings in the
+                      ///< rig file
+  gpio_failed,        ///< a digital line is in use by another program, or this user has no permission
+  broken,             ///< a thread threw an exception, or the loop did not end
 };
 
 /// The result of a run.
 struct Outcome {
   Ending ending = Ending::asked;
   std::string message;  ///< one sentence after an error
-  /// `faulted` also if the fault was latched after the last step and before the end of the run.
+  /// `faulted` also if a fault latched after the last step and before the end of the run.
   std::optional<control::SequenceEnd> sequence_end;
-  Snapshot last;  ///< the last tick
+  Snapshot last;  ///< state after the last tick
   std::vector<std::string> channel_names;
   std::string recording_error;        ///< reason why record_folder is incomplete; empty if it is complete
-  bool safe_state_confirmed = false;  ///< the board confirmed the safe outputs at the end
-  bool pressure_left_on = false;      ///< the safe output of at least one channel is under pressure
-                                      ///< (control::pressed())
-  double vents_after_s = 0;           ///< time until the board's watchdog vents the remaining pressure [s];
-                                      ///< 0: never
-  int signal = 0;  ///< the first signal that requested the end, before the outputs were safe; 0: none
+  bool safe_state_confirmed = false;  ///< true: at the end, the board confirmed the safe outputs
+  bool pressure_left_on = false;      ///< true: the safe output of at least one channel is a pressure that
+                                      ///< differs from rest (control::pressed())
+  double vents_after_s = 0;           ///< time until the board's watchdog vents these channels [s]; 0: the
+                                      ///< board never vents them
+  int signal = 0;  ///< first signal that requested the end before the outputs were safe; 0: there was none
   std::uint64_t ticks = 0;
   std::uint64_t overruns = 0;
-  double wall_s = 0;  ///< duration of the run
+  double wall_s = 0;  ///< elapsed time of the run
 };
 
-/// Returns false if run() ended before the board was opened. The outputs of the board are then unknown.
+/// Returns false if run() ended before the board was opened. In this case, the outputs of the board are
+/// unknown.
 [[nodiscard]] bool reached_the_board(Ending ending) noexcept;
 
 /// Returns the exit code 0, 1, 3, 4, 5 or 6. The manual describes these codes.
 [[nodiscard]] ExitCode exit_code_of(const Outcome& outcome) noexcept;
 
-/// Creates the board of a rig file, not yet connected. `clock` must outlive the board.
+/// Creates the board of a rig file. The board is not connected yet. `clock` must exist longer than the board.
 [[nodiscard]] std::unique_ptr<drivers::Board> make_board(const rig::RigFile& rig, const Clock& clock);
 
 struct DaemonParts;  // daemon_parts.h
 
 class Daemon {
  public:
-  /// `rig` must be valid. The error is a sentence: virtual time with a real board, virtual time without an
-  /// end, or a folder that already contains a recording.
+  /// Creates the daemon. `rig` must be valid. The error is a sentence. Errors are virtual time with a real
+  /// board, virtual time without a sequence or a duration, and a folder that already contains a recording.
   [[nodiscard]] static tl::expected<std::unique_ptr<Daemon>, std::string> create(rig::RigFile rig,
                                                                                  DaemonOptions options);
   Daemon(const Daemon&) = delete;
@@ -105,8 +107,8 @@ class Daemon {
   Daemon& operator=(Daemon&&) = delete;
   ~Daemon();
 
-  /// Runs until a signal (see Signals) or until the end in the options, and then leaves the board with its
-  /// safe outputs. Blocks these signals in the calling thread and in its own threads.
+  /// Runs until a signal (see Signals), or until the end that the options give. At the end, the board has its
+  /// safe outputs. The signals are blocked in the calling thread and in the threads of the daemon.
   Outcome run();
 
   [[nodiscard]] const LoopStatistics& loop_statistics() const noexcept;
@@ -117,9 +119,9 @@ class Daemon {
   std::unique_ptr<DaemonParts> parts_;
 };
 
-/// Creates a daemon and runs it to its end. The error is that of Daemon::create().
+/// Creates a daemon and runs it until it ends. The error is that of Daemon::create().
 [[nodiscard]] tl::expected<Outcome, std::string> run_daemon(rig::RigFile rig, DaemonOptions options);
-/// A function with the effect of run_daemon(). Tests replace it.
+/// A function with the same result as run_daemon(). Tests replace run_daemon() by another function.
 using DaemonRunner =
     std::function<tl::expected<Outcome, std::string>(rig::RigFile rig, DaemonOptions options)>;
 

@@ -19,12 +19,14 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Longest time of one turn of the thread that serves clients (service_patience in real_run.cpp) [ns].
+/// Longest time from a request to the reply: one turn of the thread that serves clients (service_patience in
+/// real_run.cpp) [ns].
 constexpr Nanoseconds answer_patience = 2 * ns_per_s;
 constexpr std::size_t longest_reply = std::size_t{8} << 20U;
 constexpr std::string_view question = "{\"command\": \"status\"}\n";
 
-/// Returns the first line that arrives before `deadline`, or the part of the line that has arrived by then.
+/// Returns the first line that arrives before `deadline`. If the line is incomplete at this time, returns the
+/// part that has arrived.
 std::string line_from(int socket, Nanoseconds deadline) {
   std::string line;
   std::array<char, 16384> chunk{};

@@ -1,13 +1,13 @@
 #pragma once
-// Checks if a daemon is running behind a socket. Another program can listen there, and a stopped daemon still
-// accepts connections.
+// Checks if a running daemon replies on a socket. A connection is not sufficient for this: another program
+// can listen on the socket, and a stopped daemon still accepts connections.
 
 #include <string>
 
 namespace softgrip::daemon {
 
-/// Requests the status and waits at most 2 s. Returns true if a trusted program (trusted_user.h) replied as
-/// softgripd does.
+/// Requests the status and waits at most 2 s for the reply. Returns true if a trusted program
+/// (trusted_user.h) replied in the way softgripd does.
 [[nodiscard]] bool daemon_answers(const std::string& socket_path);
 
 }  // namespace softgrip::daemon

@@ -1,5 +1,5 @@
 #pragma once
-// The parts of Daemon that runs in real time and runs in virtual time share.
+// The parts of Daemon that are used in real time and in virtual time.
 
 #include <memory>
 #include <optional>
@@ -17,7 +17,7 @@
 
 namespace softgrip::daemon {
 
-/// Longest time for the board to confirm the last outputs [ns].
+/// Longest time until the board must have confirmed the last outputs [ns].
 inline constexpr Nanoseconds shutdown_deadline = ns_per_s;
 
 struct DaemonParts {
@@ -25,11 +25,11 @@ struct DaemonParts {
 
   /// Returns the time between two ticks [ns].
   [[nodiscard]] Nanoseconds period() const noexcept;
-  /// Returns the time from a tick to the following exchange [ns].
+  /// Returns the time from a tick to the exchange that follows the tick [ns].
   [[nodiscard]] Nanoseconds bus_offset() const noexcept;
   /// Passes new events to options.on_event.
   void deliver_events();
-  /// Updates the result of the run from the present state, if the sequence is over.
+  /// Updates `outcome` from the present state, if the sequence has ended.
   void conclude(Outcome& outcome);
   void tell(const char* kind, Severity severity, std::string text);
 
@@ -54,15 +54,15 @@ struct DaemonParts {
   Recorder recorder;
   Service service;
   std::optional<OneShotRun> one_shot_run;
-  std::uint64_t delivered = 0;  // id of the last event passed to on_event
+  std::uint64_t delivered = 0;  // id of the last event that was passed to on_event
 };
 
-/// Updates the result from the one-shot run, which may have finished or not.
+/// Updates `outcome` from the one-shot run, which may have ended or not.
 void conclude_one_shot_run(const OneShotRun& one_shot_run, Outcome& outcome);
 
-/// Runs ticks as fast as possible in this thread only.
+/// Executes ticks as fast as possible, only in this thread.
 [[nodiscard]] Outcome run_in_virtual_time(DaemonParts& parts, Signals& signals);
-/// Runs ticks by the clock, with threads.
+/// Executes ticks at the times of the clock, with several threads.
 [[nodiscard]] Outcome run_in_real_time(DaemonParts& parts, Signals& signals);
 
 }  // namespace softgrip::daemon

@@ -32,12 +32,12 @@ spdlog::level::level_enum level_of(Severity severity) {
   return spdlog::level::info;
 }
 
-/// Longest time for which a line waits for a blocked reader of the standard error [ms]. Later lines do not
-/// wait.
+/// Longest time for which a line waits while the reader of the standard error is blocked [ms]. Lines after it
+/// do not wait.
 constexpr int patience_ms = 200;
 
-/// The standard error, whose reader may be blocked. A line that cannot be written is dropped, so that the
-/// daemon can always end.
+/// Writes to the standard error, whose reader may be blocked. A line that cannot be written is dropped, so
+/// that the daemon can always end.
 class StandardError final : public spdlog::sinks::base_sink<std::mutex> {
  protected:
   void sink_it_(const spdlog::details::log_msg& message) override {
@@ -59,12 +59,12 @@ class StandardError final : public spdlog::sinks::base_sink<std::mutex> {
                                           : "\033[32m";
   }
   /// Writes a line if the pipe is ready. A pipe that is ready accepts a complete line, so the write does not
-  /// wait.
+  /// block.
   void write(const std::string& line) {
     pollfd ready{STDERR_FILENO, POLLOUT, 0};
     const bool writable = ::poll(&ready, 1, blocked_ ? 0 : patience_ms) > 0;
     blocked_ = !writable;
-    // A failure of this write cannot be reported.
+    // If this write fails, nothing can report the failure.
     if (writable) [[maybe_unused]]
       const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
   }
@@ -78,8 +78,8 @@ class StandardError final : public spdlog::sinks::base_sink<std::mutex> {
 EventPrinter::EventPrinter(bool beside) {
   auto sink = std::make_shared<StandardError>();
   if (beside) {
-    // A signal in the thread of the writer would end the process without the safe outputs, so this thread
-    // blocks all signals.
+    // The thread of the writer must block all signals. A signal in this thread would end the process before
+    // the safe outputs are written.
     sigset_t all;
     sigset_t before;
     sigfillset(&all);
@@ -91,7 +91,7 @@ EventPrinter::EventPrinter(bool beside) {
   } else {
     logger_ = std::make_shared<spdlog::logger>("softgripd", sink);
   }
-  // The journal adds the time itself.
+  // The journal adds the time to each line by itself.
   const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;
   logger_->set_pattern(journal ? "%l: %v" : "%H:%M:%S.%e %^%l%$: %v");
   logger_->flush_on(spdlog::level::info);

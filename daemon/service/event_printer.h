@@ -1,5 +1,5 @@
 #pragma once
-// The daemon's own log on the standard error: events, and the reports at start and end.
+// Prints the daemon's log on the standard error: events, and the reports at start and end.
 
 #include <map>
 #include <memory>
@@ -17,31 +17,32 @@ class thread_pool;
 
 namespace softgrip::daemon {
 
-/// Prints events and reports. The loop does not use this class. If events of one kind come faster than 20 in
-/// 10 s, they are counted instead of printed.
+/// Prints events and reports. The loop does not use this class. If there are more than 20 events of one kind
+/// in 10 s, the further ones are counted and not printed.
 class EventPrinter {
  public:
-  /// `beside`: a thread of the printer writes the lines, so that a blocked reader cannot delay the caller. If
-  /// too many lines wait for the reader, the oldest are lost. If `beside` is false, each line is written
-  /// before the call returns.
+  /// If `beside` is true, a thread of the printer writes the lines, so that a blocked reader cannot delay the
+  /// caller. If too many lines wait for the reader, the oldest lines are lost. If `beside` is false, each
+  /// line is written before the call returns.
   explicit EventPrinter(bool beside);
 
   void print(const EventEntry& event);
-  /// Prints several lines.
+  /// Prints a report that consists of several lines.
   void print_report(const std::string& report);
   void print_end(const Outcome& outcome);
 
  private:
   struct Flow {
-    double window_s = 0;  ///< start of the present window
+    double window_s = 0;  ///< start time of the present counting window
     int printed = 0;
     int suppressed = 0;
   };
   [[nodiscard]] bool passes(const EventEntry& event);
 
   std::shared_ptr<spdlog::logger> logger_;
-  std::shared_ptr<spdlog::details::thread_pool> writer_;  // destroyed first: its thread uses the logger
-  std::map<std::string, Flow> flows_;                     // by kind
+  std::shared_ptr<spdlog::details::thread_pool> writer_;  // it must be destroyed first, because its thread
+                                                          // uses the logger
+  std::map<std::string, Flow> flows_;                     // number of events by kind
 };
 
 }  // namespace softgrip::daemon

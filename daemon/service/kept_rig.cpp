@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int schema = 1;
-/// Largest size [bytes]: rig file, board maps and models have at most 256 KiB each.
+/// Largest size of the copy [bytes]. The rig file and each board map and model have at most 256 KiB.
 constexpr std::size_t largest = std::size_t{32} << 20U;
 
 /// Returns the absolute path, independent of the working directory.
@@ -32,8 +32,8 @@ std::string name_of(const std::string& config) {
   return "rig-" + sha256(absolute(config)) + ".json";
 }
 
-/// Returns the runtime folder. Returns nothing if a restart of the machine does not remove this folder,
-/// because the state of the boards is unknown after a restart.
+/// Returns the runtime folder. Returns nothing if the contents of this folder survive a restart of the
+/// machine, because the state of the boards is unknown after a restart.
 std::optional<RuntimeFolder> folder() {
   auto opened = RuntimeFolder::open();
   if (!opened || !opened->ends_with_the_machine()) return std::nullopt;
@@ -76,7 +76,7 @@ std::optional<rig::RigFile> kept_rig(const std::string& config) {
     const auto files = files_of(*text, config);
     document::Problems ignored;
     return files ? rig::read_stored_rig(*files, ignored) : std::nullopt;
-  } catch (const json::exception&) {  // a value of another type
+  } catch (const json::exception&) {  // a value has an unexpected type
     return std::nullopt;
   }
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Finds the devices of this computer that a rig file names. The package's udev rule gives the service only
-// these devices.
+// Finds the devices of this computer that a rig file names. The udev rule of the package gives the service
+// access to these devices and to no others.
 
 #include <filesystem>
 #include <optional>
@@ -13,11 +13,13 @@ namespace softgrip::daemon {
 
 /// The parts of a device that the rig uses.
 struct NamedDevice {
-  std::vector<std::string> written;  ///< attributes of a converter that the daemon writes: out_voltage0_raw
+  std::vector<std::string> written;  ///< attributes of the converter that the daemon writes, such as
+                                     ///< out_voltage0_raw
 };
 
 /// Returns the parts of `device` that the rig uses, or nothing if the rig file does not name this device.
-/// `device`: name in the kernel, gpiochip0 or iio:device0. `chips`: folder of the GPIO chips' files.
+/// `device` is the name in the kernel, such as gpiochip0 or iio:device0. `chips` is the folder of the GPIO
+/// chips' files.
 [[nodiscard]] std::optional<NamedDevice> named_device(const rig::RigFile& rig, const std::string& device,
                                                       const std::filesystem::path& chips = "/dev");
 

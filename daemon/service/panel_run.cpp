@@ -8,7 +8,8 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Returns a priority below loop and bus and above all threads that are not real-time.
+/// Returns a priority that is lower than those of loop and bus, and higher than those of all threads without
+/// real-time scheduling.
 int priority_of(const rig::RealTimeSettings& settings) {
   return settings.priority > 0 ? std::max(settings.priority - 2, 1) : 0;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Runs the panel in its thread, from opening the digital lines to releasing them.
+// Runs the panel in its own thread: opens the digital lines, reads and writes them, and releases them at the
+// end.
 
 #include <memory>
 #include <optional>
@@ -12,7 +13,7 @@
 
 namespace softgrip::daemon {
 
-/// Does nothing for a rig without digital lines. All references must outlive the object.
+/// Has no effect for a rig without digital lines. All referenced objects must exist longer than this object.
 class PanelRun {
  public:
   PanelRun(const rig::RigFile& rig, const DaemonOptions& options, const Clock& clock, SharedState& shared,
@@ -24,9 +25,10 @@ class PanelRun {
   PanelRun& operator=(PanelRun&&) = delete;
   ~PanelRun() { stop(); }
 
-  /// Requests the lines. If the request fails, returns false and sets ending and message in `outcome`.
+  /// Requests the digital lines from the kernel. If the request fails, returns false and sets ending and
+  /// message in `outcome`.
   bool open(Outcome& outcome);
-  /// Starts reading the lines. Adds the result of the thread's scheduling to `report`.
+  /// Starts the thread that reads the lines. Adds the result of the thread's scheduling to `report`.
   void start(RealTimeReport& report);
   /// Switches off the enable output and ends the thread.
   void stop() noexcept;

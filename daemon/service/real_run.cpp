@@ -31,23 +31,23 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Time beyond all deadlines after which a thread that has not ended counts as blocked [ns].
+/// If a thread has not ended this time after all its deadlines, the thread counts as blocked [ns].
 constexpr Nanoseconds longest_join = ns_per_s;
-/// Time between two checks of this thread [ns].
+/// Time between two checks of the other threads by this thread [ns].
 constexpr Nanoseconds look_pause = ns_per_s / 20;
-/// Time for which loop and bus may stop beyond the limits of the rig file before the service manager's
-/// watchdog is no longer fed [ns]. A short overload of the machine must not restart the daemon.
+/// Loop and bus may stop for this time beyond the limits of the rig file [ns]. After it, the service
+/// manager's watchdog is no longer fed. A short overload of the machine must not restart the daemon.
 constexpr Nanoseconds heartbeat_patience = ns_per_s / 2;
-/// Longest time of one turn of the service thread. No client is served during a turn.
+/// Longest time of one turn of the service thread [ns]. During a turn, other clients wait.
 constexpr Nanoseconds service_patience = 2 * ns_per_s;
-/// Longest time for the recorder and the service thread to end after the outputs are safe.
+/// Longest time until the recorder and the service thread must have ended after the outputs are safe [ns].
 constexpr Nanoseconds longest_end = 3 * ns_per_s;
 /// Time between two turns of the service thread if the daemon has no socket [ns].
 constexpr Nanoseconds service_pause = ns_per_s / 50;
 /// Time from the start of the threads to the first tick [ns].
 constexpr Nanoseconds lead_time = ns_per_s / 100;
 
-/// A flag that wakes a sleeping thread.
+/// A flag that another thread can set to wake a sleeping thread.
 class Stop {
  public:
   void set() {
@@ -55,7 +55,7 @@ class Stop {
     set_ = true;
     changed_.notify_all();
   }
-  /// Returns true if the flag was set within `timeout`.
+  /// Waits until the flag is set, but at most for `timeout`. Returns true if the flag is set.
   bool wait(std::chrono::duration<double> timeout) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, timeout, [this] { return set_; });
@@ -79,12 +79,13 @@ class RealRun {
 
  private:
   bool listen();
-  /// Reports the remarks of the lock, and stores the rig for the safe outputs after a crash.
+  /// Reports the remarks of the lock. Also stores a copy of the rig for the safe outputs after a crash.
   void note_and_keep(const BoardLock& lock);
   void forget_if_rested();
   void start_threads();
   void start();
-  /// Catches exceptions of this thread. They are reported, and the run ends in order with all threads.
+  /// Executes an action and catches its exceptions. An exception is reported, and the run then ends in order
+  /// with all threads.
   void guarded(const std::function<void()>& action);
   void prepare(int priority, const char* who, RealTimeReport& report);
   void look_after();
@@ -158,7 +159,7 @@ void RealRun::loop_body() {
 }
 
 void RealRun::bus_body() {
-  // The priority is 1 lower than that of the loop, so that a late exchange does not delay a tick.
+  // The priority of the bus is 1 lower than that of the loop, so that a late exchange does not delay a tick.
   const int priority = parts_.rig.real_time.priority;
   prepare(priority > 1 ? priority - 1 : priority, "the bus", bus_report_);
   parts_.bus.run(PeriodicSchedule(start_ + parts_.bus_offset(), parts_.period()),
@@ -252,7 +253,7 @@ void RealRun::start() {
     outcome_.ending = Ending::real_time_refused;
     outcome_.message = "real_time is required, but a setting could not be verified";
   }
-  // A loop that gets a shutdown request before its first tick still sends the safe outputs.
+  // If the loop gets a shutdown request before its first tick, it still sends the safe outputs.
   if (outcome_.ending != Ending::asked) parts_.shared.shutdown_requested.store(true);
   start_ = parts_.clock.now() + lead_time;
   go_.count_down();
@@ -275,7 +276,7 @@ std::string RealRun::status_line() {
                      parts_.bus_statistics.failures.value());
 }
 
-/// Returns the longest permitted blocking time of the bus thread.
+/// Returns the longest time for which the bus thread may be blocked.
 Nanoseconds RealRun::longest_bus_call() const {
   return std::max<Nanoseconds>(parts_.rig.reconnect.connect_deadline.count(),
                                nanoseconds(parts_.rig.loop.exchange_deadline_s));
@@ -302,7 +303,7 @@ void RealRun::look_after() {
   }
 }
 
-/// Ends the process at once. A blocked thread cannot be joined, so an orderly end is not possible.
+/// Ends the process at once. This thread cannot wait for a blocked thread, so an orderly end is not possible.
 void RealRun::end_without(const char* hangs, ExitCode code) {
   parts_.tell("internal_error", Severity::error,
               fmt::format("{}; the process ends without waiting for it.", hangs));
@@ -363,8 +364,8 @@ void RealRun::note_and_keep(const BoardLock& lock) {
                   kept.error()));
 }
 
-/// Removes the stored rig if all outputs are at rest. As long as a finger may be pressurised, the safe
-/// outputs need the rig of this run.
+/// Removes the stored copy of the rig if all outputs are at rest. As long as a finger may be pressurised, the
+/// safe outputs need the rig of this run.
 void RealRun::forget_if_rested() {
   if (outcome_.safe_state_confirmed && !outcome_.pressure_left_on) forget_rig(parts_.rig.path);
 }

@@ -33,13 +33,13 @@ std::vector<std::string> usual_places() {
   return {service_folder, "/run/user/" + user + "/softgrip", "/tmp/softgrip-" + user};
 }
 
-/// Creates the folder if it is missing. The service's folder belongs to the service user, regardless of its
-/// creator.
+/// Creates the folder if it is missing. The folder of the service always belongs to the service user, even if
+/// another user such as root creates it.
 void make(const std::string& place) {
   const bool of_service = place == service_folder;
   if (::mkdir(place.c_str(), of_service ? 0755 : 0700) != 0 || !of_service) return;
   const std::optional<uid_t> user = service_user();
-  // A machine without this user has no service either, so root remains the owner of the folder.
+  // On a machine without the service user there is no service, so root remains the owner of the folder.
   if (user) [[maybe_unused]]
     const int given = ::chown(place.c_str(), *user, static_cast<gid_t>(-1));
 }
@@ -87,7 +87,7 @@ tl::expected<Descriptor, std::string> RuntimeFolder::open_file(const std::string
   if (!S_ISREG(status.st_mode)) return Failure(path + ": is no regular file");
   if (!is_trusted(status.st_uid) || (status.st_mode & others_may_do_anything) != 0 || status.st_nlink != 1)
     return Failure(path + ": other users could open it");
-  // A file that root creates must also belong to the service user. Only root can change the owner.
+  // A file that root creates must also belong to the service user. Only root can change the owner of a file.
   if (status.st_uid != folder.st_uid && (flags & O_CREAT) != 0) [[maybe_unused]]
     const int given = ::fchown(file.get(), folder.st_uid, folder.st_gid);
   return file;

@@ -1,6 +1,6 @@
 #pragma once
-// The folder for data that softgrip programs share until the machine restarts: the locks of boards and the
-// running rig. No other user can write there.
+// The folder for data that softgrip programs share until the machine restarts: the locks of boards, and the
+// copy of the rig file of the running daemon. No other user can write to this folder.
 
 #include <string>
 #include <vector>
@@ -13,29 +13,29 @@ namespace softgrip::daemon {
 
 class RuntimeFolder {
  public:
-  /// Opens /run/softgrip, which belongs to the service; root creates it if it is missing. A user without
-  /// write permission gets an own folder: /run/user/UID/softgrip, or /tmp/softgrip-UID. The error is a
+  /// Opens /run/softgrip, which belongs to the service. If it is missing, root creates it. A user who cannot
+  /// write to it gets a folder of his own: /run/user/UID/softgrip, or /tmp/softgrip-UID. The error is a
   /// sentence.
   [[nodiscard]] static tl::expected<RuntimeFolder, std::string> open();
-  /// Opens the first usable folder of a list, in the order of preference.
+  /// Opens the first usable folder of a list. The list is in the order of preference.
   [[nodiscard]] static tl::expected<RuntimeFolder, std::string> open(const std::vector<std::string>& places);
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  /// Returns true if a restart of the machine removes the contents.
+  /// Returns true if a restart of the machine removes the contents of the folder.
   [[nodiscard]] bool ends_with_the_machine() const noexcept;
 
-  /// Opens a file of the folder for reading and writing, and creates it if necessary. The file belongs to the
-  /// folder's owner, and only the owner may open it. Links, other kinds of files, and files with other
-  /// permissions are refused.
+  /// Opens a file of the folder for reading and writing; if the file is missing, creates it. The file belongs
+  /// to the folder's owner, and only this owner may open it. Links, other kinds of files, and files with
+  /// other permissions are refused.
   [[nodiscard]] tl::expected<Descriptor, std::string> lock_file(const std::string& name) const;
-  /// Replaces the file `name` in one step. The file has the permissions of lock_file().
+  /// Replaces the file `name` in one step. The file gets the permissions that lock_file() gives.
   [[nodiscard]] tl::expected<void, std::string> put(const std::string& name,
                                                     const std::string& contents) const;
   /// Returns the contents of a file that put() wrote, of at most `bound` bytes.
   [[nodiscard]] tl::expected<std::string, std::string> get(const std::string& name, std::size_t bound) const;
   /// Removes a file. A missing file is not an error.
   void remove(const std::string& name) const noexcept;
-  /// Returns true if `name` still leads to the opened file.
+  /// Returns true if the name `name` still belongs to the file that was opened.
   [[nodiscard]] bool still_names(const std::string& name, int opened) const noexcept;
 
  private:

@@ -18,7 +18,8 @@ using drivers::BusStatus;
 
 namespace {
 
-/// Longest time of the attempt. It is shorter than TimeoutStopSec= of the unit.
+/// Longest time of the attempt to write the safe outputs. It must be shorter than TimeoutStopSec= of the
+/// unit.
 constexpr std::chrono::nanoseconds unit_patience = std::chrono::seconds(8);
 constexpr int exchanges_that_confirm = 2;
 

@@ -1,6 +1,6 @@
 #pragma once
-// Vents a board for which no daemon runs. The unit's ExecStopPost= does this after a crash; a user may do it
-// before work on the rig.
+// Vents a board for which no daemon runs. After a crash, ExecStopPost= of the unit does this. A user may do
+// it before work on the rig.
 
 #include <chrono>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace softgrip::daemon {
 
-/// Result of the attempt.
+/// Result of the attempt to write the safe outputs.
 enum class SafeOutputsEnd {
   confirmed,       ///< the board accepted the rest pressures, and the next exchange confirmed them
   board_holds,     ///< the board's own watchdog has tripped and holds its safe values
@@ -29,20 +29,21 @@ struct SafeOutputsReport {
 /// Returns the exit code 0, 4 or 5. The manual describes these codes.
 [[nodiscard]] ExitCode exit_code_of(SafeOutputsEnd end) noexcept;
 
-/// Connects and writes the rest pressure of all channels until two consecutive exchanges have succeeded. In
-/// the second exchange, the board confirms the first write if its map has a read-back. Repeats this until
-/// `patience` is over. The phase in which the daemon ended is unknown, so a held part is released, as the
-/// board's own watchdog would do.
+/// Connects to the board and writes the rest pressure of all channels until two consecutive exchanges have
+/// succeeded. If the board map has a read-back, the second exchange confirms the first write. Repeats the
+/// attempt until `patience` is over. The phase in which the daemon ended is unknown. Therefore a held part is
+/// released, as the board's own watchdog would do.
 [[nodiscard]] SafeOutputsReport write_safe_outputs(const rig::RigFile& rig, drivers::Board& board,
                                                    const Clock& clock, std::chrono::nanoseconds patience);
 
-/// Returns false if softgripd ended in order, because its last outputs then remain. `service_result`:
-/// environment variable SERVICE_RESULT, which systemd sets for ExecStopPost=; empty if it is not set.
+/// Returns false if softgripd ended in order, because in this case its last outputs must remain.
+/// `service_result` is the environment variable SERVICE_RESULT, which systemd sets for ExecStopPost=; empty
+/// if it is not set.
 [[nodiscard]] bool safe_outputs_needed(const std::string& service_result) noexcept;
 
-/// Vents the board of a rig for a process that has not opened it. Yields to a daemon that responds on the
-/// rig's socket, and to a softgrip program that holds the board's lock. Ignores a program of a user without
-/// the right to the lock, and a program that does not respond.
+/// Vents the board of a rig from a process that has not opened the board. Does not vent if a daemon responds
+/// on the rig's socket, or if a softgrip program holds the board's lock. Ignores a program whose user is not
+/// entitled to the lock, and a program that does not respond.
 [[nodiscard]] SafeOutputsReport vent_rig(const rig::RigFile& rig);
 
 }  // namespace softgrip::daemon

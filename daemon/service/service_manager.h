@@ -1,5 +1,5 @@
 #pragma once
-// Reports to the service manager (systemd), if there is one.
+// Reports the state of the daemon to the service manager (systemd), if there is one.
 
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace softgrip::daemon {
 
-/// Uses sd_notify(3). Does nothing outside a unit of Type=notify.
+/// Uses sd_notify(3). Has no effect if the process is not a unit of Type=notify.
 class ServiceManager {
  public:
   ServiceManager();
@@ -16,13 +16,13 @@ class ServiceManager {
   void status(const std::string& status);
   void stopping();
 
-  /// Feeds the unit's watchdog (WatchdogSec=) four times per period while all threads run (`alive`, see
-  /// Heartbeat). If a thread has stopped, it does not feed the watchdog, and the service manager restarts the
+  /// Feeds the unit's watchdog (WatchdogSec=) four times per period while all threads run. `alive` is the
+  /// result of Heartbeat. If it is false, the watchdog is not fed, and the service manager restarts the
   /// daemon.
   void feed(Nanoseconds now, bool alive);
 
  private:
-  Nanoseconds interval_ = 0;  // 0: no watchdog
+  Nanoseconds interval_ = 0;  // 0: the unit has no watchdog
   Nanoseconds fed_ = 0;
   std::string status_;
 };

@@ -8,7 +8,7 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// All signals that end a process, except SIGKILL and those that report a defect of the process.
+/// All signals that end a process, except SIGKILL and the signals that report a defect of the process.
 constexpr std::array ending{SIGINT,  SIGTERM,   SIGHUP,  SIGQUIT, SIGUSR1, SIGUSR2,  SIGALRM,
                             SIGXCPU, SIGVTALRM, SIGPROF, SIGIO,   SIGPWR,  SIGSTKFLT};
 
@@ -26,8 +26,8 @@ Signals::Signals() noexcept {
 
 Signals::~Signals() {
   for (std::size_t i = 0; i < ignored.size(); ++i) sigaction(ignored[i], &ignored_before_[i], nullptr);
-  // After an orderly stop by a signal, the other signals need no action. A signal that was not read remains
-  // pending: an outer object of this class reads it, or it ends the process.
+  // After an orderly stop by a signal, all further signals need no action. A signal that was not read remains
+  // pending. An outer object of this class then reads the signal, or the signal ends the process.
   if (first_ != 0) (void)first();
   pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }

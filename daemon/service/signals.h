@@ -1,5 +1,5 @@
 #pragma once
-// Receives signals in a waiting call instead of in a signal handler.
+// Receives signals by waiting for them, in place of a signal handler.
 
 #include <array>
 #include <csignal>
@@ -10,9 +10,9 @@
 namespace softgrip::daemon {
 
 /// While this object exists, all signals that request the end of the process are blocked in the calling
-/// thread and in the threads started from it. SIGPIPE and SIGXFSZ are ignored, because the failed call
-/// reports the error. Signals with which a terminal stops a process are ignored, because a stopped loop
-/// cannot hold a part.
+/// thread and in the threads that it starts. SIGPIPE and SIGXFSZ are ignored, because the failed call reports
+/// the error. The signals with which a terminal stops a process are ignored, because a stopped loop cannot
+/// hold a part.
 class Signals {
  public:
   Signals() noexcept;
@@ -22,10 +22,10 @@ class Signals {
   Signals& operator=(Signals&&) = delete;
   ~Signals();
 
-  /// Returns the received signal, or 0 after `timeout`. Stores it as the signal that ends the process
-  /// (ending_signal.h).
+  /// Waits for a signal and returns it, or returns 0 after `timeout`. Stores the signal as the one that ends
+  /// the process (ending_signal.h).
   [[nodiscard]] int wait(Nanoseconds timeout) noexcept;
-  /// Reads all pending signals. Returns the first one that this object has ever read, or 0.
+  /// Reads all pending signals. Returns the first signal that this object has ever read; 0 if there is none.
   [[nodiscard]] int first() noexcept;
 
  private:

@@ -1,4 +1,4 @@
-// softgripd: the command line of the daemon.
+// The program softgripd: its command line.
 
 #include <cstdint>
 #include <cstdio>
@@ -83,8 +83,8 @@ void declare(CLI::App& program, Arguments& arguments) {
       "The configuration is read once; restart to change it.");
 }
 
-/// Writes a message to the standard error. fmt::print() would throw if nothing can be written, and the
-/// message would be lost.
+/// Writes a message to the standard error. If nothing can be written, the message is lost. fmt::print() is
+/// not used, because it would throw an exception in this case.
 void complain(const std::string& sentence) {
   std::fputs(("softgripd: " + sentence + "\n").c_str(), stderr);
 }
@@ -100,7 +100,7 @@ ExitCode check(const Arguments& arguments) {
   const rig::CheckReport report = rig::check_files(files);
   std::fputs(report.problems.format().c_str(), stderr);
   if (!report.accepted()) return ExitCode::input_refused;
-  document::Problems ignored;  // the start-up report contains them
+  document::Problems ignored;  // the start-up report contains these problems too
   const auto rig = rig::load_rig(arguments.config, ignored);
   if (!rig) return ExitCode::input_refused;
   const MonotonicClock clock;
@@ -125,8 +125,8 @@ ExitCode end_of_safe_outputs(const daemon::SafeOutputsReport& report) {
   return daemon::exit_code_of(report.end);
 }
 
-/// Writes the safe outputs. Prefers the rig that the last softgripd read, because the rig file may be
-/// incomplete during an edit.
+/// Writes the safe outputs. If there is a copy of the rig file that the last softgripd read, uses the copy,
+/// because the rig file itself may be incomplete during an edit.
 ExitCode safe_outputs(const Arguments& arguments) {
   const char* result = std::getenv("SERVICE_RESULT");
   if (!daemon::safe_outputs_needed(result == nullptr ? "" : result)) {
@@ -168,7 +168,7 @@ ExitCode run(const Arguments& arguments) {
   document::Problems problems;
   auto rig = rig::load_rig(arguments.config, problems);
   if (!rig || !problems.empty()) return refuse(problems);
-  std::fputs(problems.format().c_str(), stderr);  // warnings
+  std::fputs(problems.format().c_str(), stderr);  // these problems are warnings
   if (arguments.seed && !rig::reseed(*rig, *arguments.seed)) {
     complain("--seed needs a simulated board");
     return ExitCode::usage;
@@ -200,7 +200,9 @@ ExitCode run(const Arguments& arguments) {
   if (arguments.histograms.empty()) return code;
   if (const auto written = write_histograms(arguments.histograms, **daemon); !written) {
     complain(written.error());
-    if (code == ExitCode::done) code = ExitCode::io;  // the result of the run is more important
+    if (code == ExitCode::done)
+      code = ExitCode::io;  // the result of the run is more important than an
+                            // output error
   }
   return code;
 }
@@ -217,13 +219,13 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
       return program.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
     }
-    // Only --check reports by its output. The other modes report by their exit code.
+    // Only --check writes its result to the standard output. The other modes report it by their exit code.
     const ExitCode code = arguments.safe_outputs      ? safe_outputs(arguments)
                           : arguments.check           ? with_output_checked(check(arguments), "softgripd")
                           : !arguments.device.empty() ? say_whether_named(arguments)
                                                       : run(arguments);
-    // Without a sequence or a duration, a signal is the usual end of the daemon. Otherwise a signal
-    // interrupts the run.
+    // If the daemon has no sequence and no duration, a signal is its usual end. If it has one of them, a
+    // signal interrupts the run.
     const bool has_an_end = !arguments.sequence.empty() || arguments.duration_s;
     if (has_an_end && ending_signal() != 0) end_by_signal(ending_signal());
     return static_cast<int>(code);

@@ -57,8 +57,8 @@ std::string channel_line(const control::ChannelSettings& channel, const rig::Val
                      valve.on_power_loss == rig::PowerLoss::vents ? "vents" : "holds");
 }
 
-/// Returns the lines on the GPIO, with the response time of an emergency stop, which consists of debounce,
-/// next tick and exchange.
+/// Returns the lines about the GPIO. They contain the response time of an emergency stop, which is the sum of
+/// debounce time, time to the next tick, and exchange.
 std::string gpio_lines(const rig::RigFile& rig) {
   std::string text;
   const rig::GpioSettings& gpio = *rig.gpio;

@@ -19,7 +19,8 @@ std::optional<gid_t> service_group() {
   return entry != nullptr ? std::optional(entry->gr_gid) : std::nullopt;
 }
 
-/// Returns the supplementary groups of a peer; empty if the kernel does not report them.
+/// Returns the supplementary groups of the process at the other end of a socket; empty if the kernel does not
+/// report them.
 std::vector<gid_t> groups_of(int socket) {
   std::vector<gid_t> groups(64);
   for (;;) {

@@ -1,5 +1,6 @@
 #pragma once
-// Decides which users a softgrip program trusts to drive a board, because any user may bind any socket name.
+// Decides which users a softgrip program trusts to drive a board. This is necessary because any user may bind
+// any socket name.
 
 #include <sys/types.h>
 
@@ -16,14 +17,14 @@ inline constexpr const char* service_account = "softgrip";
 /// Returns true for root, the user of the service and the user of this process.
 [[nodiscard]] bool is_trusted(uid_t user);
 
-/// The process at the other end of a Unix domain socket, as the kernel recorded it at connect() or listen().
+/// The process at the other end of a Unix domain socket, as the kernel stored it at connect() or listen().
 struct Peer {
-  pid_t process = 0;  ///< 0: not visible from here
+  pid_t process = 0;  ///< process id; 0: the process is not visible from this process
   uid_t user = 0;
-  /// True for a trusted user and for members of the service's group, who may move the gripper.
+  /// True for a trusted user, and for members of the service's group, because they may move the gripper.
   bool trusted = false;
 };
-/// Returns the peer of a connected socket, or an empty value if the kernel does not report it.
+/// Returns the process at the other end of a connected socket; empty if the kernel does not report it.
 [[nodiscard]] std::optional<Peer> peer_of(int socket);
 
 }  // namespace softgrip::daemon

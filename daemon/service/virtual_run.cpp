@@ -1,4 +1,4 @@
-// Runs in virtual time: one thread, no sleeping, and identical results in each run.
+// Runs the daemon in virtual time: with one thread, without sleeping, and with the same results in each run.
 
 #include "daemon/service/daemon_parts.h"
 #include "daemon/service/startup_report.h"
@@ -7,7 +7,7 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Number of ticks between two calls of look(), which serves the recorder, the service and the events.
+/// Number of ticks between two calls of look(). look() serves the recorder, the service and the events.
 constexpr std::uint64_t ticks_per_look = 64;
 
 void exchange(DaemonParts& parts, Nanoseconds due) {
@@ -39,7 +39,7 @@ Outcome run_in_virtual_time(DaemonParts& parts, Signals& signals) {
     if (tick % ticks_per_look != 0) continue;
     look(parts, due);
     if ((parts.one_shot_run && parts.one_shot_run->over()) || signals.wait(0) != 0) {
-      due += period;  // the last outputs are a separate tick, so that each time occurs once in a recording
+      due += period;  // the last outputs are a separate tick, so that no time occurs twice in a recording
       break;
     }
   }

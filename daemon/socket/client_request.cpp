@@ -15,7 +15,8 @@ namespace {
 using SortedJson = nlohmann::json;
 using Command = ClientRequest::Command;
 
-constexpr std::uint64_t largest_id = std::uint64_t{1} << 53;  // exact in all JSON readers
+constexpr std::uint64_t largest_id = std::uint64_t{1} << 53;  // all JSON readers represent integers up to
+                                                              // this exactly
 constexpr std::uint64_t largest_request = (std::uint64_t{1} << 32) - 1;
 
 constexpr std::array<std::pair<std::string_view, Command>, 14> commands{{
@@ -35,12 +36,13 @@ constexpr std::array<std::pair<std::string_view, Command>, 14> commands{{
     {"unsubscribe", Command::unsubscribe},
 }};
 
-/// The one key that may contain an object.
+/// The only key whose value may be an object.
 constexpr std::string_view nested_key = "parameters";
 constexpr std::size_t most_parameters = 64;
 constexpr std::size_t longest_name = 64;
 
-/// Parses a flat JSON object. If the line is not a flat JSON object, `problem` contains the reason.
+/// Parses a JSON object without nested objects, except that of nested_key. If the line is not such an object,
+/// `problem` contains the reason.
 SortedJson parse_object(std::string_view line, std::string& problem) {
   std::array<std::vector<std::string>, 2> keys;  // keys of the object, and of the nested object
   const auto look = [&](int depth, SortedJson::parse_event_t event, SortedJson& parsed) {
@@ -62,7 +64,7 @@ SortedJson parse_object(std::string_view line, std::string& problem) {
   return object;
 }
 
-/// Reads the keys of an object and removes each key that was read, so that the remaining keys are unknown.
+/// Reads the keys of an object and removes each key that was read. The keys that remain are unknown.
 class Reader {
  public:
   explicit Reader(SortedJson& object) : object_(object) {}
@@ -96,7 +98,7 @@ class Reader {
     }
     value = given.get<std::string>();
   }
-  /// Reads a name. It may not contain control characters, because it appears in events and logs.
+  /// Reads a name. Control characters are an error, because the name appears in events and logs.
   void name(const char* key, std::string& value) {
     text(key, value);
     const bool printable = std::none_of(value.begin(), value.end(), [](char letter) {
@@ -133,7 +135,7 @@ class Reader {
   void fail(std::string problem) {
     if (problem_.empty()) problem_ = std::move(problem);
   }
-  /// Returns the first problem, including unknown keys.
+  /// Returns the first problem; an unknown key is a problem too.
   [[nodiscard]] std::string finish(std::string_view command) {
     for (const auto& [key, value] : object_.items()) {
       fail(fmt::format("the command '{}' has no key '{}'", command, key));
@@ -142,8 +144,8 @@ class Reader {
   }
 
  private:
-  /// Removes a key and returns its value. Returns null if the key is absent. A key with the value null is an
-  /// error.
+  /// Removes a key and returns its value. If the key is absent, returns null. If the value of the key is
+  /// null, this is an error.
   SortedJson take(const char* key) {
     const auto found = object_.find(key);
     if (found == object_.end()) return nullptr;

@@ -1,6 +1,7 @@
 #pragma once
-// Reads one line of a client of the socket API into a plain value. Lines come from outside, so this parser is
-// fuzzed (tests/daemon/socket/client_request_fuzz.cpp). docs/reference/socket-api.md describes the requests.
+// Reads one line of a client of the socket API into a plain value. Any user of the socket can send lines, so
+// this parser is fuzzed (tests/daemon/socket/client_request_fuzz.cpp). docs/reference/socket-api.md describes
+// the requests.
 
 #include <cstdint>
 #include <optional>
@@ -36,23 +37,28 @@ struct ClientRequest {
     unsubscribe,
   };
 
-  std::optional<std::uint64_t> id;  ///< id of the client, repeated in each reply
+  std::optional<std::uint64_t> id;  ///< id that the client gave the request; each reply repeats it
   Command command = Command::status;
-  double rate_hz = 10;        ///< for watch: [0.1, 50]
-  std::string sequence;       ///< for start: a file in the daemon's sequence directory, or ...
-  std::string sequence_text;  ///< ... the sequence itself; then `sequence` is its name in messages
-  std::vector<control::Argument> parameters;  ///< for start: values that replace defaults
-  bool dry_run = false;                       ///< for start: all checks without the motion
-  /// The client's id for a start, [1, 64] bytes without control characters; empty: none. Used by start, and
-  /// by a stop of this start alone.
+  double rate_hz = 10;        ///< for watch: messages per second, 0.1 to 50
+  std::string sequence;       ///< for start: name of a file in the daemon's sequence directory
+  std::string sequence_text;  ///< for start: text of the sequence itself; messages then use `sequence` as its
+                              ///< name
+  std::vector<control::Argument> parameters;  ///< for start: values that replace the defaults of the
+                                              ///< parameters
+  bool dry_run = false;                       ///< for start: makes all checks, but starts no motion
+  /// The client's id for a start, 1 to 64 bytes without control characters; empty: the client gave none. A
+  /// start has this id, and a stop with this id stops no other start.
   std::string start_id;
-  std::optional<std::uint64_t> request;  ///< for stop: number of the one start to stop, [1, 2^32); empty: any
-  std::optional<std::uint64_t> since;    ///< for events and subscribe: only events with a larger id
-  std::string started_at;                ///< for subscribe: start time of the daemon that gave the ids
+  std::optional<std::uint64_t> request;  ///< for stop: number of the only start to stop, from 1 to 2^32 - 1;
+                                         ///< empty: any start
+  std::optional<std::uint64_t> since;    ///< for events and subscribe: only events with a larger id than this
+                                         ///< are sent
+  std::string started_at;                ///< for subscribe: start time of the daemon from which the client
+                                         ///< has its event ids
   std::string client;                    ///< for hello: name, [1, 64] bytes without control characters
-  std::uint64_t api = api_version;       ///< for hello: version of the client
-  std::uint64_t limit = 100;             ///< for events: [1, 1000]
-  bool histograms = false;               ///< for statistics: include the bins
+  std::uint64_t api = api_version;       ///< for hello: version of the socket API that the client uses
+  std::uint64_t limit = 100;             ///< for events: largest number of events, 1 to 1000
+  bool histograms = false;               ///< for statistics: the reply includes the bins of the histograms
 };
 
 /// The reason why a line was refused.
@@ -61,13 +67,13 @@ struct ClientError {
   std::string message;              ///< one sentence
 };
 
-/// Reads one line without its line break. Parsing is strict: an unknown, repeated or missing key, a key of
+/// Reads one line without its line break. Parsing is strict. An unknown, repeated or missing key, a key of
 /// another command, a wrong type and a number out of range are errors.
 [[nodiscard]] tl::expected<ClientRequest, ClientError> parse_client_request(std::string_view line);
 
 /// Returns the names of the commands that a role may use.
 [[nodiscard]] std::vector<std::string_view> commands_of(Role role);
-/// Returns true for commands that only read. Returns false for commands that move, stop or acknowledge.
+/// Returns true for a command that only reads, and false for a command that moves, stops or resets something.
 [[nodiscard]] bool only_looks(ClientRequest::Command command) noexcept;
 
 /// Returns true if the line requests a stop or a vent.

@@ -27,7 +27,7 @@ Failure failure(const std::string& path, std::string_view what) {
   return Failure(fmt::format("{}: {}: {}", path, what, std::strerror(errno)));
 }
 
-/// Returns the address of a socket file. Returns an empty value if the path is too long for a socket.
+/// Returns the address of a socket file; empty if the path is too long for a socket.
 std::optional<sockaddr_un> address_of(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -36,25 +36,25 @@ std::optional<sockaddr_un> address_of(const std::string& path) {
   return address;
 }
 
-/// Returns true if a program listens at the address; otherwise errno gives the reason.
+/// Returns true if a program listens at the address. If none listens, errno gives the reason.
 bool answers(const sockaddr_un& address) {
   const Descriptor probe(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const auto* generic = reinterpret_cast<const sockaddr*>(&address);
   return connect(probe.get(), generic, sizeof address) == 0 || errno == EAGAIN;
 }
 
-/// Removes the file of a daemon that has ended. Returns false if a daemon responds.
+/// Removes the socket file of a daemon that has ended. Returns false if a daemon responds on this socket.
 bool clear_away(const sockaddr_un& address) {
   if (answers(address)) return false;
-  // A connection to a file that is not a socket is refused too. Such a file remains, and bind() reports that
-  // it exists.
+  // A connection to a file that is not a socket is refused too. Such a file is not removed, so bind() reports
+  // that the file exists.
   struct stat status {};
   const bool refused = errno == ECONNREFUSED;
   if (refused && lstat(address.sun_path, &status) == 0 && S_ISSOCK(status.st_mode)) unlink(address.sun_path);
   return true;
 }
 
-/// Sets mode and group of the socket's file.
+/// Sets the mode and the group of the socket file.
 bool give_rights(const rig::SocketFile& file) {
   if (!file.group.empty()) {
     const group* entry = getgrnam(file.group.c_str());
@@ -91,7 +91,7 @@ tl::expected<Listener, std::string> Listener::open(const rig::SocketFile& file) 
 
   Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (!socket) return failure(file.path, "socket");
-  // Between bind() and chmod(), no other user may connect.
+  // Between bind() and chmod(), no other user must be able to connect.
   const mode_t before = umask(0177);
   const int bound = bind(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address);
   umask(before);
@@ -112,7 +112,7 @@ tl::expected<Listener, std::string> Listener::open(const rig::SocketFile& file) 
 
 Listener::~Listener() {
   struct stat status {};
-  // Another daemon may have replaced the removed socket with its own.
+  // Another daemon may have replaced this socket file by its own file.
   const bool there = socket_ && lstat(path_.c_str(), &status) == 0;
   if (there && status.st_dev == device_ && status.st_ino == inode_) unlink(path_.c_str());
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A listening Unix domain socket and its file.
+// A Unix domain socket that accepts connections, and the file of this socket.
 
 #include <sys/types.h>
 
@@ -12,20 +12,21 @@
 
 namespace softgrip::daemon {
 
-/// Returns a connection to the socket at `path` that does not block, or an empty descriptor.
+/// Connects to the socket at `path`. Returns a descriptor in non-blocking mode, or an empty descriptor after
+/// a failure.
 [[nodiscard]] Descriptor connect_to(const std::string& path);
 
 class Listener {
  public:
-  /// Creates the socket's file, first with permissions for the owner only, then with those of `file`.
-  /// Replaces the file of a daemon that has ended; the file of a running daemon is an error. The error is a
-  /// sentence.
+  /// Creates the socket file. At first only its owner has permissions; after that, it has the permissions in
+  /// `file`. The socket file of a daemon that has ended is replaced. The socket file of a running daemon is
+  /// an error. The error is a sentence.
   [[nodiscard]] static tl::expected<Listener, std::string> open(const rig::SocketFile& file);
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;
   Listener(Listener&& other) noexcept = default;
   Listener& operator=(Listener&&) = delete;
-  /// Removes the socket's file, if it is still the one that was created.
+  /// Removes the socket file, if it is still the file that this object created.
   ~Listener();
 
   [[nodiscard]] int get() const noexcept { return socket_.get(); }
@@ -35,7 +36,7 @@ class Listener {
 
   std::string path_;
   Descriptor socket_;
-  dev_t device_ = 0;  // of the socket's file
+  dev_t device_ = 0;  // device and inode of the socket file
   ino_t inode_ = 0;
 };
 

@@ -8,8 +8,8 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Time for which the run continues after the sequence, because a recording ends half a second after the
-/// motion [ns].
+/// Time for which the run continues after the end of the sequence [ns], because a recording ends half a
+/// second after the last motion.
 constexpr Nanoseconds tail = ns_per_s;
 
 bool at_rest(control::State state) noexcept {

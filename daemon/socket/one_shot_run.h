@@ -1,5 +1,5 @@
 #pragma once
-// Runs one sequence from start to end without a user: `softgripd --sequence`, `softgrip run`.
+// Runs one sequence from start to end without a client: for `softgripd --sequence` and `softgrip run`.
 
 #include <cstdint>
 #include <memory>
@@ -16,24 +16,24 @@ class OneShotRun {
  public:
   enum class State : std::uint8_t {
     waiting,  ///< waits until the rig is idle
-    asked,    ///< the start was passed to the loop
+    asked,    ///< the start request was passed to the loop
     running,
     ended,
-    refused,   ///< the state of the rig did not permit the start; see refusal()
+    refused,   ///< the state of the rig did not permit the start; refusal() gives the reason
     not_idle,  ///< the rig did not become idle in time
   };
 
-  /// `patience`: longest wait for an idle rig [ns].
+  /// `patience` is the longest time to wait until the rig is idle [ns].
   OneShotRun(std::shared_ptr<const LoadedSequence> sequence, Nanoseconds patience);
 
-  /// Performs the next action that is due. Must be called periodically by the thread that calls the service,
-  /// after Service::pump().
+  /// Performs the next action if it is due. The thread that calls the service must call this function
+  /// periodically, each time after Service::pump().
   void step(Service& service, Nanoseconds now);
 
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] bool over() const noexcept { return state_ >= State::ended; }
   [[nodiscard]] control::RefusalCode refusal() const noexcept { return refusal_; }
-  /// Returns the way in which the sequence ended; nothing before its end.
+  /// Returns how the sequence ended; nothing before its end.
   [[nodiscard]] std::optional<control::SequenceEnd> end() const noexcept { return end_; }
 
  private:

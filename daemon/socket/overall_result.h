@@ -1,5 +1,5 @@
 #pragma once
-// Computes one result for a grip of several fingers.
+// Combines the results of several fingers into one overall result of the grip.
 
 #include <cstdint>
 #include <span>
@@ -8,9 +8,10 @@
 
 namespace softgrip::daemon {
 
-/// Returns the result for the fingers in `members` (bit i: results[i]). If any finger has error, part_lost or
-/// no_part, the result is the first of these three that occurs. Otherwise it is the result that all fingers
-/// share. It is `none` if they share no result, or if `members` is 0.
+/// Returns the overall result of the fingers in `members` (bit i: results[i]). The results error, part_lost
+/// and no_part have priority, in this order: if a finger has one of them, it is the overall result.
+/// Otherwise, if all fingers have the same result, this is the overall result. In all other cases, and if
+/// `members` is 0, it is `none`.
 [[nodiscard]] control::GripResult overall_result(std::span<const control::GripResult> results,
                                                  std::uint32_t members) noexcept;
 

@@ -1,5 +1,6 @@
 #pragma once
-// Parts of replies of the socket API that do not depend on the state: errors, problems, sequences, greeting.
+// Builds the parts of replies of the socket API that do not depend on the state: errors, problems, sequences,
+// greeting.
 
 #include <cstdint>
 #include <optional>
@@ -22,13 +23,14 @@ namespace softgrip::daemon {
 [[nodiscard]] nlohmann::ordered_json error_json(std::string_view code, std::string_view message);
 [[nodiscard]] nlohmann::ordered_json problems_json(const std::vector<document::Problem>& problems);
 [[nodiscard]] nlohmann::ordered_json sequences_json(const std::vector<SequenceLoader::Listed>& sequences);
-/// Describes a sequence for the reply to a start that was only checked.
+/// Describes a sequence for the reply to a start with dry_run.
 [[nodiscard]] nlohmann::ordered_json checked_json(const LoadedSequence& sequence);
 
 /// The data of a reply to hello.
 struct Greeting {
   std::string_view software_version;
-  std::string_view started_at;  ///< start time of the daemon, UTC; the event ids belong to it
+  std::string_view started_at;  ///< start time of the daemon, UTC; event ids are unique only together with
+                                ///< this time
   Role role = Role::look;
   std::string_view client;  ///< name that the client gave
   double longest_answer_s = 0;
@@ -36,7 +38,7 @@ struct Greeting {
 [[nodiscard]] nlohmann::ordered_json hello_json(const Greeting& greeting,
                                                 const rig::SocketSettings& settings);
 
-/// Returns the reply for a client that is refused before its first request, or for a line that cannot be
+/// Returns the reply to a client that is refused before its first request, or to a line that cannot be
 /// parsed.
 [[nodiscard]] std::string error_line(std::optional<std::uint64_t> id, std::string_view code,
                                      std::string_view message);

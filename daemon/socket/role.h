@@ -1,6 +1,6 @@
 #pragma once
-// Defines the permissions of a client of the socket API. They depend on the socket to which the client is
-// connected.
+// Defines the permissions of a client of the socket API. The socket to which the client is connected
+// determines them.
 
 #include <cstdint>
 #include <string_view>
@@ -8,8 +8,8 @@
 namespace softgrip::daemon {
 
 enum class Role : std::uint8_t {
-  look,     ///< read-only; socket `socket: look:` of the rig file
-  operate,  ///< may move the gripper; socket `socket: path:`
+  look,     ///< read-only; for the socket that the rig file gives as `socket: look:`
+  operate,  ///< may move the gripper; for the socket that the rig file gives as `socket: path:`
 };
 /// Returns "look" or "operate".
 [[nodiscard]] constexpr std::string_view name_of(Role role) noexcept {

@@ -19,12 +19,13 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// If the planning of a sequence takes longer than this share of its motion plus this margin for machine
-/// load, the delay of a start is reported.
+/// Planning a sequence may take this share of the duration of its motion, plus planning_slack_s for the load
+/// of the machine. If it takes longer, the delay of the start is reported.
 constexpr double longest_planning_share = 0.1;
 constexpr double planning_slack_s = 0.2;
 
-/// Returns true if `name` is the name of a visible file in the directory itself, not in a subdirectory.
+/// Returns true if `name` is the name of a visible file in the directory itself. A file in a subdirectory
+/// does not count.
 bool is_plain_name(const std::string& name) {
   return !name.empty() && name.front() != '.' && name.find('/') == std::string::npos &&
          name.find('\0') == std::string::npos;
@@ -32,7 +33,7 @@ bool is_plain_name(const std::string& name) {
 
 constexpr std::string_view ending = ".yaml";
 
-/// Returns a hint with the most similar name, or with the list of names.
+/// Returns a hint with the most similar name, or with a list of all names.
 std::string hint_of(const std::string& name, const std::string& directory,
                     const std::vector<std::string>& names) {
   if (names.empty()) return fmt::format("there are no sequences in {}", directory);

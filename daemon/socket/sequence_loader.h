@@ -1,5 +1,5 @@
 #pragma once
-// Loads sequences for the loop: finds, reads and fits them to the rig before the loop gets them.
+// Loads sequences: finds and reads them, and fits them to the rig before the loop gets them.
 
 #include <memory>
 #include <optional>
@@ -19,18 +19,18 @@ namespace softgrip::daemon {
 
 class SequenceLoader {
  public:
-  /// `directory`: folder with the sequences that clients start by name.
+  /// `directory` is the folder with the sequences that clients start by name.
   SequenceLoader(control::RigSettings rig, std::string directory);
 
-  // Loading is thread-safe. It takes up to 1 s for 10 s of planned motion (feedforward `planned`), and may
-  // block for ever if the directory is on a mount whose server does not respond. After a stop request,
-  // planning ends and the sequence is refused. Parameters without an argument have their defaults.
+  // The load functions are thread-safe. A call takes up to 1 s for 10 s of planned motion (feedforward
+  // `planned`). It may block for ever if the directory is on a mount whose server does not respond. After a
+  // stop request, planning ends and the sequence is refused. A parameter without an argument has its default.
   using Result = tl::expected<std::shared_ptr<const LoadedSequence>, document::Problems>;
   using Arguments = std::span<const control::Argument>;
-  /// Loads a file at any path, for the daemon's command line.
+  /// Loads a file at any path. The daemon's command line uses this function.
   [[nodiscard]] Result load_file(const std::string& path, Arguments arguments = {},
                                  const std::stop_token& stop = {}) const;
-  /// Loads a regular file of the directory. `name` may omit the ending `.yaml` and may not lead out of the
+  /// Loads a regular file of the directory. `name` may omit the ending `.yaml` and must not lead out of the
   /// directory. If there is no such file, the message lists the existing names.
   [[nodiscard]] Result load_named(const std::string& name, Arguments arguments = {},
                                   const std::stop_token& stop = {}) const;
@@ -38,15 +38,15 @@ class SequenceLoader {
   [[nodiscard]] Result load_text(const std::string& name, const std::string& text, Arguments arguments = {},
                                  const std::stop_token& stop = {}) const;
 
-  /// A file of the directory, read without fitting it to a rig.
+  /// A sequence file of the directory. It was read, but not fitted to a rig.
   struct Listed {
-    std::string name;  ///< name for a start, without `.yaml`
+    std::string name;  ///< name that a start request can use, without `.yaml`
     std::string about;
     std::vector<control::Parameter> parameters;
     document::Problems problems;  ///< reasons why the sequence cannot be started
   };
-  /// Returns all sequences of the directory by name, at most `most_listed`. Reads their files, which may
-  /// block on the disk.
+  /// Returns the sequences of the directory in the order of their names, at most `most_listed`. Reads all
+  /// their files, so the call may wait for the disk.
   [[nodiscard]] std::vector<Listed> list() const;
   static constexpr std::size_t most_listed = 500;
 

@@ -14,10 +14,10 @@ using EventKind = control::Event::Kind;
 
 namespace {
 
-/// Largest number of requests for which the name of the client is stored.
+/// Largest number of requests for which the name of their client is stored.
 constexpr std::size_t most_clients = 256;
 
-/// Returns the fault to which a reply refers.
+/// Returns the fault to which the reply of an event refers.
 control::Fault fault_in(const control::Event& event) {
   const double number = event.kind == EventKind::fault_acknowledged ? event.detail
                         : event.kind == EventKind::request_refused  ? event.value
@@ -78,7 +78,7 @@ void Service::forget(std::uint32_t request) {
 
 void Service::note_client(std::uint32_t request, const std::string& client) {
   if (!client.empty()) clients_[request] = client;
-  // Removes the oldest entry, except for that of the running sequence.
+  // Removes the oldest entry, but not the entry of the running sequence.
   auto oldest = clients_.begin();
   if (oldest != clients_.end() && oldest->first == sequence_request_) ++oldest;
   if (clients_.size() > most_clients) clients_.erase(oldest);
@@ -144,7 +144,7 @@ void Service::take(const StampedEvent& stamped) {
     std::fill(results_.begin(), results_.end(), control::GripResult::none);
     overall_ = control::GripResult::none;
   }
-  // The loop no longer uses the sequence.
+  // From this event on, the loop no longer uses the sequence.
   if (event.kind == EventKind::request_refused || event.kind == EventKind::start_checked)
     sequence_store_.drop(event.request);
   if (event.kind == EventKind::sequence_finished) {
@@ -165,7 +165,7 @@ void Service::take(const StampedEvent& stamped) {
   if (event.kind == EventKind::grip_result) note_result(stamped);
 }
 
-/// Updates the overall result of the grip at each change.
+/// Updates the overall result of the grip when the result of a finger changes.
 void Service::note_result(const StampedEvent& stamped) {
   const control::Event& event = stamped.event;
   if (event.channel >= results_.size()) return;

@@ -1,5 +1,5 @@
 #pragma once
-// Passes requests to the loop, and the events of the loop to all threads that are not real-time.
+// Passes requests to the loop, and passes the events of the loop to all threads without real-time scheduling.
 
 #include <cstdint>
 #include <map>
@@ -14,62 +14,66 @@
 
 namespace softgrip::daemon {
 
-/// All calls come from one thread. References must outlive the object.
+/// All functions must be called from the same thread. The referenced objects must exist longer than this
+/// object.
 class Service {
  public:
-  /// `origin`: time 0 of the event log.
+  /// `origin` is time 0 of the event log.
   Service(std::vector<std::string> channel_names, Nanoseconds origin, SharedState& shared, EventLog& log,
           SequenceStore& sequence_store);
 
-  /// Passes a request to the loop. Returns the id of the request, or an empty value if the queue is full
-  /// because the loop has not taken the earlier requests yet. Vent and stop have separate queues, which are
-  /// read before all others, and always return an id. If their queue is full, the id is that of a waiting
-  /// request with the same effect. `client` appears in the resulting events; it may be empty.
+  /// Passes a request to the loop. Returns the id of the request. If the queue is full because the loop has
+  /// not taken the earlier requests yet, returns an empty value. Vent and stop have separate queues, which
+  /// the loop reads before all others. For them, an id is always returned: if their queue is full, it is the
+  /// id of a waiting request with the same effect. `client` appears in the resulting events; it may be empty.
   std::optional<std::uint32_t> submit(control::Request::Kind kind,
                                       std::shared_ptr<const LoadedSequence> sequence = nullptr,
                                       const std::string& client = {});
 
-  /// Passes a request to stop only the sequence that the request `start` began or will begin. Returns the id
-  /// of this stop. If an earlier stop of the same start has no reply yet, returns the id of that stop
-  /// instead. Returns nothing if the queue is full because the loop has not taken the earlier requests yet.
+  /// Passes a request to the loop to stop only the sequence that the request `start` began or will begin.
+  /// Returns the id of this stop request. If an earlier stop of the same start has no reply yet, returns the
+  /// id of that stop. If the queue is full because the loop has not taken the earlier requests yet, returns
+  /// nothing.
   std::optional<std::uint32_t> submit_stop_of(std::uint32_t start, const std::string& client = {});
 
   /// Moves the events of loop and bus into the log, and stores the replies of the loop.
   void pump();
 
-  /// Returns the loop's reply to a request. Each reply except `pending` is returned only once.
+  /// Returns the loop's reply to a request, or `pending` if there is none yet. Each reply is returned only
+  /// once.
   struct Answer {
     enum class Kind : std::uint8_t { pending, accepted, refused };
     Kind kind = Kind::pending;
     control::RefusalCode refusal = control::RefusalCode::none;
-    control::Fault fault;  ///< fault that was acknowledged or whose cause is still present; none otherwise
+    control::Fault fault;  ///< fault that was reset, or whose cause is still present; in all other cases none
   };
   [[nodiscard]] Answer take_answer(std::uint32_t request);
   /// Discards the reply to a request.
   void forget(std::uint32_t request);
 
-  /// Returns the end of the newest finished sequence, and the request that had started it.
+  /// Returns the result of the newest sequence that has ended, and the request that started this sequence.
   struct Ending {
     std::uint32_t request = 0;  ///< 0: no sequence has ended
     control::SequenceEnd end = control::SequenceEnd::done;
   };
   [[nodiscard]] const Ending& last_ending() const noexcept { return ending_; }
 
-  /// Returns the running or last sequence; nullptr before the first.
+  /// Returns the sequence that runs or ran last; nullptr before the first sequence.
   [[nodiscard]] const std::shared_ptr<const LoadedSequence>& sequence() const noexcept { return sequence_; }
-  /// Returns the request that started sequence(), or 0.
+  /// Returns the id of the request that started sequence(); 0 before the first sequence.
   [[nodiscard]] std::uint32_t sequence_request() const noexcept { return sequence_request_; }
 
-  /// Returns the client of a request. The text is empty if the client is unknown. The name of a client is
-  /// forgotten after many newer requests.
+  /// Returns the name of the client that made a request; empty if it is unknown. After many newer requests,
+  /// the name is no longer stored.
   [[nodiscard]] std::string client_of(std::uint32_t request) const;
-  /// Returns true if the request has started a sequence that has not ended.
+  /// Returns true if the request has started a sequence, and this sequence has not ended yet.
   [[nodiscard]] bool runs(std::uint32_t request) const noexcept {
     return request != 0 && request == sequence_request_ && ending_.request != request;
   }
 
-  /// The first failure since the last successful exchange, or the reason why no session can be opened again.
-  /// `kind` is the name of its BusStatus, and `text` is a sentence. Both are empty while the board responds.
+  /// The first failure since the last successful exchange, or the reason why no connection can be opened
+  /// again. `kind` is the name of the BusStatus, and `text` is a sentence. Both are empty while the board
+  /// responds.
   struct BusFailure {
     std::string kind;
     std::string text;
@@ -96,16 +100,18 @@ class Service {
   std::uint32_t last_request_ = 0;
   std::uint32_t last_vent_ = 0;
   std::uint32_t last_stop_ = 0;
-  std::map<std::uint32_t, Answer> answers_;          // replies by request, until they are taken
-  std::map<std::uint32_t, std::uint32_t> stops_of_;  // by start: the stop of this start that has no reply yet
+  std::map<std::uint32_t, Answer> answers_;          // replies of the loop by request, until they are
+                                                     // returned
+  std::map<std::uint32_t, std::uint32_t> stops_of_;  // for each start, the request to stop this start that
+                                                     // has no reply yet
   std::vector<control::GripResult> results_;         // results by channel in the present sequence
   control::GripResult overall_ = control::GripResult::none;
-  std::map<std::uint32_t, std::string> clients_;  // clients of the newest requests
+  std::map<std::uint32_t, std::string> clients_;  // names of the clients that made the newest requests
   std::shared_ptr<const LoadedSequence> sequence_;
   std::uint32_t sequence_request_ = 0;
   Ending ending_;
   BusFailure bus_failure_;
-  std::uint64_t events_dropped_ = 0;  // number of lost events at the last report
+  std::uint64_t events_dropped_ = 0;  // number of lost events that were already reported
 };
 
 }  // namespace softgrip::daemon

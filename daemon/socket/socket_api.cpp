@@ -21,13 +21,14 @@ using Json = nlohmann::ordered_json;
 using Command = ClientRequest::Command;
 using Kind = control::Request::Kind;
 
-/// The loop replies within a tick. After this time, no reply is expected [ns].
+/// The loop replies to a request within a tick. If there is no reply after this time, none is expected [ns].
 constexpr Nanoseconds longest_answer = ns_per_s;
-/// Longest interval between calls of on_time(), normally and while a client waits for the loop's reply.
+/// Longest time between two calls of on_time() [ns]: normally, and (pause_while_asked) while a client waits
+/// for the loop's reply.
 constexpr Nanoseconds longest_pause = ns_per_s / 50;
 constexpr Nanoseconds pause_while_asked = ns_per_s / 1000;
-/// Largest number of events that are sent to one subscriber per turn, so that other subscribers are served
-/// too.
+/// Largest number of events that one subscriber gets per turn, so that the other subscribers do not wait too
+/// long.
 constexpr std::size_t most_fed = 50;
 
 }  // namespace
@@ -105,8 +106,8 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
   }
 }
 
-/// Returns the reason why this client may not make the request now; null if it may. The rule for a start also
-/// applies to the check of a start.
+/// Returns the reason why this client may not make the request now; null if the request is allowed. A check
+/// of a start follows the same rule as a start.
 Json SocketApi::refusal_of(ClientId client, const ClientRequest& request) const {
   if (only_looks(request.command)) return nullptr;
   const auto found = clients_.find(client);
@@ -124,15 +125,15 @@ Json SocketApi::refusal_of(ClientId client, const ClientRequest& request) const 
   return error;
 }
 
-/// Returns the name of the client whose sequence runs or is requested; nullptr if there is none. A client
-/// that has no name or has disconnected does not own a sequence.
+/// Returns the name of the client whose sequence runs or is requested; nullptr if there is no such client. A
+/// client that has no name, or has disconnected, does not own a sequence.
 const std::string* SocketApi::owner() const {
   const auto found = clients_.find(owner_client());
   return found == clients_.end() || found->second.name.empty() ? nullptr : &found->second.name;
 }
 
 /// Returns the client whose sequence runs. If no sequence runs, returns the client of the first start to
-/// which the loop has not replied yet, or 0 if there is none. The client may have disconnected.
+/// which the loop has not replied yet. Returns 0 if there is no such start. The client may have disconnected.
 ClientId SocketApi::owner_client() const {
   const std::uint32_t running = sources_.service.sequence_request();
   if (sources_.service.runs(running)) return starts_.client_of(running);
@@ -213,8 +214,8 @@ Nanoseconds SocketApi::on_time(Nanoseconds now) {
   return next;
 }
 
-/// Loads the sequence of a start in a separate thread, so that vent and stop requests never wait for a plan
-/// or a disk.
+/// Loads the sequence of a start in a separate thread, so that a vent or stop request never waits for the
+/// planning or for the disk.
 void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds now) {
   take_planned(now);
   if (planned_) {
@@ -236,7 +237,7 @@ void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds
   std::thread(std::move(load)).detach();
 }
 
-/// Returns null if a start may have this id. Otherwise returns the error.
+/// Checks the id of a new start. Returns null if the id is allowed, otherwise the error.
 Json SocketApi::refusal_of_id(const std::string& start_id) const {
   if (starts_.is_forbidden(start_id))
     return error_json("abandoned", "a stop of this start arrived before the start");
@@ -254,7 +255,7 @@ void SocketApi::stop(ClientId client, const ClientRequest& request, Nanoseconds 
   ask(client, request.id, Kind::stop, nullptr, now);
 }
 
-/// Stops one start in any state: not received yet, being loaded, on its way to the loop, or running.
+/// Stops one start, whatever its state is: not received yet, being loaded, passed to the loop, or running.
 void SocketApi::stop_of(ClientId client, const ClientRequest& request, Nanoseconds now) {
   const std::string& id = request.start_id;
   if (!id.empty() && planned_ && !planned_->abandoned && planned_->start_id == id) {
@@ -275,8 +276,9 @@ void SocketApi::stop_of(ClientId client, const ClientRequest& request, Nanosecon
   wait_for(number, {client, request.id, now + longest_answer, {}, {}});
 }
 
-/// Lists the sequences of the directory. A separate thread reads them, so that vent requests never wait for a
-/// disk. A blocked directory costs one thread, regardless of the number of requests.
+/// Lists the sequences of the directory. A separate thread reads their files, so that a vent request never
+/// waits for the disk. If the directory blocks, only one thread is blocked, whatever the number of requests
+/// is.
 void SocketApi::list_sequences(ClientId client, std::optional<std::uint64_t> id) {
   if (!listing_) {
     std::packaged_task<std::vector<SequenceLoader::Listed>()> read(
@@ -300,7 +302,7 @@ void SocketApi::abandon_planned() noexcept {
   planned_->stop.request_stop();
 }
 
-/// Refuses the start whose sequence is being loaded, because a stop or a vent has arrived.
+/// Refuses the start whose sequence is being loaded, because a request to stop or to vent has arrived.
 void SocketApi::refuse_planned() {
   if (!planned_ || planned_->abandoned) return;
   abandon_planned();
@@ -313,7 +315,7 @@ void SocketApi::take_planned(Nanoseconds now) {
   Planned planned = std::move(*planned_);
   planned_.reset();
   SequenceLoader::Result sequence = planned.loaded.get();
-  // If the client disconnected before the motion, the sequence is not started.
+  // If the client has disconnected while the sequence was loaded, the sequence is not started.
   if (!planned.abandoned) loaded(planned, std::move(sequence), now);
 }
 
@@ -340,8 +342,8 @@ std::optional<std::uint32_t> SocketApi::ask(ClientId client, std::optional<std::
   return number;
 }
 
-/// Stores who waits for the loop's reply to a request. If the loop's queue was full, the request has no
-/// number, and the reply is `busy`.
+/// Stores which client waits for the loop's reply to a request. If the loop's queue was full, the request has
+/// no number, and the client gets the reply `busy`.
 void SocketApi::wait_for(std::optional<std::uint32_t> number, Asked asked) {
   if (number) {
     asked_.insert({*number, std::move(asked)});
@@ -388,8 +390,8 @@ Json SocketApi::dated(const EventEntry& event, Nanoseconds now) {
   return json;
 }
 
-/// Returns the wall-clock time at time 0 of the log. The value changes only if the wall clock was set, so
-/// that a repeated event has the same time.
+/// Returns the wall-clock time at time 0 of the event log. The result changes only if the wall clock was set.
+/// Therefore, an event that is sent twice has the same time in both messages.
 Nanoseconds SocketApi::wall_origin(Nanoseconds now) {
   constexpr Nanoseconds was_set = ns_per_s / 2;
   const Nanoseconds origin = wall_time_now() - (now - sources_.origin);
@@ -405,8 +407,8 @@ void SocketApi::tell_events(ClientId client, const ClientRequest& request, Nanos
   ok(client, request.id, {{"events", std::move(list)}, {"newest", events_.newest()}});
 }
 
-/// Subscribes a client to events. If `started_at` is that of another run of the daemon, the client's event
-/// ids are not comparable, so the client gets all stored events.
+/// Subscribes a client to events. If `started_at` is the start time of an earlier run of the daemon, the
+/// client's event ids are not valid. In this case, the client gets all stored events.
 void SocketApi::subscribe(ClientId client, const ClientRequest& request) {
   const std::uint64_t newest = events_.newest();
   const bool of_another = !request.started_at.empty() && request.started_at != started_at_;

@@ -1,5 +1,5 @@
 #pragma once
-// Executes the commands of the socket API. It does not use sockets.
+// Executes the requests of the socket API. This class does not use sockets itself.
 
 #include <cstdint>
 #include <functional>
@@ -23,36 +23,38 @@
 
 namespace softgrip::daemon {
 
-/// Id of a connection. An id is never used for another connection.
+/// Id of a connection. Each connection has an id that no other connection ever gets.
 using ClientId = std::uint64_t;
 
-/// All calls come from one thread, the one that calls Service.
+/// All functions must be called from one thread: the thread that calls Service.
 class SocketApi {
  public:
-  /// Sends a line with its line break to a client. `skippable`: if the client has not read the last lines
-  /// yet, the line is not sent and the result is false.
+  /// Sends a line with its line break to a client. If `skippable` is true and the client has not read the
+  /// last lines yet, the line is not sent and the result is false.
   using Send = std::function<bool(ClientId client, std::string_view line, bool skippable)>;
 
   SocketApi(StatusSources sources, rig::SocketSettings settings, std::shared_ptr<const SequenceLoader> loader,
             const EventLog& events, Send send);
   SocketApi(const SocketApi&) = delete;
   SocketApi& operator=(const SocketApi&) = delete;
-  /// Cancels the current planning without waiting for it, because its thread may hang in the file system.
+  /// Cancels the planning that is in progress, but does not wait until it ends, because its thread may be
+  /// blocked in the file system.
   ~SocketApi();
 
-  /// Registers a new client. An unregistered client is read-only.
+  /// Registers a new client with its role. A client that was not registered is read-only.
   void on_opened(ClientId client, Role role);
   /// Processes one line of a client, without its line break.
   void on_line(ClientId client, std::string_view line, Nanoseconds now);
   /// Removes a client that has disconnected.
   void on_closed(ClientId client);
-  /// Returns true if the client must keep its connection although it is silent: it has a subscription, or its
-  /// start runs or may still begin.
+  /// Returns true if the client must keep its connection although it sends nothing. This is the case if it
+  /// has a subscription, or if its start runs or may still begin.
   [[nodiscard]] bool keeps_place(ClientId client) const;
-  /// Returns true while the sequence of a start is being loaded. on_time() continues after that.
+  /// Returns true while the sequence of a start is being loaded. When it is loaded, on_time() passes it to
+  /// the loop.
   [[nodiscard]] bool loads() const noexcept { return planned_.has_value(); }
-  /// Sends the replies of the loop and the watched states that are due. Returns the latest time of the next
-  /// call.
+  /// Sends the replies of the loop, and the states for `watch` that are due. Returns the time at which it
+  /// must be called next, at the latest.
   Nanoseconds on_time(Nanoseconds now);
 
  private:
@@ -60,16 +62,16 @@ class SocketApi {
     Role role = Role::look;
     std::string name;  ///< name from the client's hello
   };
-  struct Asked {  // a request to the loop
+  struct Asked {  // a request that was passed to the loop
     ClientId client = 0;
     std::optional<std::uint64_t> id;
     Nanoseconds give_up = 0;
     document::Problems remarks;                     ///< warnings about the sequence
-    std::shared_ptr<const LoadedSequence> checked;  ///< for a dry run
+    std::shared_ptr<const LoadedSequence> checked;  ///< for a dry run: the sequence that was checked
   };
   struct Subscription {
     std::optional<std::uint64_t> id;
-    std::uint64_t last = 0;  ///< the newest event that was sent
+    std::uint64_t last = 0;  ///< id of the newest event that was sent
   };
   struct Watch {
     std::optional<std::uint64_t> id;
@@ -77,17 +79,17 @@ class SocketApi {
     Nanoseconds due = 0;
   };
 
-  struct Planned {  // a start whose sequence is being loaded by a separate thread
+  struct Planned {  // a start whose sequence a separate thread is loading
     ClientId client = 0;
     std::optional<std::uint64_t> id;
     std::future<SequenceLoader::Result> loaded;
     std::stop_source stop;
-    std::string start_id;  ///< name given by the client; may be empty
+    std::string start_id;  ///< id that the client gave the start; may be empty
     bool dry_run = false;
-    bool abandoned = false;  ///< no client waits for the result
+    bool abandoned = false;  ///< true: no client waits for the result any more
   };
 
-  struct Listing {  // the sequence directory, read by a separate thread
+  struct Listing {  // the list of the sequence directory, which a separate thread is reading
     std::future<std::vector<SequenceLoader::Listed>> read;
     std::vector<std::pair<ClientId, std::optional<std::uint64_t>>> waiting;
   };
@@ -129,14 +131,14 @@ class SocketApi {
   std::shared_ptr<const SequenceLoader> loader_;
   const EventLog& events_;
   Send send_;
-  std::multimap<std::uint32_t, Asked> asked_;  // by the request's number in the loop
+  std::multimap<std::uint32_t, Asked> asked_;  // by the number of the request in the loop
   std::map<ClientId, Client> clients_;
   std::map<ClientId, Subscription> subscriptions_;
   std::map<ClientId, Watch> watches_;
   std::optional<Planned> planned_;
   StartLedger starts_;
   std::optional<Listing> listing_;
-  std::optional<Nanoseconds> wall_origin_;  ///< wall-clock time at sources_.origin
+  std::optional<Nanoseconds> wall_origin_;  ///< wall-clock time at the time sources_.origin
 };
 
 }  // namespace softgrip::daemon

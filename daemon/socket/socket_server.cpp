@@ -21,24 +21,25 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Largest number of new clients per call, so that the present clients are served too.
+/// Largest number of new clients that one call accepts, so that the clients that are already connected do not
+/// wait too long.
 constexpr int most_accepts = 4;
-/// Times for which a silent client keeps its place: before its first request, and after its last request or
-/// its last received reply.
+/// Times after which a silent client can lose its place: first_word before its first request [ns], and
+/// longest_silence after its last request or the last reply that it received [ns].
 constexpr Nanoseconds first_word = ns_per_s / 10;
 constexpr Nanoseconds longest_silence = 5 * ns_per_s;
-/// Largest number of clients that are connected without a place.
+/// Largest number of clients that are connected although they have no place.
 constexpr std::size_t most_standing = 32;
-/// Longest time for which the lines of one client are processed in one call. A line that was begun is
-/// finished.
+/// Longest time for which the lines of one client are processed in one call. Processing a line is never
+/// interrupted.
 constexpr std::chrono::microseconds longest_turn(500);
-/// Without a free descriptor, a new client cannot even be refused. Time until the next attempt [ns].
+/// If no descriptor is free, the server cannot even refuse a new client. Time until it tries again [ns].
 constexpr Nanoseconds accept_pause = ns_per_s / 10;
-/// A client that receives nothing for this time is disconnected.
+/// A client that has not read any output for this time is disconnected [ns].
 constexpr Nanoseconds longest_stall = 10 * ns_per_s;
-/// Longest time for which a client that has closed its sending side may wait for its replies.
+/// Longest time for which a client that has closed its sending side may wait for its replies [ns].
 constexpr Nanoseconds answer_pause = 2 * ns_per_s;
-/// Number of bytes that are read from one client per turn.
+/// Largest number of bytes that are read from one client per turn.
 constexpr std::size_t read_bytes = 16 * 1024;
 
 }  // namespace
@@ -69,7 +70,8 @@ void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
   }
   std::vector<std::uint64_t> ids(polled.size());
   for (const auto& [id, client] : clients_) {
-    // A client with unread replies is not read, and neither is one with lines left from its last turn.
+    // Nothing is read from a client that has not read its replies, or that has unprocessed lines from its
+    // last turn.
     const bool writes = !client.output.empty();
     const bool reads = client.ended_at == 0 && !has_line(client);
     polled.push_back({client.socket.get(), static_cast<short>(writes ? POLLOUT : reads ? POLLIN : 0), 0});
@@ -91,7 +93,7 @@ void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
     }
   }
   lines_left_ = false;
-  // Clients that may stop or vent are served first.
+  // Clients that may stop or vent the rig are served first.
   for (const Role role : {Role::operate, Role::look}) {
     for (auto& [id, client] : clients_) {
       if (client.role != role) continue;
@@ -120,13 +122,14 @@ void SocketServer::accept_some(const Entrance& entrance) {
     client.active_at = now_;
     client.stands = stands;
     if (handlers_.on_opened) handlers_.on_opened(last_id_, role);
-    read_from(client);  // its first line has usually arrived already
+    read_from(client);  // the first line of a new client has usually arrived already
   }
 }
 
-/// Accepts a new client. Returns an invalid descriptor if no client waits. If no descriptor is free,
-/// disconnects the client that was silent for longest and tries again; a read-only client cannot displace an
-/// operating one. Returns an invalid descriptor if this does not help.
+/// Accepts a new client. If no client waits, returns an invalid descriptor. If no descriptor is free,
+/// disconnects the client that was silent for the longest time, and tries again. A read-only client cannot
+/// displace a client that may operate the rig. If no client can be disconnected, returns an invalid
+/// descriptor.
 Descriptor SocketServer::accept_one(const Entrance& entrance) {
   for (;;) {
     Descriptor socket(accept4(entrance.listener.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
@@ -140,17 +143,18 @@ Descriptor SocketServer::accept_one(const Entrance& entrance) {
   }
 }
 
-/// Returns true if the client may be displaced: it has ended, has been silent for long, or `any` is true. A
-/// client that keeps its place is not displaced, because its running sequence would lose its owner.
+/// Returns true if the client may be disconnected to make space: it has ended, or was silent for too long, or
+/// `any` is true. A client that keeps its place must stay connected, because its running sequence would lose
+/// its owner.
 bool SocketServer::may_go(std::uint64_t id, const Client& client, bool any) const {
   if (client.ended_at != 0) return true;
   if (handlers_.keeps_place && handlers_.keeps_place(id)) return false;
   return any || now_ - client.active_at >= (client.spoke ? longest_silence : first_word);
 }
 
-/// Displaces one client of the role, if possible. The first choice is a client that has ended, then a client
-/// without a place, then one that never sent a line, then the one that was silent for longest. Returns false
-/// if no client may be displaced.
+/// Disconnects one client of the role to make space, if possible. The order of preference is: a client that
+/// has ended, a client without a place, a client that never sent a line, and the client that was silent for
+/// the longest time. Returns false if no client may be disconnected.
 bool SocketServer::displace_one(Role role, bool any) {
   const auto rank = [](const Client& client) {
     return std::tuple(client.ended_at == 0, !client.stands, client.spoke, client.active_at);
@@ -162,7 +166,7 @@ bool SocketServer::displace_one(Role role, bool any) {
     if (found == clients_.end() || rank(client) < rank(found->second)) found = entry;
   }
   if (found == clients_.end()) return false;
-  // An error is ignored: the server does not wait for a client that does not read.
+  // An error of this call is ignored, because the server does not wait for a client that does not read.
   const std::string line = too_many();
   [[maybe_unused]] const ssize_t sent =
       ::send(found->second.socket.get(), line.data(), line.size(), MSG_NOSIGNAL);
@@ -186,7 +190,7 @@ void SocketServer::hear(std::uint64_t id, Client& client, std::string_view line)
     send(id, too_many(), false);
     client.closing = true;
   }
-  // A client without a place may send one line and wait for its reply.
+  // A client without a place may send one line and wait for the reply to this line.
   if (client.stands) client.ended_at = now_;
 }
 
@@ -196,7 +200,7 @@ void SocketServer::read_from(Client& client) {
   const ssize_t count = recv(client.socket.get(), buffer.data(), buffer.size(), 0);
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
   if (count <= 0) {
-    // `echo ... | socat` sends no more lines but waits for the reply.
+    // A client such as `echo ... | socat` sends no more lines, but waits for the reply.
     client.ended_at = now_;
     return;
   }
@@ -207,7 +211,7 @@ bool SocketServer::has_line(const Client& client) {
   return client.input.find('\n') != std::string::npos;
 }
 
-/// Processes the lines of a client until its turn ends. Stops when the client has not read all replies.
+/// Processes the lines of a client until its turn ends, or until the client has not read all replies.
 void SocketServer::take_lines(std::uint64_t id, Client& client) {
   const auto began = std::chrono::steady_clock::now();
   std::size_t begin = 0;
@@ -224,7 +228,7 @@ void SocketServer::take_lines(std::uint64_t id, Client& client) {
     if (std::chrono::steady_clock::now() - began > longest_turn) break;
   }
   client.input.erase(0, begin);
-  // A line that is too long may have no end yet.
+  // A line that is too long may not be complete yet.
   if (std::min(client.input.find('\n'), client.input.size()) > settings_.max_line_bytes) {
     send(id,
          error_line(std::nullopt, "too_long",
@@ -268,8 +272,8 @@ void SocketServer::write_to(Client& client, Nanoseconds now) {
   }
 }
 
-/// Ends the output to a client that has closed its end. The server still reads the lines that the client sent
-/// before, because a stop or a vent may be among them.
+/// Sends nothing more to a client that has closed its end. The server still reads the lines that the client
+/// sent before, because they may contain a stop or a vent.
 void SocketServer::stop_writing(Client& client) {
   client.deaf = true;
   client.output.clear();

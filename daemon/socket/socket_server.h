@@ -1,6 +1,6 @@
 #pragma once
-// Exchanges lines over a Unix domain socket, with limits for sizes, times and the number of clients. It does
-// not interpret the lines.
+// Exchanges lines over a Unix domain socket. It limits sizes, times and the number of clients. It does not
+// interpret the lines.
 
 #include <cstdint>
 #include <functional>
@@ -19,18 +19,18 @@
 
 namespace softgrip::daemon {
 
-/// The listening sockets, one per role, and their clients. Each role has its own number of places. All calls
-/// come from one thread.
+/// The listening sockets, one per role, and their clients. Each role has its own number of places. All
+/// functions must be called from one thread.
 class SocketServer {
  public:
   struct Handlers {
     std::function<void(std::uint64_t client, std::string_view line)> on_line;
     std::function<void(std::uint64_t client)> on_closed;
-    /// Returns true if a line must be processed even for a client without a place.
+    /// Returns true if a line must be processed even if its client has no place.
     std::function<bool(std::string_view line)> is_urgent;
-    /// Called before the first line of a client.
+    /// Called before the first line of a client is processed.
     std::function<void(std::uint64_t client, Role role)> on_opened = nullptr;
-    /// Returns true if a client keeps its place while it is silent.
+    /// Returns true if a client keeps its place although it sends nothing.
     std::function<bool(std::uint64_t client)> keeps_place = nullptr;
   };
 
@@ -42,18 +42,18 @@ class SocketServer {
   SocketServer& operator=(SocketServer&&) = delete;
   ~SocketServer();
 
-  /// Must be called before the first poll().
+  /// Sets the functions that process the lines. Must be called before the first poll().
   void set_handlers(Handlers handlers) { handlers_ = std::move(handlers); }
 
-  /// Waits for events, at most until `until`, and processes a part of the lines of each client; the next call
-  /// processes the others. If all places are taken, a new client gets the place of a client that has been
-  /// silent for long and does not keep its place. If there is no such client, the new client may send one
-  /// line, which is refused unless it is urgent. If a client has closed its end meanwhile, its urgent lines
-  /// are still processed.
+  /// Waits for events, at most until `until`. Processes a part of the lines of each client; the next call
+  /// processes the remaining lines. If all places are taken, a new client gets the place of a client that was
+  /// silent for too long and does not keep its place. If there is no such client, the new client may send one
+  /// line. This line is refused if it is not urgent. If a client has closed its end, its urgent lines are
+  /// still processed.
   void poll(Nanoseconds now, Nanoseconds until);
 
-  /// Queues a line for a client. Returns false if the client has disconnected, or if `skippable` is true and
-  /// the client has not read all queued lines.
+  /// Queues a line for a client. Returns false if the client has disconnected. Also returns false if
+  /// `skippable` is true and the client has not read all queued lines.
   bool send(std::uint64_t client, std::string_view line, bool skippable);
 
   [[nodiscard]] std::size_t clients() const noexcept { return clients_.size(); }
@@ -64,13 +64,16 @@ class SocketServer {
     Role role = Role::look;
     std::string input;
     std::string output;
-    Nanoseconds stalled_since = 0;  // time since which output waits and nothing was read; 0: no output waits
-    Nanoseconds ended_at = 0;       // time at which the client ended: it will send no more lines; 0: it may
-    Nanoseconds active_at = 0;      // time of the last sent or read line, or of the connection
-    bool spoke = false;             // it has sent a line
-    bool stands = false;            // it has no place
-    bool closing = false;           // the connection is closed after the output is sent
-    bool deaf = false;              // it reads no more; its last lines are still processed
+    Nanoseconds stalled_since = 0;  // time since which the client has not read the waiting output; 0: no
+                                    // output waits
+    Nanoseconds ended_at = 0;       // time at which the client ended, so that it will send no more lines; 0:
+                                    // it may send lines
+    Nanoseconds active_at = 0;      // time of the last line that was sent or read, or time of the connection
+    bool spoke = false;             // true: the client has sent a line
+    bool stands = false;            // true: the client has no place
+    bool closing = false;           // true: the connection is closed after all output is sent
+    bool deaf = false;              // true: the client does not read any more; its last lines are still
+                                    // processed
     bool dead = false;
   };
 
@@ -100,8 +103,8 @@ class SocketServer {
   std::map<std::uint64_t, Client> clients_;
   std::uint64_t last_id_ = 0;
   Nanoseconds now_ = 0;
-  Nanoseconds accepts_again_ = 0;  // no free descriptor until this time
-  bool lines_left_ = false;        // a client has lines for the next call
+  Nanoseconds accepts_again_ = 0;  // until this time, no descriptor is free
+  bool lines_left_ = false;        // true: a client has lines for the next call
 };
 
 }  // namespace softgrip::daemon

@@ -1,5 +1,5 @@
 #pragma once
-// Stores recent starts, so that a stop can refer to one of them.
+// Stores the newest starts, so that a request to stop can name one of them.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,22 +14,22 @@ namespace softgrip::daemon {
 struct KnownStart {
   std::uint32_t request = 0;
   std::string id;            ///< id given by the client; empty if it gave none
-  std::uint64_t client = 0;  ///< the client that requested it
+  std::uint64_t client = 0;  ///< client that requested the start
 };
 
-/// Stores the newest `most` starts and the running one.
+/// Stores the newest `most` starts, and the start of the running sequence.
 class StartLedger {
  public:
   static constexpr std::size_t most = 256;
 
-  /// `running`: the request of the running or last sequence, or 0.
+  /// `running` is the request of the sequence that runs or ran last; 0 if there was none.
   void add(KnownStart start, std::uint32_t running);
-  /// Stores the id of a start that must not run, because a stop for it arrived first. Keeps the newest `most`
-  /// ids.
+  /// Stores the id of a start that must not run, because a stop for this start arrived first. Keeps the
+  /// newest `most` ids.
   void forbid(std::string start_id);
 
   [[nodiscard]] bool has(std::uint32_t request) const;
-  /// Returns the client of a request; 0 if it is unknown.
+  /// Returns the client that made a request; 0 if the request is not stored.
   [[nodiscard]] std::uint64_t client_of(std::uint32_t request) const;
   [[nodiscard]] std::optional<std::uint32_t> request_of(std::string_view start_id) const;
   [[nodiscard]] bool is_forbidden(std::string_view start_id) const;

@@ -34,7 +34,7 @@ Json json_of_fault(control::FaultCode code) {
           {"remedy", info.remedy}};
 }
 
-/// Returns the latched fault, its cause if it is still present, and the remedy.
+/// Returns the latched fault, the cause of the fault if it is still present, and the remedy.
 Json json_of_latched(const Snapshot& snapshot, const std::vector<std::string>& names) {
   Json json = json_of_fault(snapshot.first_fault.code);
   if (json.is_null()) return json;
@@ -153,7 +153,7 @@ Json json_of(const RealTimeReport* report) {
   return {{"degraded", report->degraded()}, {"steps", std::move(steps)}};
 }
 
-/// Returns the states of the digital lines. They are null for lines that the rig does not have.
+/// Returns the states of the digital lines. The state of a line that the rig does not have is null.
 Json json_of_gpio(const rig::GpioSettings* gpio, const SharedState* shared) {
   if (gpio == nullptr || shared == nullptr) return nullptr;
   const InputLevels& inputs = shared->inputs;
@@ -213,7 +213,7 @@ Json status_json(const StatusSources& sources) {
             {"rig_file", rig_file_of(sources.provenance)},
             {"simulated", sources.provenance.simulated},
             {"rate_hz", sources.provenance.rate_hz},
-            // Before the first tick, no snapshot has a time.
+            // Before the first tick, the snapshot has no valid time.
             {"time_s", snapshot.ticks == 0 ? 0.0 : seconds(snapshot.at - sources.origin)},
             {"state", control::name_of(snapshot.state)},
             {"under_pressure", under_pressure_json(sources.rig.channels, snapshot)},

@@ -1,6 +1,6 @@
 #pragma once
-// Builds the replies of the socket API about the daemon, as JSON. docs/reference/socket-api.md specifies
-// them.
+// Builds the replies of the socket API about the daemon as JSON. docs/reference/socket-api.md specifies the
+// replies.
 
 #include <string>
 #include <vector>
@@ -18,7 +18,7 @@
 
 namespace softgrip::daemon {
 
-/// The sources of a status. References must outlive the object.
+/// The objects from which a status is read. They must exist longer than this object.
 struct StatusSources {
   const control::RigSettings& rig;
   const Provenance& provenance;
@@ -26,15 +26,15 @@ struct StatusSources {
   const Recorder& recorder;
   const LoopStatistics& loop;
   const BusStatistics& bus;
-  const std::string& board;  ///< description in one line
+  const std::string& board;  ///< description of the board in one line
   Nanoseconds origin = 0;
-  const RealTimeReport* real_time = nullptr;  ///< absent in virtual time
-  const rig::GpioSettings* gpio = nullptr;    ///< absent without digital lines
-  const SharedState* shared = nullptr;        ///< required if gpio is set
+  const RealTimeReport* real_time = nullptr;  ///< nullptr in virtual time
+  const rig::GpioSettings* gpio = nullptr;    ///< nullptr if the rig has no digital lines
+  const SharedState* shared = nullptr;        ///< must not be nullptr if gpio is set
 };
 
-/// Returns {"code", "name", "channel"} of a fault; the channel is null for the complete rig. Returns null if
-/// there is no fault.
+/// Returns a fault as {"code", "name", "channel"}; the channel is null if the fault concerns the complete
+/// rig. Returns null if there is no fault.
 [[nodiscard]] nlohmann::ordered_json fault_title_json(const control::Fault& fault,
                                                       const std::vector<std::string>& channel_names);
 [[nodiscard]] nlohmann::ordered_json status_json(const StatusSources& sources);
@@ -43,7 +43,7 @@ struct StatusSources {
                                                      bool with_histograms);
 [[nodiscard]] nlohmann::ordered_json event_json(const EventEntry& event);
 
-/// Returns the JSON as one line. Bytes that are not UTF-8 are replaced.
+/// Returns the JSON as one line. Bytes that are not valid UTF-8 are replaced.
 [[nodiscard]] std::string line_of(const nlohmann::ordered_json& json);
 
 }  // namespace softgrip::daemon

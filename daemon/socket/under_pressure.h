@@ -1,6 +1,6 @@
 #pragma once
-// Reports fingers that are pressurised without motion: after a stop or a fault that holds, or after a
-// sequence.
+// Reports fingers that are pressurised but do not move. This happens after a stop or a fault that holds, and
+// after a sequence.
 
 #include <string>
 #include <vector>
@@ -12,8 +12,9 @@
 
 namespace softgrip::daemon {
 
-/// Returns null if no finger is pressurised. Otherwise returns `channels` (a list of `name` and
-/// `command_kpa`), `command` (the command line that vents them) and `text` (one or two sentences with both).
+/// Returns null if no finger is pressurised. Otherwise returns an object with `channels` (a list of `name`
+/// and `command_kpa`), `command` (the shell command that vents these channels) and `text` (one or two
+/// sentences with both).
 [[nodiscard]] nlohmann::ordered_json under_pressure_json(
     const std::vector<control::ChannelSettings>& channels, const Snapshot& snapshot);
 
