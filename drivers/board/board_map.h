@@ -1,7 +1,7 @@
 #pragma once
-// The contents of a board file (config/boards/*.yaml): the registers of an I/O board and their meaning, as
-// plain values. load_board_map() in rig/board_map_file.h reads them; the Modbus board and the emulator use
-// them. docs/reference/board-map.md describes the file.
+// The contents of a board file (config/boards/*.yaml) as plain values: the registers of an I/O board and
+// their meaning. load_board_map() in rig/board_map_file.h reads the file. The Modbus board and the emulator
+// use the values. docs/reference/board-map.md describes the file.
 
 #include <algorithm>
 #include <cstddef>
@@ -17,8 +17,8 @@ namespace softgrip::drivers {
 
 /// The representation of one number in registers.
 enum class RegisterKind : std::uint8_t { uint16, int16, uint32, int32, float32 };
-/// The order of the two words of a two-register number (high_first: the high word has the lower address), and
-/// of the two bytes of each register.
+/// The order of the two words of a number with two registers, and of the two bytes of each register.
+/// high_first: the high word has the lower address.
 enum class WordOrder : std::uint8_t {
   high_first,
   low_first,
@@ -27,10 +27,11 @@ enum class WordOrder : std::uint8_t {
 };
 /// Returns the name in the board file.
 [[nodiscard]] std::string_view name_of(WordOrder order) noexcept;
-/// The unit at a terminal. The "terminal" of a pressure generator is its air port; its unit is kPa.
+/// The unit of the quantity at a terminal. The "terminal" of a pressure generator is its air port, whose unit
+/// is kPa.
 enum class ElectricalUnit : std::uint8_t { volt, milliampere, kilopascal };
 
-/// Returns the number of registers of a number of this kind: 1 or 2.
+/// Returns how many registers a number of this kind has: 1 or 2.
 [[nodiscard]] constexpr std::uint16_t words_of(RegisterKind kind) noexcept {
   return kind == RegisterKind::uint16 || kind == RegisterKind::int16 ? 1 : 2;
 }
@@ -39,19 +40,19 @@ enum class ElectricalUnit : std::uint8_t { volt, milliampere, kilopascal };
 /// Returns "V", "mA" or "kPa".
 [[nodiscard]] std::string_view name_of(ElectricalUnit unit) noexcept;
 
-/// Consecutive numbers of one kind. `address` is the address on the wire, from 0. The loader of the board
-/// file has subtracted the file's address_base.
+/// Consecutive numbers of one kind. `address` is the address in the Modbus request, from 0. The loader of the
+/// board file has subtracted the file's address_base from it.
 struct RegisterBlock {
   std::uint8_t function = 0;  ///< function code for reading (1-4) or writing (5, 6, 16)
   std::uint16_t address = 0;
-  std::uint16_t count = 0;  ///< quantity of numbers, each with one or two registers
+  std::uint16_t count = 0;  ///< quantity of numbers; each number has one or two registers
   RegisterKind kind = RegisterKind::uint16;
 
   [[nodiscard]] constexpr std::uint16_t registers() const noexcept {
     return static_cast<std::uint16_t>(count * words_of(kind));
   }
-  /// Returns the address of the number `index`. It may exceed 65535; such an address does not exist and does
-  /// not wrap.
+  /// Returns the address of the number `index`. The result may exceed 65535; such an address does not exist,
+  /// and it does not wrap around to 0.
   [[nodiscard]] constexpr std::uint32_t address_of(std::size_t index) const noexcept {
     return static_cast<std::uint32_t>(address + index * words_of(kind));
   }
@@ -63,13 +64,15 @@ struct TerminalBlock {
   RegisterBlock registers;
   ElectricalUnit unit = ElectricalUnit::volt;
   TwoPoints scaling;   ///< x: raw, y: in `unit`
-  double raw_min = 0;  ///< lower end of the converter's range; commands outside the range are limited to it
+  double raw_min = 0;  ///< lower end of the converter's range; a command outside the range is limited to the
+                       ///< range
   double raw_max = 0;
   int bits = 0;                    ///< resolution over [raw_min, raw_max]; 0: not quantised (float)
-  std::vector<double> error_raws;  ///< raw numbers that are error codes instead of values (inputs)
+  std::vector<double> error_raws;  ///< raw numbers of the inputs that are error codes and not values
 };
 
-/// Status registers of the inputs and the meaning of their numbers. All other numbers are sensor errors.
+/// Status registers of the inputs, and the meaning of the numbers in them. A number without a meaning counts
+/// as a sensor error.
 struct StatusBlock {
   RegisterBlock registers;
   std::vector<std::uint16_t> ok;
@@ -79,19 +82,19 @@ struct StatusBlock {
 
 /// Registers in which the board reports its outputs.
 struct ReadBack {
-  RegisterBlock registers;   ///< same kind and scaling as the outputs
-  double tolerance_raw = 0;  ///< a larger difference means that the write was refused
-  /// Largest number of exchanges until the board reports a written value. Until then, the values written
-  /// before are also accepted.
+  RegisterBlock registers;   ///< registers of the outputs, with the kind and the scaling of the outputs
+  double tolerance_raw = 0;  ///< a larger difference from the written value means that the write was refused
+  /// Largest number of exchanges until the board reports a written value. Until then, the values that were
+  /// written before it are also accepted.
   std::uint32_t lag_exchanges = 0;
 };
 
-/// One register or coil written with a fixed value.
+/// A write of a fixed value to one register or coil.
 struct FixedWrite {
   std::uint8_t function = 0;  ///< 5, 6 or 16
   std::uint16_t address = 0;
   std::uint16_t value = 0;  ///< for a coil: 0 or 1
-  /// Value of every second write, for a heartbeat whose board expects a change.
+  /// Value of every second write, for a heartbeat if the board expects a change of the value.
   std::optional<std::uint16_t> alternate{};
 };
 
@@ -99,19 +102,21 @@ struct FixedWrite {
 struct BoardWatchdog {
   enum class Kind : std::uint8_t {
     none,                   ///< outputs keep their last value for an unlimited time
-    communication_timeout,  ///< outputs go to the safe value after timeout_s without a request that feeds it
+    communication_timeout,  ///< outputs go to the safe value timeout_s after the last request that feeds the
+                            ///< watchdog
   };
   enum class Feed : std::uint8_t {
-    any_request,  ///< each request that the board receives
-    functions,    ///< only requests with one of `functions`
-    feed_write,   ///< only the write `feed_write`, which each exchange contains
+    any_request,  ///< each request that the board receives feeds it
+    functions,    ///< a request feeds it if its function code is one of `functions`
+    feed_write,   ///< only the write `feed_write` feeds it; each exchange contains this write
   };
   /// The registers or bits in which the board reports that its watchdog has tripped.
   struct Tripped {
     std::uint8_t function = 0;  ///< function code 1 or 2 (coil, discrete input), or 3 or 4 (register)
     std::uint16_t address = 0;
-    std::uint16_t mask = 0xffff;  ///< tripped if (number & mask) is not 0 ...
-    std::uint16_t count = 1;      ///< ... in any of `count` numbers (one per output)
+    std::uint16_t mask = 0xffff;  ///< the watchdog has tripped if (number & mask) is not 0 in any of `count`
+                                  ///< numbers
+    std::uint16_t count = 1;      ///< quantity of numbers, one per output
   };
 
   /// The register that contains the number of clients.
@@ -121,16 +126,19 @@ struct BoardWatchdog {
   };
 
   Kind kind = Kind::none;
-  double timeout_s = 0;                 ///< time-out that `setup` or another tool has set in the board [s]
+  double timeout_s = 0;                 ///< time-out in the board, which `setup` or a tool of the vendor has
+                                        ///< set [s]
   std::vector<double> safe_electrical;  ///< safe value of each output, in the outputs' unit
   Feed feed = Feed::any_request;
   std::vector<std::uint8_t> functions;
   std::optional<FixedWrite> feed_write;
-  std::optional<Tripped> tripped;  ///< place where the board reports that its watchdog has tripped
-  std::vector<FixedWrite> clear;   ///< writes that end the tripped state, in order; empty: any write ends it
-  std::optional<ClientCount> clients;  ///< place where the board counts its clients, including this program
+  std::optional<Tripped> tripped;      ///< registers or bits in which the board reports that its watchdog has
+                                       ///< tripped
+  std::vector<FixedWrite> clear;       ///< writes that end the tripped state, in this order; empty: any write
+                                       ///< ends it
+  std::optional<ClientCount> clients;  ///< register with the number of clients, including this program
 
-  /// Returns true if requests of a client that only reads also feed the watchdog.
+  /// Returns true if a client that only reads also feeds the watchdog.
   [[nodiscard]] bool fed_by_reading() const noexcept {
     constexpr std::uint8_t last_that_reads = 4;
     const bool reads = std::any_of(functions.begin(), functions.end(),
@@ -142,23 +150,25 @@ struct BoardWatchdog {
 /// The contents of a board file.
 struct BoardMap {
   std::string name;
-  std::string source;    ///< source of the numbers in the file, one line
-  int address_base = 0;  ///< number of the first register in the file; for messages only
+  std::string source;    ///< origin of the numbers in the file, in one line
+  int address_base = 0;  ///< number that the file gives to the first register; used in messages only
   WordOrder word_order = WordOrder::high_first;
   TerminalBlock inputs;
   TerminalBlock outputs;
-  /// Largest number of registers in one request. The specification allows 125 for a read.
+  /// Largest number of registers in one request of this board. The Modbus specification allows 125 for a
+  /// read.
   std::uint16_t max_registers = 125;
-  /// Function code 23 writes the outputs and reads the inputs in one transaction.
+  /// True: the board supports function code 23, which writes the outputs and reads the inputs in one
+  /// transaction.
   bool has_fc23 = false;
-  /// Largest gap of registers between two blocks that one request may read; the board must support these
-  /// reads.
+  /// Largest gap between two register blocks that one request may read too [registers]. The board must
+  /// support reading the registers in the gap.
   std::uint16_t readable_gap = 0;
   std::optional<StatusBlock> input_status;
   std::optional<ReadBack> read_back;
   BoardWatchdog watchdog;
-  /// Writes after a session was opened, in order. If the board's watchdog has tripped, the watchdog is
-  /// cleared before these writes.
+  /// Writes after a session was opened, in this order. If the board's watchdog has tripped, it is cleared
+  /// before these writes.
   std::vector<FixedWrite> setup;
 
   [[nodiscard]] bool has_inputs() const noexcept { return inputs.registers.count > 0; }

@@ -33,7 +33,7 @@ class Checker {
     scales(where, input);
   }
 
-  /// Checks a temperature sensor, which several channels may share.
+  /// Checks the wiring of a temperature sensor. Several channels may share the sensor.
   void thermometer(const ChannelWiring& channel, const InputWiring& input) {
     if (!thermometers_.emplace(input.module, input.input).second) {
       scales(of_channel(channel, "temperature"), input);

@@ -1,5 +1,5 @@
 #pragma once
-// The wiring of one finger to a board, as the rig file states it: module, terminals and scaling.
+// The wiring of one finger to a board, as the rig file gives it: module, terminals and scaling.
 
 #include <cstddef>
 #include <optional>
@@ -12,19 +12,22 @@
 
 namespace softgrip::drivers {
 
-/// An electrical value with which a sensor reports that it cannot measure (Keyence IL: 5.5 V or 3.00 mA,
+/// An electrical value by which a sensor reports that it cannot measure (Keyence IL: 5.5 V or 3.00 mA;
 /// optoNCDT 1402: 3.75 mA).
 struct SensorErrorCode {
   double electrical = 0;  ///< V or mA, in the unit of the input
-  double tolerance = 0;   ///< largest difference from `electrical`, in the same unit, at least 0
+  double tolerance = 0;   ///< >= 0; largest difference from `electrical`, in the same unit
 };
 
 /// A sensor on an input of the board.
 struct InputWiring {
   std::size_t input = 0;                       ///< terminal, from 0
-  ElectricalUnit unit = ElectricalUnit::volt;  ///< as in the rig file; must equal the board's unit
-  TwoPoints scaling;                           ///< x: V or mA, y: mm, kPa or degrees C; rising or falling
-  double valid_min = 0;  ///< electrical range in which a reading is valid, both ends included
+  ElectricalUnit unit = ElectricalUnit::volt;  ///< unit in the rig file; it must equal the unit of the
+                                               ///< board's terminal
+  TwoPoints scaling;                           ///< x: V or mA, y: mm, kPa or degrees C; the slope may be
+                                               ///< positive or negative
+  double valid_min = 0;  ///< lower end of the range in which a reading is valid, in V or mA; both ends are
+                         ///< included
   double valid_max = 0;
   std::vector<SensorErrorCode> error_codes;
   std::size_t module = 0;  ///< index of the module, for a board with several modules
@@ -38,7 +41,7 @@ struct OutputWiring {
   std::size_t module = 0;  ///< index of the module, for a board with several modules
 };
 
-/// One channel: a valve and a displacement sensor, optionally a pressure monitor of the valve and a
+/// One channel: a valve and a displacement sensor. Optional are a pressure monitor of the valve and a
 /// temperature sensor. Several channels may share a temperature sensor.
 struct ChannelWiring {
   std::string name;
@@ -63,12 +66,12 @@ struct ModuleTerminals {
 };
 [[nodiscard]] ModuleTerminals terminals_of(const BoardMap& map);
 
-/// Returns the errors of the wiring, one sentence each; empty if the board can be created. Checks that
-/// terminals exist and have the right unit, that only temperature sensors share terminals, that each module
-/// is used, that scaling points differ, and that validity ranges are not empty.
+/// Returns the errors of the wiring, one sentence each; empty if the board can be created. Each terminal must
+/// exist and have the right unit. Only temperature sensors may share a terminal. Each module must be used,
+/// the two points of a scaling must differ, and no validity range may be empty.
 [[nodiscard]] std::vector<std::string> wiring_problems(std::span<const ModuleTerminals> modules,
                                                        std::span<const ChannelWiring> wiring);
-/// Returns the errors of the wiring for a board of one module.
+/// Returns the errors of the wiring for a board that has only one module.
 [[nodiscard]] std::vector<std::string> wiring_problems(const BoardMap& map,
                                                        std::span<const ChannelWiring> wiring);
 

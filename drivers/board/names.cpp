@@ -1,4 +1,4 @@
-// Names of the drivers' enumerations in board files, events and messages.
+// Returns the names of the drivers' enumeration values in board files, events and messages.
 
 #include "drivers/board/board.h"
 #include "drivers/board/board_map.h"

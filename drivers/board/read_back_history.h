@@ -1,5 +1,5 @@
 #pragma once
-// Compares the outputs that a board reports with the outputs that the last exchanges wrote.
+// Compares the outputs that a board reports with the outputs that were written in the last exchanges.
 
 #include <cmath>
 #include <cstddef>
@@ -10,8 +10,9 @@
 
 namespace softgrip::drivers {
 
-/// The raw numbers of the last exchanges of a session. It stores the present exchange and as many earlier
-/// ones as the board's read-back may lag. Only the constructor allocates.
+/// The raw numbers that were written in the last exchanges of a session. The number of stored exchanges is
+/// one more than the number of exchanges by which the board's read-back may lag. The constructor is the only
+/// function that allocates memory.
 class ReadBackHistory {
  public:
   ReadBackHistory(const ReadBack& rules, std::size_t channels)
@@ -20,7 +21,7 @@ class ReadBackHistory {
         channels_(channels),
         written_(depth_ * channels) {}
 
-  /// Begins a new session and discards the stored numbers.
+  /// Discards the stored numbers at the start of a new session.
   void forget() noexcept { exchanges_ = 0; }
 
   /// Stores the raw numbers that one exchange wrote, one per channel.
@@ -29,8 +30,9 @@ class ReadBackHistory {
     for (std::size_t i = 0; i < channels_; ++i) written_[at + i] = raws[i];
   }
 
-  /// Returns true if `raw` is within the tolerance of a stored number. At the beginning of a session the
-  /// board may still report numbers of the last session, so all numbers are accepted. NaN is never accepted.
+  /// Returns true if `raw` differs from a stored number by at most the tolerance. At the start of a session,
+  /// all numbers except NaN are accepted, because the board may still report numbers of the last session. NaN
+  /// is never accepted.
   [[nodiscard]] bool accepts(std::size_t channel, double raw) const noexcept {
     if (exchanges_ < depth_) return !std::isnan(raw);
     for (std::size_t i = 0; i < depth_; ++i) {

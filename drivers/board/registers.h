@@ -8,8 +8,8 @@
 
 namespace softgrip::drivers {
 
-/// Returns the raw number in `words`, which contains words_of(kind) registers. A float32 may be infinite or
-/// NaN.
+/// Returns the raw number that the registers `words` contain. The number of registers must be words_of(kind).
+/// A float32 may be infinite or NaN.
 [[nodiscard]] double decode(std::span<const std::uint16_t> words, RegisterKind kind,
                             WordOrder order) noexcept;
 
@@ -17,8 +17,9 @@ namespace softgrip::drivers {
 /// the range of the kind. NaN becomes 0.
 void encode(double raw, RegisterKind kind, WordOrder order, std::span<std::uint16_t> words) noexcept;
 
-/// Returns the raw number of the terminal's converter for a value in V or mA. The number is scaled, limited
-/// to [raw_min, raw_max], quantised to `bits`, and rounded for integer kinds. The emulator's inputs use it.
+/// Returns the raw number that the terminal's converter gives for a value in V or mA. The value is scaled,
+/// limited to [raw_min, raw_max], quantised to `bits`, and rounded for integer kinds. The inputs of the
+/// emulator use this function.
 [[nodiscard]] double quantised_raw(const TerminalBlock& terminals, double electrical) noexcept;
 
 }  // namespace softgrip::drivers

@@ -10,8 +10,8 @@
 namespace softgrip::drivers {
 namespace {
 
-// Upper ends of the usual ranges of a round trip: 0.02-0.15 ms on loopback (measured), 1-10 ms in a switched
-// network (common figure, not measured).
+// Assumed round trips [s]: the upper ends of the usual ranges. The range is 0.02 to 0.15 ms on loopback
+// (measured), and 1 to 10 ms in a switched network (common figure, not measured).
 constexpr double assumed_loopback_s = 0.15e-3;
 constexpr double assumed_network_s = 10e-3;
 

@@ -1,11 +1,12 @@
 #pragma once
-// A straight line through two calibration points, the only kind of scaling. The slope may have either sign.
+// A straight line through two calibration points. All scalings are such lines. The slope may be positive or
+// negative.
 
 namespace softgrip::drivers {
 
 /// The line through (x0, y0) and (x1, y1). For example, {4, 85, 20, 15} describes a sensor with 4-20 mA whose
-/// reading decreases with the current. Requires x0 != x1, and y0 != y1 for x_at(). wiring_problems() and the
-/// loaders check this.
+/// reading decreases as the current increases. x0 and x1 must differ; x_at() also requires that y0 and y1
+/// differ. wiring_problems() and the loaders check this.
 struct TwoPoints {
   double x0 = 0;
   double y0 = 0;

@@ -8,9 +8,9 @@
 
 namespace softgrip::drivers {
 
-/// Returns the chips whose files are in `devices`, each with its address in sysfs (`sys`) and, if the chip
-/// may be opened, with its label. The name of a link to the file of a chip is an additional word for that
-/// chip.
+/// Returns the chips whose files are in the folder `devices`. Each chip has its address in sysfs (`sys`) as a
+/// word, and also its label if this user may open the chip. If a link leads to the file of a chip, the name
+/// of the link is a further word of the chip.
 [[nodiscard]] std::vector<ComputerDevice> chips_in(const std::filesystem::path& devices = "/dev",
                                                    const std::filesystem::path& sys = "/sys");
 

@@ -1,7 +1,7 @@
 #pragma once
-// Interface of the digital lines of a rig: buttons, lamps, an enable output. daemon/panel/panel.h uses the
-// interface, and drivers/gpio/gpio_libgpiod.cpp implements it with the GPIO character device. Tests have
-// their own implementation.
+// The interface for the digital lines of a rig: buttons, lamps and an enable output. daemon/panel/panel.h
+// uses the interface. drivers/gpio/gpio_libgpiod.cpp implements it with the GPIO character device, and the
+// tests have their own implementation.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,35 +21,35 @@ namespace softgrip::drivers {
 /// The purpose of a line. A rig has at most one line for each purpose.
 enum class GpioRole : std::uint8_t { emergency_stop, part_in_position, enable, ready_lamp, fault_lamp };
 inline constexpr std::size_t gpio_role_count = 5;
-/// Returns the name in the rig file: "emergency_stop" ...
+/// Returns the name of a purpose in the rig file: "emergency_stop" ...
 [[nodiscard]] std::string_view name_of(GpioRole role) noexcept;
 [[nodiscard]] constexpr bool is_input(GpioRole role) noexcept {
   return role == GpioRole::emergency_stop || role == GpioRole::part_in_position;
 }
 
-/// The pull resistor inside the chip.
+/// The setting of the pull resistor inside the GPIO chip.
 enum class GpioBias : std::uint8_t { as_is, disabled, pull_up, pull_down };
 
 struct GpioLineSettings {
   GpioRole role = GpioRole::emergency_stop;
-  std::string chip;                     ///< a word that matches one of chips_in()
+  std::string chip;                     ///< a word that matches exactly one of chips_in()
   std::string line;                     ///< name of the line; empty: `offset` is used
   std::optional<std::uint32_t> offset;  ///< number of the line in its chip, from 0
-  bool active_low = false;              ///< the low level means active: pressed, in position or on
-  GpioBias bias = GpioBias::as_is;      ///< for inputs
+  bool active_low = false;              ///< true: a low level means active (pressed, in position, on)
+  GpioBias bias = GpioBias::as_is;      ///< pull resistor; used for inputs
 };
 /// Returns, for example, "gpiochip0 line `ESTOP`, active high".
 [[nodiscard]] std::string text_of(const GpioLineSettings& line);
 
-/// A change of an input, as a logical level.
+/// A change of an input between its logical levels (active, inactive).
 struct GpioEdge {
   GpioRole role = GpioRole::emergency_stop;
   bool active = false;
-  Nanoseconds at = 0;  ///< time of MonotonicClock at the interrupt, measured by the kernel
+  Nanoseconds at = 0;  ///< time of the interrupt on MonotonicClock, measured by the kernel
 };
 
-/// Lines that were requested. Reading and writing do not allocate. All calls except write() come from one
-/// thread. write() may also come from a second thread or a signal handler.
+/// The requested lines of a rig. Reading and writing do not allocate memory. All functions except write()
+/// must be called from one thread. A second thread or a signal handler may also call write().
 class GpioLines {
  public:
   GpioLines() = default;
@@ -57,36 +57,40 @@ class GpioLines {
   GpioLines& operator=(const GpioLines&) = delete;
   GpioLines(GpioLines&&) = delete;
   GpioLines& operator=(GpioLines&&) = delete;
-  /// Releases the lines. The chip's driver then decides the level of an output.
+  /// Releases the lines. After that, the driver of the chip determines the level of an output.
   virtual ~GpioLines() = default;
 
   /// Waits at most `timeout` for edges and stores them at the start of `edges`. The edges of one line are in
-  /// the order of time. Returns the number of edges; nothing if the chip failed. Such a failure is permanent.
+  /// the order of time. Returns the number of edges; nothing if the chip failed. A failed chip never works
+  /// again.
   [[nodiscard]] virtual std::optional<std::size_t> wait(Nanoseconds timeout,
                                                         std::span<GpioEdge> edges) noexcept = 0;
   /// Returns the present logical level of an input; nothing if the chip failed.
   [[nodiscard]] virtual std::optional<bool> read(GpioRole role) noexcept = 0;
-  /// Sets the logical level of an output. Returns false if the chip failed. For a role without a line,
-  /// returns true without an effect.
+  /// Sets the logical level of an output. Returns false if the chip failed. If the rig has no line for
+  /// `role`, does nothing and returns true.
   virtual bool write(GpioRole role, bool active) noexcept = 0;
-  /// Returns true if all inputs of the rig report edges. Chips without interrupts report only levels.
+  /// Returns true if all inputs of the rig report edges. A chip without interrupts reports levels only.
   [[nodiscard]] virtual bool sees_edges() const noexcept = 0;
 };
 
 /// The reason why the lines of a rig are not available.
 struct GpioFailure {
-  /// refused: the line does not exist or does not match the rig file. failed: the system did not permit it.
+  /// refused: the line does not exist or differs from the rig file. failed: the system did not permit the
+  /// request.
   enum class Kind : std::uint8_t { refused, failed };
   Kind kind = Kind::refused;
-  std::size_t line = 0;  ///< index into the settings
+  std::size_t line = 0;  ///< index of the line in the settings
   std::string message;
   std::string hint;
 };
 
-/// Requests all lines through libgpiod, with inactive outputs. If one request fails, all lines are released.
+/// Requests all lines through libgpiod; the outputs become inactive. If one request fails, all lines are
+/// released.
 [[nodiscard]] tl::expected<std::unique_ptr<GpioLines>, GpioFailure> open_gpio_lines(
     std::span<const GpioLineSettings> lines);
-/// Works like open_gpio_lines(), but with the chips' files in `devices` and sysfs at `sys`.
+/// Does the same as open_gpio_lines(), but with the chips' files in the folder `devices` and with sysfs at
+/// `sys`.
 [[nodiscard]] tl::expected<std::unique_ptr<GpioLines>, GpioFailure> open_gpio_lines_in(
     const std::filesystem::path& devices, const std::filesystem::path& sys,
     std::span<const GpioLineSettings> lines);

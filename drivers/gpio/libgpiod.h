@@ -1,5 +1,5 @@
 #pragma once
-// Definitions that the code for both APIs of libgpiod uses. gpio_libgpiod.cpp includes libgpiod_1.h or
+// Definitions that are independent of the version of libgpiod. gpio_libgpiod.cpp includes libgpiod_1.h or
 // libgpiod_2.h, depending on the version of the installed library.
 
 #include <gpiod.h>
@@ -14,11 +14,11 @@
 namespace softgrip::drivers::libgpiod {
 
 inline constexpr const char* consumer = "softgripd";
-/// Largest number of edges read from one line in one call. The kernel buffers 16 per line.
+/// Largest number of edges that one call reads from a line. The kernel stores up to 16 edges per line.
 inline constexpr std::size_t edges_at_once = 16;
 inline constexpr Nanoseconds ns_per_s = 1'000'000'000;
 
-/// The kernel's information on a line.
+/// The information that the kernel gives about a line.
 struct LineFacts {
   std::uint32_t offset = 0;
   bool used = false;

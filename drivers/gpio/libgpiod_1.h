@@ -1,5 +1,6 @@
 #pragma once
-// libgpiod 1.6: https://git.kernel.org/pub/scm/libs/libgpiod/libgpiod.git, v1.6.x, include/gpiod.h
+// Accesses the library libgpiod 1.6: https://git.kernel.org/pub/scm/libs/libgpiod/libgpiod.git, v1.6.x,
+// include/gpiod.h
 
 #include <gpiod.h>
 
@@ -52,7 +53,7 @@ inline int flags_of(const GpioLineSettings& settings) {
   return flags;
 }
 
-/// A line that was requested. In libgpiod 1.6, a line belongs to its chip, which must remain open.
+/// A line that was requested. In libgpiod 1.6, a line belongs to its chip, so the chip must remain open.
 class Line {
  public:
   Line(gpiod_chip* chip, const GpioLineSettings& settings, std::uint32_t offset, bool edges) {
@@ -75,7 +76,8 @@ class Line {
   [[nodiscard]] bool set(bool active) const noexcept {
     return gpiod_line_set_value(line_.get(), active ? 1 : 0) == 0;
   }
-  /// Reads the waiting edges; returns nothing on failure. Called when the descriptor is readable.
+  /// Reads the waiting edges; returns nothing if reading fails. The caller must have found the descriptor
+  /// readable.
   [[nodiscard]] std::optional<std::size_t> edges(GpioRole role, std::span<GpioEdge> to) const noexcept {
     std::array<gpiod_line_event, edges_at_once> events{};
     const auto most = static_cast<unsigned>(std::min(to.size(), edges_at_once));

@@ -1,5 +1,6 @@
 #pragma once
-// libgpiod 2.x: https://git.kernel.org/pub/scm/libs/libgpiod/libgpiod.git, v2.x, include/gpiod.h
+// Accesses the library libgpiod 2.x: https://git.kernel.org/pub/scm/libs/libgpiod/libgpiod.git, v2.x,
+// include/gpiod.h
 
 #include <gpiod.h>
 
@@ -64,7 +65,8 @@ inline gpiod_line_bias bias_of(GpioBias bias) {
   return GPIOD_LINE_BIAS_AS_IS;
 }
 
-/// A line that was requested. Each line has its own request, so that a failure concerns only one line.
+/// A line that was requested. Each line has its own request, so that a failure of a request concerns only one
+/// line.
 class Line {
  public:
   Line(gpiod_chip* chip, const GpioLineSettings& settings, std::uint32_t offset, bool edges)
@@ -97,7 +99,8 @@ class Line {
     return gpiod_line_request_set_value(request_.get(), offset_,
                                         active ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE) == 0;
   }
-  /// Reads the waiting edges; returns nothing on failure. Called when the descriptor is readable.
+  /// Reads the waiting edges; returns nothing if reading fails. The caller must have found the descriptor
+  /// readable.
   [[nodiscard]] std::optional<std::size_t> edges(GpioRole role, std::span<GpioEdge> to) const noexcept {
     const std::size_t most = std::min(to.size(), edges_at_once);
     const int count = gpiod_line_request_read_edge_events(request_.get(), buffer_.get(), most);

@@ -11,7 +11,7 @@
 namespace softgrip::drivers {
 namespace {
 
-// Space for a number. Some drivers append a line break.
+// Space for the text of a number. Some drivers append a line break to the number.
 constexpr std::size_t longest_text = 64;
 
 }  // namespace
@@ -41,7 +41,7 @@ int IioAttribute::open(const std::string& path, bool writable) noexcept {
 
 std::optional<double> IioAttribute::read() const noexcept {
   std::array<char, longest_text> text{};
-  // sysfs obtains a new value from the driver only for a read at offset 0.
+  // sysfs gets a new value from the driver only if the file is read at offset 0.
   const ssize_t count = ::pread(descriptor_, text.data(), text.size(), 0);
   if (count < 0) return std::nullopt;
   double value = 0;

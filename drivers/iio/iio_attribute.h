@@ -1,13 +1,14 @@
 #pragma once
-// One attribute of an industrial I/O device: a text file through which the kernel accesses the device.
+// One attribute of an industrial I/O device. An attribute is a text file through which the kernel gives
+// access to the device.
 
 #include <optional>
 #include <string>
 
 namespace softgrip::drivers {
 
-/// An attribute that stays open. Each read() or write() therefore needs one system call, and does not
-/// allocate.
+/// An attribute whose file stays open. Therefore, each read() or write() needs only one system call and
+/// allocates no memory.
 class IioAttribute {
  public:
   IioAttribute() = default;
@@ -17,15 +18,15 @@ class IioAttribute {
   IioAttribute& operator=(IioAttribute&& other) noexcept;
   ~IioAttribute();
 
-  /// Opens the attribute for reading or for writing. Returns errno, or 0.
+  /// Opens the attribute for reading or for writing. Returns 0, or errno after a failure.
   [[nodiscard]] int open(const std::string& path, bool writable) noexcept;
   void close() noexcept;
   [[nodiscard]] bool is_open() const noexcept { return descriptor_ >= 0; }
 
-  /// Returns the present number; nothing after an error. In that case errno is the reason, or 0 if the text
-  /// of the attribute is not a number.
+  /// Returns the present number; nothing after an error. After an error, errno is the reason, or 0 if the
+  /// text of the attribute is not a number.
   [[nodiscard]] std::optional<double> read() const noexcept;
-  /// Writes a whole number. Returns errno, or 0.
+  /// Writes a whole number. Returns 0, or errno after a failure.
   [[nodiscard]] int write(long value) const noexcept;
 
  private:

@@ -22,21 +22,22 @@ namespace {
 constexpr int probes = 5;
 constexpr const char* stays_off_text = "it remains 1 after 0 was written: the output is switched off";
 
-/// Returns the factor from the kernel's unit (voltages in mV, currents in mA, pressures in kPa) to V, mA or
-/// kPa.
+/// Returns the factor from the unit of the kernel to V, mA or kPa. The kernel gives voltages in mV, currents
+/// in mA and pressures in kPa.
 double per_unit(std::string_view channel) noexcept {
   return unit_of_channel(channel) == ElectricalUnit::volt ? 1e-3 : 1;
 }
 
-/// Returns the converter's name and place, which must not change while a rig runs. Returns an empty text if
-/// the rig file names the converter by its label or serial number, because these identify it.
+/// Returns the name and the place of the converter, which must not change while a rig runs. Returns an empty
+/// text if the rig file names the converter by its label or serial number. The label or the serial number
+/// already identifies the converter.
 std::string identity_behind(const std::string& word, const ComputerDevice& device) {
   const bool says_which = device.has("label", word) || device.has("serial number", word);
   return says_which ? std::string{} : identity_of(device);
 }
 
-/// Returns the attribute `what` of one channel, or the attribute that all channels of this kind share.
-/// Returns `otherwise` if neither exists.
+/// Returns the number in the attribute `what` of one channel, or in the attribute `what` that all channels of
+/// this kind share. If neither attribute exists, returns `otherwise`.
 double shared_number(const std::filesystem::path& folder, const std::string& direction,
                      const std::string& channel, const std::string& what, double otherwise) {
   for (const std::string& whose : {channel, type_of(channel)}) {
@@ -78,20 +79,20 @@ ModuleTerminals terminals_of(const IioSettings& settings) {
 }
 
 struct IioBoard::Parts {
-  /// One wired terminal: the attribute of its raw number, and the scaling.
+  /// One wired terminal: the attribute that contains its raw number, and the scaling of this number.
   struct Converter {
     std::string name;  // for messages
     std::string path;  // path of the attribute
     std::string identity;
-    std::string first_identity;  // identity in the first session
+    std::string first_identity;  // identity of the converter in the first session
     IioAttribute raw;
-    double scale = 1;   // factor to V, mA or kPa
+    double scale = 1;   // factor from the raw number to V, mA or kPa
     double offset = 0;  // added to the raw number
     std::string powerdown_path;
     IioAttribute powerdown;
     IioAttribute wake;  // the powerdown attribute, open for writing
     bool is_off = false;
-    bool stays_off = false;  // an earlier attempt to switch the output on had no effect
+    bool stays_off = false;  // true: an earlier attempt to switch the output on had no effect
   };
 
   explicit Parts(const IioSettings& given)
@@ -103,7 +104,7 @@ struct IioBoard::Parts {
   IioSettings settings;
   std::vector<IioTerminal> written;  // the outputs, followed by the heartbeat
   std::vector<Converter> inputs;
-  std::vector<Converter> outputs;  // one per terminal of `written`
+  std::vector<Converter> outputs;  // one converter per terminal of `written`
   bool beats_second = false;
   bool open = false;
   RoundTrip reads;
@@ -113,7 +114,8 @@ struct IioBoard::Parts {
     std::snprintf(detail.data(), detail.size(), "%s: %s", what.c_str(), why);
     return status;
   }
-  /// Ends the session after a failure of the converter that the written number did not cause.
+  /// Ends the session after a failure of the converter. The cause of the failure is not the number that was
+  /// written.
   BusStatus lost(const Converter& converter, int error) noexcept {
     open = false;
     return say(BusStatus::disconnected, converter.name, error != 0 ? text_of_errno(error) : "no number");
@@ -163,7 +165,7 @@ BusStatus IioBoard::Parts::open_number(const std::filesystem::path& folder, cons
   const std::string stem = (output ? "out_" : "in_") + channel;
   converter.path = (folder / (stem + "_raw")).string();
   int error = converter.raw.open(converter.path, output);
-  // Some drivers provide the number only in mV, mA or kPa.
+  // Some drivers give the number only in mV, mA or kPa, and not as a raw number.
   const bool processed =
       error == ENOENT && !output && converter.raw.open((folder / (stem + "_input")).string(), false) == 0;
   if (error != 0 && !processed) return say(BusStatus::disconnected, converter.path, text_of_errno(error));
@@ -179,7 +181,7 @@ BusStatus IioBoard::Parts::open_number(const std::filesystem::path& folder, cons
   return BusStatus::ok;
 }
 
-/// Returns true if a channel is wired to the output. Other outputs are not changed.
+/// Returns true if a channel is wired to the output. An output without a channel is not changed.
 bool IioBoard::Parts::uses(std::size_t output) const {
   return output >= settings.outputs.size() ||
          std::any_of(settings.wiring.begin(), settings.wiring.end(),
@@ -232,7 +234,7 @@ BusStatus IioBoard::Parts::attach_all() {
   return status;
 }
 
-/// Reads each input several times and measures the duration of a read for the budget.
+/// Reads each input several times and measures the duration of a read. budget() needs this duration.
 BusStatus IioBoard::Parts::probe(Nanoseconds deadline) noexcept {
   reads.reset();
   for (int i = 0; i < probes; ++i) {
@@ -257,8 +259,8 @@ BusStatus IioBoard::Parts::switch_on(Converter& converter) noexcept {
              error != 0 ? text_of_errno(error) : stays_off_text);
 }
 
-/// Switches on all outputs that are off. It is called after all numbers were written, because several outputs
-/// may share one powerdown attribute.
+/// Switches on all outputs that are off. This function is called after all numbers were written, because
+/// several outputs may share one powerdown attribute.
 BusStatus IioBoard::Parts::switch_all_on() noexcept {
   for (Converter& converter : outputs) {
     if (!converter.is_off) continue;
@@ -375,7 +377,7 @@ BusStatus IioBoard::exchange(std::span<const double> commands_kpa, std::span<Rea
   if (const BusStatus status = parts.beat(); status != BusStatus::ok) return status;
   if (written == BusStatus::ok) written = parts.switch_all_on();
   if (written == BusStatus::disconnected) return written;
-  // If one read fails, no reading of the caller changes.
+  // If one read fails, none of the caller's readings changes.
   std::array<Reading, most_channels> fresh{};
   for (std::size_t i = 0; i < readings.size(); ++i) {
     fresh[i] = readings[i];
@@ -423,7 +425,7 @@ Board::Budget IioBoard::budget() const {
   for (const ChannelWiring& channel : parts.settings.wiring)
     reads += 1U + (channel.pressure.has_value() ? 1U : 0U) + (channel.temperature.has_value() ? 1U : 0U);
   const std::size_t writes = parts.settings.wiring.size() + (parts.settings.heartbeat ? 1U : 0U);
-  // A write is assumed to take as long as a conversion, because measuring a write would change an output.
+  // Measuring a write would change an output. Therefore, a write is assumed to take as long as a conversion.
   const double each_s = parts.reads.median_s();
   Budget cost;
   cost.exchange_s = static_cast<double>(reads + writes) * each_s;

@@ -1,6 +1,6 @@
 #pragma once
-// A board that consists of converters of this computer. It uses the industrial I/O attributes of the kernel
-// in sysfs; see Documentation/ABI/testing/sysfs-bus-iio of the kernel.
+// A board that consists of converters of this computer. It uses the industrial I/O attributes in sysfs. The
+// kernel documents them in Documentation/ABI/testing/sysfs-bus-iio.
 
 #include <cstddef>
 #include <memory>
@@ -17,18 +17,18 @@ namespace softgrip::drivers {
 /// One channel of a converter. `channel` is, for example, "voltage0", "current2", or "voltage0-voltage1" for
 /// a differential channel.
 struct IioTerminal {
-  std::string device;  ///< a word that matches one of converters_in()
+  std::string device;  ///< a word that matches exactly one of converters_in()
   std::string channel;
-  long raw_max = 0;  ///< for outputs: the largest raw number of the converter; the smallest is 0
+  long raw_max = 0;  ///< for outputs: largest raw number of the converter; the smallest raw number is 0
 };
 
-/// An output that changes in each exchange. An external circuit switches off the supply of the valves if the
-/// output has not changed for `timeout_s`.
+/// An output that each exchange changes, as a heartbeat. An external circuit switches off the supply of the
+/// valves if the output has not changed for `timeout_s`.
 struct IioHeartbeat {
   IioTerminal terminal;
-  long first = 0;        ///< raw number of the first, third, ... write
-  long second = 0;       ///< raw number of the other writes
-  double timeout_s = 0;  ///< time-out of the circuit [s]
+  long first = 0;        ///< raw number of the first, third, fifth ... write
+  long second = 0;       ///< raw number of the second, fourth ... write
+  double timeout_s = 0;  ///< time-out of the external circuit [s]
 };
 
 /// Largest number of channels; the controller has the same limit.
@@ -36,34 +36,36 @@ inline constexpr std::size_t most_channels = 16;
 
 struct IioSettings {
   std::string root = "/sys/bus/iio/devices";
-  std::vector<IioTerminal> inputs;   ///< input i of the wiring
-  std::vector<IioTerminal> outputs;  ///< output i of the wiring
+  std::vector<IioTerminal> inputs;   ///< terminals of the inputs, by the number of the input in the wiring
+  std::vector<IioTerminal> outputs;  ///< terminals of the outputs, by the number of the output in the wiring
   std::optional<IioHeartbeat> heartbeat;
   std::vector<ChannelWiring> wiring;
 };
 
-/// Returns the unit of a channel from its name; nothing if the channel is not a voltage, current or pressure.
+/// Returns the unit of a channel according to its name; nothing if the channel is not a voltage, current or
+/// pressure.
 [[nodiscard]] std::optional<ElectricalUnit> unit_of_channel(std::string_view channel) noexcept;
-/// Returns the terminals of an industrial I/O board with their units. The ranges are unlimited, because the
-/// actual ranges are not known before the converters are open.
+/// Returns the terminals of an industrial I/O board with their units. The ranges in the result are unlimited,
+/// because the actual ranges are unknown until the converters are open.
 [[nodiscard]] ModuleTerminals terminals_of(const IioSettings& settings);
 
-/// One exchange writes the raw numbers of all wired outputs, then reads those of all wired inputs. Each
-/// number needs one system call on a descriptor that connect() opened. connect() also reads scales and
-/// offsets. V = (raw + offset) * scale / 1000; mA and kPa = (raw + offset) * scale. If an input has no raw
-/// number, its processed number in mV, mA or kPa is used.
+/// One exchange writes the raw numbers of all wired outputs, and then reads the raw numbers of all wired
+/// inputs. Each number needs one system call on a descriptor that connect() opened. connect() also reads
+/// scales and offsets: V = (raw + offset) * scale / 1000; mA and kPa = (raw + offset) * scale. If an input
+/// has no raw number, its processed number in mV, mA or kPa is used.
 ///
-/// A conversion happens inside a system call and cannot be interrupted. The deadline is therefore checked
+/// A conversion happens inside a system call and cannot be interrupted. Therefore, the deadline is checked
 /// after the reads of each channel. The only watchdog is the external circuit of a heartbeat. Without this
 /// circuit, the outputs keep their last value when the daemon stops.
 ///
 /// If the `powerdown` attribute of an output is 1, the first exchange writes the number and then switches the
-/// output on. In the opposite order, the output would have an old value for a moment. connect() fails if the
-/// output may not be switched on, or if an earlier attempt had no effect.
+/// output on. In the opposite order, the output would have an old value for a short time. connect() fails if
+/// the process may not switch the output on, or if an earlier attempt to switch it on had no effect.
 ///
-/// connect() fails if the word for a converter matches none or several, or if two terminals are the same
-/// channel. In later sessions, each word must lead to the same converter as before, unless the word is a
-/// label or a serial number. Otherwise another converter with the same name could receive the commands.
+/// connect() fails if the word for a converter does not match exactly one converter, or if two terminals are
+/// the same channel. In later sessions, each word must lead to the same converter as before, because another
+/// converter with the same name could otherwise receive the commands. Words that are a label or a serial
+/// number are not checked in this way.
 class IioBoard final : public Board {
  public:
   explicit IioBoard(const IioSettings& settings);

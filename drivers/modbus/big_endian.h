@@ -1,6 +1,6 @@
 #pragma once
-// Reads and writes words in byte buffers, high byte first as in Modbus. The caller checks that the index
-// `at + 1` is within the buffer.
+// Reads and writes words in byte buffers. The high byte comes first, as in Modbus. The caller must check that
+// the index `at + 1` is within the buffer.
 
 #include <cstddef>
 #include <cstdint>

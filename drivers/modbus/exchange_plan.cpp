@@ -10,7 +10,7 @@
 namespace softgrip::drivers {
 namespace {
 
-/// Registers (or bits) [begin, end) that one function code reads.
+/// A range of registers (or bits) from `begin` to `end` (not included) that is read with one function code.
 struct Range {
   std::uint8_t function = 0;
   std::uint32_t begin = 0;
@@ -25,8 +25,9 @@ std::uint32_t most_readable(const BoardMap& map, std::uint8_t function) {
   return is_bits(function) ? max_read_bits : std::min(max_read_registers, map.max_registers);
 }
 
-/// Adds the fewest ranges that contain the numbers `indices` of a block, without dividing a number between
-/// two ranges. The registers between the numbers belong to the block, so the board supports reading them.
+/// Adds the smallest possible number of ranges that contain the numbers `indices` of a block. No number is
+/// divided between two ranges. The registers between the numbers belong to the same block, so the board
+/// supports reading them.
 void cover(const BoardMap& map, const RegisterBlock& block, std::vector<std::size_t> indices,
            std::vector<Range>& ranges) {
   std::sort(indices.begin(), indices.end());
@@ -45,8 +46,7 @@ void cover(const BoardMap& map, const RegisterBlock& block, std::vector<std::siz
   if (open) ranges.push_back(*open);
 }
 
-/// Returns the number of registers in [begin, end) that no block of the map declares as readable by
-/// `function`.
+/// Returns how many registers in [begin, end) belong to no block of the map that `function` can read.
 std::uint32_t undeclared(const BoardMap& map, std::uint8_t function, std::uint32_t begin, std::uint32_t end) {
   std::vector<RegisterBlock> blocks;
   if (map.has_inputs()) blocks.push_back(map.inputs.registers);
@@ -114,8 +114,8 @@ std::vector<std::size_t> wired_outputs(const std::vector<ChannelWiring>& wiring,
   return outputs;
 }
 
-/// Returns the reads of one exchange: the wired inputs and, if the module has wired outputs, the registers
-/// for read-back, watchdog and number of clients.
+/// Returns the reads of one exchange: the wired inputs and, if the module has wired outputs, also the
+/// registers for read-back, watchdog and number of clients.
 std::vector<ReadStep> plan_reads(const BoardMap& map, const std::vector<std::size_t>& inputs,
                                  const std::vector<std::size_t>& outputs) {
   std::vector<Range> ranges;
@@ -138,7 +138,8 @@ std::vector<ReadStep> plan_reads(const BoardMap& map, const std::vector<std::siz
   return merged(map, std::move(ranges));
 }
 
-/// Plans one write per group of adjacent outputs. The encoded outputs are in the order of their terminals.
+/// Plans one write for each group of adjacent outputs. The encoded outputs are in the order of their
+/// terminals.
 void plan_writes(const BoardMap& map, const std::vector<ChannelWiring>& wiring, std::size_t module,
                  ExchangePlan& plan) {
   std::vector<std::size_t> order;

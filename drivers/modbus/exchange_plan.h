@@ -1,6 +1,6 @@
 #pragma once
-// Plans the transactions of one exchange, and the places of each channel's numbers in the replies. The plan
-// is made once from board map and wiring. An exchange then only executes the transactions of the plan.
+// Plans the transactions of one exchange, and the position of each channel's numbers in the replies. The plan
+// is computed once from board map and wiring. An exchange only executes the transactions of the plan.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace softgrip::drivers {
 
-/// One read: registers (functions 3, 4) or bits (1, 2).
+/// One read of registers (function codes 3, 4) or bits (1, 2).
 struct ReadStep {
   std::uint8_t function = 0;
   std::uint16_t address = 0;
@@ -22,18 +22,19 @@ struct ReadStep {
   bool operator==(const ReadStep&) const = default;
 };
 
-/// One write of consecutive outputs. `first_word` is the index of its first register among all registers that
-/// the exchange writes.
+/// One write of consecutive outputs. `first_word` is the index of the first register of this write among all
+/// registers that the exchange writes.
 struct WriteStep {
   std::uint8_t function = 0;
   std::uint16_t address = 0;
-  std::uint16_t count = 0;  ///< registers
+  std::uint16_t count = 0;  ///< number of registers
   std::size_t first_word = 0;
 
   bool operator==(const WriteStep&) const = default;
 };
 
-/// The place of a number in the replies: index of the read, and of the register (or bit) in its reply.
+/// The position of a number in the replies: index of the read, and index of the register (or bit) in the
+/// reply to this read.
 struct Slot {
   std::size_t step = 0;
   std::size_t offset = 0;
@@ -41,10 +42,11 @@ struct Slot {
   bool operator==(const Slot&) const = default;
 };
 
-/// The places of one channel's numbers. Members are empty for parts of the channel that are not wired to the
-/// module.
+/// The positions of one channel's numbers in the requests and replies. A member is empty if this part of the
+/// channel is not wired to the module.
 struct ChannelSlots {
-  std::optional<std::size_t> output_word;  ///< index of the channel's first register, as in first_word
+  std::optional<std::size_t> output_word;  ///< index of the channel's first register, counted like
+                                           ///< WriteStep::first_word
   std::optional<Slot> displacement;
   std::optional<Slot> displacement_status;
   std::optional<Slot> pressure;
@@ -55,31 +57,33 @@ struct ChannelSlots {
 };
 
 struct ExchangePlan {
-  std::size_t output_words = 0;  ///< registers written in one exchange
+  std::size_t output_words = 0;  ///< number of registers that one exchange writes
   std::vector<WriteStep> writes;
   std::vector<ReadStep> reads;
   std::vector<ChannelSlots> channels;
-  std::optional<Slot> tripped;  ///< place of the first register or bit that reports a tripped watchdog
+  std::optional<Slot> tripped;  ///< position of the first register or bit that reports a tripped watchdog
   std::optional<Slot> clients;
-  /// Index of the read that function code 23 combines with the first write in one transaction.
+  /// Index of the read that is combined with the first write in one transaction of function code 23.
   std::optional<std::size_t> combined_read;
-  /// Index of the read that contains the first wired input. The time of this read is the readings'
-  /// `sampled_at`. Without wired inputs the index is 0.
+  /// Index of the read that contains the first wired input; 0 if no input is wired. The time of this read is
+  /// `sampled_at` of the readings.
   std::size_t sampling_read = 0;
 
-  /// Returns the number of round trips of one exchange, without the write that feeds the watchdog.
+  /// Returns the number of round trips of one exchange. The write that feeds the watchdog is not included.
   [[nodiscard]] std::size_t transactions() const noexcept {
     return writes.size() + reads.size() - (combined_read.has_value() ? 1 : 0);
   }
 };
 
-/// Returns the plan with the fewest transactions that the map allows for the channels of `module`. Only wired
-/// outputs are written. Two wired outputs that are not adjacent therefore need two writes, because the
-/// terminal between them may drive an unknown device. Requires wiring_problems() to be empty.
+/// Returns the plan with the smallest number of transactions that the map allows for the channels of
+/// `module`. Only wired outputs are written. If two wired outputs are not adjacent, they need two writes,
+/// because the terminal between them may drive an unknown device. wiring_problems() must have returned no
+/// problem.
 [[nodiscard]] ExchangePlan plan_exchange(const BoardMap& map, const std::vector<ChannelWiring>& wiring,
                                          std::size_t module = 0);
 
-/// Describes the plan with the addresses on the wire: "FC16 writes 2 from 10, FC3 reads 4 from 0".
+/// Describes the plan with the addresses in the requests, for example "FC16 writes 2 from 10, FC3 reads 4
+/// from 0".
 [[nodiscard]] std::string describe(const ExchangePlan& plan);
 
 }  // namespace softgrip::drivers

@@ -5,7 +5,8 @@
 namespace softgrip::drivers {
 namespace {
 
-/// Returns the first defect of the header in the bytes received so far, or `none`.
+/// Returns the first defect of the header in the bytes that have been received so far; `none` if there is no
+/// defect.
 ReplyDefect header_defect(std::span<const std::uint8_t> bytes, std::size_t pdu_size,
                           std::uint16_t transaction, std::uint8_t unit) noexcept {
   if (bytes.size() >= 2 && word_at(bytes, 0) != transaction) return ReplyDefect::transaction;
@@ -23,7 +24,7 @@ ReplyDefect header_defect(std::span<const std::uint8_t> bytes, std::size_t pdu_s
 std::size_t put_mbap(std::span<std::uint8_t> frame, std::size_t pdu_size, std::uint16_t transaction,
                      std::uint8_t unit) noexcept {
   put_word(frame, 0, transaction);
-  put_word(frame, 2, 0);  // protocol: Modbus
+  put_word(frame, 2, 0);  // the protocol id 0 means Modbus
   put_word(frame, 4, static_cast<std::uint16_t>(1 + pdu_size));
   frame[6] = unit;
   return mbap_size + pdu_size;
@@ -43,7 +44,7 @@ ModbusReply parse_reply(std::span<const std::uint8_t> bytes, const ModbusRequest
   if (defect != ReplyDefect::none) return defective(defect);
   if (bytes.size() <= mbap_size) return {};
 
-  // The header must state the length of the response or of an exception.
+  // The length in the header must be that of the expected response or that of an exception.
   const std::uint8_t function = bytes[mbap_size];
   const bool exception = function == (request.function | exception_bit);
   if (!exception && function != request.function) return defective(ReplyDefect::function);

@@ -1,6 +1,6 @@
 #pragma once
-// Framing of Modbus TCP: the header before requests and responses. Format: MODBUS Messaging on TCP/IP
-// Implementation Guide V1.0b, 3.1.3 (MBAP header).
+// Frames of Modbus TCP: the MBAP header before requests and responses. The format is described in MODBUS
+// Messaging on TCP/IP Implementation Guide V1.0b, 3.1.3.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,18 +15,19 @@ namespace softgrip::drivers {
 inline constexpr std::size_t mbap_size = 7;
 inline constexpr std::size_t mbap_unit = 6;  ///< index of the unit id
 
-/// Writes the header before the PDU of `pdu_size` bytes that begins at frame[mbap_size]. Returns the size of
-/// the frame.
+/// Writes the header for the PDU (function code and data) of `pdu_size` bytes that begins at
+/// frame[mbap_size]. Returns the size of the frame.
 std::size_t put_mbap(std::span<std::uint8_t> frame, std::size_t pdu_size, std::uint16_t transaction,
                      std::uint8_t unit) noexcept;
 
-/// Writes the frame of a request. Returns its size, or 0 for a request that reply_pdu_size() refuses.
+/// Writes the frame of a request. Returns the size of the frame; 0 for a request that reply_pdu_size()
+/// refuses.
 [[nodiscard]] std::size_t build_request(const ModbusRequest& request, std::uint16_t transaction,
                                         std::uint8_t unit, Frame& frame) noexcept;
 
-/// Checks `bytes`, the bytes received since the request was sent. `incomplete` means that they are a correct
-/// beginning of the response. Each byte is checked when it arrives, so a wrong header is detected before the
-/// rest arrives.
+/// Checks `bytes`, which are all bytes received since the request was sent. `incomplete` means that `bytes`
+/// are a correct beginning of the response. Each byte is checked when it arrives. Therefore, a wrong header
+/// is detected before the rest of the response arrives.
 [[nodiscard]] ModbusReply parse_reply(std::span<const std::uint8_t> bytes, const ModbusRequest& request,
                                       std::uint16_t transaction, std::uint8_t unit) noexcept;
 

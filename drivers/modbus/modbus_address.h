@@ -1,5 +1,6 @@
 #pragma once
-// The addresses of Modbus modules: a host on a network, or a serial line that several modules may share.
+// The addresses of Modbus modules: a host on a network, or a serial line. Several modules may share a serial
+// line.
 
 #include <cstdint>
 #include <optional>
@@ -8,22 +9,25 @@
 
 namespace softgrip::drivers {
 
-/// Settings of a session that the Modbus specification does not contain but some boards and gateways need.
+/// Properties of a session that the Modbus specification does not contain, but that some boards and gateways
+/// need.
 struct LinkHabits {
-  /// Time from opening the link to the first request [s], because some boards ignore earlier requests.
+  /// Time from opening the link to the first request [s]. Some boards ignore requests that arrive earlier.
   double settle_s = 0;
-  /// Time without a byte of a response after which a request is repeated within its deadline [s]; 0: never.
+  /// If no byte of a response arrives for this time, the request is repeated within its deadline [s]; 0:
+  /// never.
   double repeat_after_s = 0;
 
   bool operator==(const LinkHabits&) const = default;
 };
 
 struct TcpAddress {
-  std::string host;  ///< numeric IPv4 or IPv6 address, because the bus thread resolves no names
+  std::string host;  ///< numeric IPv4 or IPv6 address, because the bus thread does not resolve names
   std::uint16_t port = 502;
   LinkHabits habits{};
-  bool numbered = true;        ///< responses contain the transaction id of their request
-  bool rtu_framing = false;    ///< RTU frames through a serial server; they have no transaction id
+  bool numbered = true;        ///< true: a response contains the transaction id of its request
+  bool rtu_framing = false;    ///< true: RTU frames over TCP to a serial server; RTU frames have no
+                               ///< transaction id
   double silence_s = 1.75e-3;  ///< silence between two RTU frames
 
   bool operator==(const TcpAddress&) const = default;
@@ -31,18 +35,20 @@ struct TcpAddress {
 
 enum class Parity : std::uint8_t { none, even, odd };
 
-/// A serial line with Modbus RTU. Bytes have 8 data bits; RTU permits no other number.
+/// A serial line with Modbus RTU. Each character has 8 data bits, because RTU permits no other number.
 struct SerialLine {
-  std::string device;  ///< preferably a permanent name: /dev/serial/by-id/...
+  std::string device;  ///< name of the device, preferably a permanent name: /dev/serial/by-id/...
   std::uint32_t baud = 9600;
   Parity parity = Parity::none;
   int stop_bits = 1;
-  /// Silence before and after a frame. If it is absent, the silence of the specification is used: 3.5
+  /// Silence before and after a frame [s]. If it is empty, the silence of the specification is used: 3.5
   /// characters, or 1.75 ms above 19200 baud.
   std::optional<double> silence_s;
-  double turnaround_s = 0;       ///< response time of a module beyond the silence; for the budget
-  double adapter_latency_s = 0;  ///< time for which the adapter delays a response; for the budget
-  bool echo = false;             ///< the adapter receives all bytes that it sends
+  double turnaround_s = 0;       ///< response time of a module in addition to the silence [s]; used to
+                                 ///< calculate the budget
+  double adapter_latency_s = 0;  ///< time by which the adapter delays a response [s]; used to calculate the
+                                 ///< budget
+  bool echo = false;             ///< true: the adapter receives all bytes that it sends
   LinkHabits habits{};
 
   bool operator==(const SerialLine&) const = default;

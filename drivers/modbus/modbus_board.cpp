@@ -53,8 +53,8 @@ struct ModbusBoard::Parts {
     std::snprintf(detail.data(), detail.size(), "%s", text);
     return status;
   }
-  /// Stores the reason of a failure, with the module's name if the board has several modules. Closes all
-  /// links if the failure ends the session.
+  /// Stores the reason for a failure. If the board has several modules, the reason contains the name of the
+  /// module. If the failure ends the session, all links are closed.
   BusStatus failed(BusStatus status, const ModbusModule& module) noexcept {
     if (modules.size() == 1) {
       say(status, module.detail());
@@ -74,10 +74,11 @@ struct ModbusBoard::Parts {
   void fill(std::span<Reading> readings) const noexcept;
 };
 
-/// Opens all links, and then waits until all have settled, so that the settle times overlap.
+/// Opens all links, and then waits until all links have settled. In this way, the settle times of the links
+/// overlap.
 ///
-/// A link without outputs may remain closed. In that case, exchanges write the commands and fail when they
-/// read from this link.
+/// A link without outputs may remain closed. In that case, each exchange writes the commands, and fails when
+/// it reads from this link.
 BusStatus ModbusBoard::Parts::open(Nanoseconds deadline) noexcept {
   close();
   const auto each_link = [&](BusStatus (ModbusLink::*step)(Nanoseconds) noexcept) {
@@ -100,8 +101,8 @@ BusStatus ModbusBoard::Parts::open(Nanoseconds deadline) noexcept {
   return measured ? BusStatus::ok : probe(deadline);
 }
 
-/// Measures the round trips, in the first session only. Later sessions must begin with writing the outputs:
-/// other requests would feed the board's watchdog while the outputs still have the values from before the
+/// Measures the round trips in the first session only. Later sessions must begin with writing the outputs.
+/// Other requests would feed the board's watchdog while the outputs still have the values from before the
 /// failure.
 BusStatus ModbusBoard::Parts::probe(Nanoseconds deadline) noexcept {
   for (const auto& link : links) link->forget_measurements();
@@ -131,7 +132,7 @@ BusStatus ModbusBoard::Parts::encode(std::span<const double> commands_kpa) noexc
   return result;
 }
 
-/// Reads and checks the modules that read before they write in this exchange.
+/// Reads and checks those modules that must be read before they are written in this exchange.
 BusStatus ModbusBoard::Parts::look_first(Nanoseconds deadline) noexcept {
   for (ModbusModule& module : modules) {
     module.begin_exchange();
@@ -206,7 +207,7 @@ BusStatus ModbusBoard::exchange(std::span<const double> commands_kpa, std::span<
   if (commands_kpa.size() != channels() || readings.size() != channels()) {
     return parts.say(BusStatus::write_refused, "the commands, readings and channels differ in number");
   }
-  // `detail` keeps the reason why the session ended, which is more useful than "disconnected".
+  // detail() still returns the reason why the session ended, which is more useful than "disconnected".
   if (!parts.is_open()) return BusStatus::disconnected;
   for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
     if (std::isfinite(commands_kpa[i])) continue;

@@ -1,5 +1,5 @@
 #pragma once
-// A board of one or more Modbus modules, each described by a board map, on network hosts or a serial line.
+// A board of one or more Modbus modules on network hosts or a serial line. A board map describes each module.
 
 #include <memory>
 #include <string>
@@ -13,29 +13,30 @@ namespace softgrip::drivers {
 struct ModbusSettings {
   std::vector<ModbusAddress> links;
   std::vector<ModbusModuleSettings> modules;
-  std::vector<ChannelWiring> wiring;  ///< one per channel; problems_of() must be empty
-  /// Largest number of reads per module with which connect() measures the round trips for budget(). The
-  /// measurement takes at most about a quarter of the deadline. 0: no measurement, so budget() uses an
-  /// assumed round trip.
+  std::vector<ChannelWiring> wiring;  ///< wiring of the channels, one entry per channel; problems_of() must
+                                      ///< be empty
+  /// Largest number of reads per module by which connect() measures the round trips for budget(). The
+  /// measurement takes at most about a quarter of the deadline. If the number is 0, there is no measurement,
+  /// and budget() uses an assumed round trip.
   int probes = 9;
 };
 
 /// Returns the errors of the settings; see wiring_problems().
 [[nodiscard]] std::vector<std::string> problems_of(const ModbusSettings& settings);
 
-/// One exchange writes the outputs of all modules, if possible with one write per module (function code 16 or
-/// 23). Then it reads the inputs and the status, read-back and watchdog registers of the maps with as few
-/// reads as possible. All outputs are written before the reads, so that the failure of a module without
-/// outputs does not prevent the writes to the others.
+/// One exchange first writes the outputs of all modules, if possible with one write per module (function code
+/// 16 or 23). After that, it reads the inputs and the status, read-back and watchdog registers of the maps
+/// with as few reads as possible. Because all writes come before the reads, a failure of a module without
+/// outputs does not prevent the writes to the other modules.
 ///
-/// `deadline` limits the complete exchange on CLOCK_BOOTTIME, also if a reply arrives in parts. After a
-/// time-out, an error of the connection or an unexpected reply, all links are closed. A late or duplicated
-/// reply can therefore not be taken for the response to a later request. exchange() then returns
-/// `disconnected` until connect() has opened new links.
+/// `deadline` is a time of CLOCK_BOOTTIME. It limits the complete exchange, also if a reply arrives in parts.
+/// After a time-out, an error of the connection or an unexpected reply, all links are closed. Therefore, a
+/// late or duplicated reply cannot be taken for the response to a later request. After this, exchange()
+/// returns `disconnected` until connect() has opened new links.
 ///
 /// A tripped watchdog is cleared only in the first exchange after connect(). This exchange writes the
-/// commands, clears the watchdog, writes the commands again and reads. If the watchdog trips later, each
-/// exchange returns `watchdog_tripped` until the next connect().
+/// commands, clears the watchdog, writes the commands a second time and reads. If the watchdog trips after
+/// this exchange, each exchange returns `watchdog_tripped` until the next connect().
 class ModbusBoard final : public Board {
  public:
   explicit ModbusBoard(const ModbusSettings& settings);
@@ -49,7 +50,7 @@ class ModbusBoard final : public Board {
   [[nodiscard]] double found_kpa(std::size_t channel) const noexcept override;
   [[nodiscard]] std::string describe() const override;
   [[nodiscard]] Budget budget() const override;
-  /// Returns true if each module with outputs has a watchdog.
+  /// Returns true if every module with outputs has a watchdog.
   [[nodiscard]] bool has_watchdog() const noexcept override;
   [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override;
   [[nodiscard]] bool fed_by_readers() const noexcept override;

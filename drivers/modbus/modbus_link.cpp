@@ -25,8 +25,9 @@ namespace {
 
 static_assert(MODBUS_MAX_ADU_LENGTH <= max_frame);
 
-// After an incomplete reply, libmodbus does not report the number of received bytes. The buffer is therefore
-// filled with this value before each reception, and bytes at its end with this value count as not received.
+// After an incomplete reply, libmodbus does not report the number of received bytes. Therefore, the buffer is
+// filled with this value before each reception. Bytes at the end of the buffer that still have this value
+// count as not received.
 constexpr std::uint8_t filler = 0xff;
 
 Descriptor selectable_descriptor() noexcept {
@@ -39,8 +40,8 @@ std::span<const std::uint8_t> without_filler(std::span<const std::uint8_t> bytes
   return bytes;
 }
 
-/// Sets the response time-out of libmodbus. Because its byte time-out is 0, the response time-out limits the
-/// duration of the complete reply.
+/// Sets the response time-out of libmodbus. The byte time-out of libmodbus is 0, so the response time-out
+/// limits the duration of the complete reply.
 void set_deadline(modbus_t* context, Nanoseconds left) noexcept {
   const auto microseconds = static_cast<std::uint64_t>((left + 999) / 1000);
   ::modbus_set_response_timeout(context, static_cast<std::uint32_t>(microseconds / 1'000'000),
@@ -85,8 +86,8 @@ BusStatus ModbusLink::settle(Nanoseconds deadline) noexcept {
   return drain(opened_at_ + settle_, deadline, "waiting until the board has settled");
 }
 
-/// Discards received bytes until the time `until`. If the link fails before, closes it and returns the
-/// status.
+/// Discards all received bytes until the time `until`. If the link fails before this time, closes the link
+/// and returns the status of the failure.
 BusStatus ModbusLink::drain(Nanoseconds until, Nanoseconds deadline, const char* what) noexcept {
   while (monotonic_now() < until) {
     if (monotonic_now() >= deadline) return fail(BusStatus::timed_out, what, "the deadline passed");
@@ -100,8 +101,9 @@ BusStatus ModbusLink::drain(Nanoseconds until, Nanoseconds deadline, const char*
   return BusStatus::ok;
 }
 
-/// A board that already serves its largest number of clients may accept a connection and close it. Before the
-/// first response, the status is therefore `closed_at_once`, which means that cable and address are right.
+/// A board that already serves its largest number of clients may accept a connection and close it at once. If
+/// this happens before the first response, the status is `closed_at_once`. It means that cable and address
+/// are right.
 BusStatus ModbusLink::ended(const char* what) noexcept {
   if (!on_network_) return fail(BusStatus::disconnected, what, "the device is gone");
   if (answered_) return fail(BusStatus::disconnected, what, "the other end is gone");
@@ -176,13 +178,13 @@ BusStatus ModbusLink::ask(std::uint8_t unit, const ModbusRequest& request, Nanos
   return conclude(reply, error, unit, request);
 }
 
-/// Sends the request, and repeats it while no byte of a response arrives.
+/// Sends the request. Repeats it as long as no byte of a response arrives.
 BusStatus ModbusLink::send_until_heard(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept {
   first_asked_at_ = monotonic_now();
   for (repeats_ = 0;; ++repeats_) {
     asked_at_ = monotonic_now();
-    // If the process was paused, the board's watchdog may have vented the fingers. A request from before the
-    // pause would then move them, so it must not be sent after its deadline.
+    // If the process was paused, the board's watchdog may have vented the fingers. A request from the time
+    // before the pause would move them. Therefore, a request must not be sent after its deadline.
     if (asked_at_ >= deadline)
       return fail(BusStatus::timed_out, "before sending the request", "the deadline passed");
     if (const BusStatus status = send(frame, deadline); status != BusStatus::ok) return status;
@@ -195,9 +197,10 @@ BusStatus ModbusLink::send_until_heard(std::span<const std::uint8_t> frame, Nano
   }
 }
 
-/// Stores that each repetition of the last request may still get its own response. A response with a
-/// transaction id is recognised when it arrives. A response without a transaction id could be taken for the
-/// response to the next request, so the next request is delayed until the late responses should have arrived.
+/// Stores that each repetition of the last request may still get a response of its own. If responses have a
+/// transaction id, such a late response is recognised when it arrives. Without a transaction id, it could be
+/// taken for the response to the next request. In this case, the next request is delayed until the late
+/// responses should have arrived.
 void ModbusLink::expect_more_answers() noexcept {
   stale_ = repeats_;
   const bool quiet = repeats_ > 0 && !numbers_answers();
@@ -221,7 +224,8 @@ ModbusLink::Received ModbusLink::hear(std::span<std::uint8_t> buffer, std::uint8
   return {judge(bytes, unit, request, asked), error, bytes};
 }
 
-/// Returns the checked response. Sets `error` to whole_frame, or to the reason why the frame is incomplete.
+/// Returns the checked response. Sets `error` to whole_frame if the frame is complete, otherwise to the
+/// reason why it is incomplete.
 ModbusReply ModbusLink::receive(std::uint8_t unit, const ModbusRequest& request,
                                 std::span<const std::uint8_t> asked, Nanoseconds deadline,
                                 int& error) noexcept {
@@ -233,12 +237,12 @@ ModbusReply ModbusLink::receive(std::uint8_t unit, const ModbusRequest& request,
     if (old) --stale_;
   }
   error = heard.error;
-  // After a repeated request, further bytes may be the second response.
+  // After a request that was repeated, further bytes may be the second response.
   const bool alone = repeats_ > 0 || !is_answer(heard.reply) || drop_strays();
   return alone ? heard.reply : defective(ReplyDefect::trailing);
 }
 
-/// Discards bytes after the response. Returns false if they may be another response.
+/// Discards bytes after the response. Returns false if these bytes may be another response.
 bool ModbusLink::drop_strays() noexcept {
   int waiting = 0;
   if (::ioctl(descriptor(), FIONREAD, &waiting) != 0 || waiting <= 0) return true;
@@ -248,7 +252,7 @@ bool ModbusLink::drop_strays() noexcept {
          ::read(descriptor(), strays.data(), count) == static_cast<ssize_t>(count);
 }
 
-/// Closes the link after an incomplete reply and returns the status for the reason `error`.
+/// Closes the link after an incomplete reply. Returns the status that belongs to the reason `error`.
 BusStatus ModbusLink::name_failure(int error) noexcept {
   const bool began = !without_filler(incoming_).empty();
   const char* const what = began ? "waiting for the rest of the reply" : "waiting for the reply";

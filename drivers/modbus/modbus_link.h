@@ -1,6 +1,6 @@
 #pragma once
-// A link to Modbus modules. It sends one request at a time. After a response that is not clearly that of the
-// request, the link closes.
+// A link to Modbus modules. It sends one request at a time. If a response is not clearly the response to the
+// request, the link is closed.
 
 #include <array>
 #include <cstddef>
@@ -22,14 +22,14 @@ namespace softgrip::drivers {
 
 /// Base class of the links. libmodbus receives the responses on a network, and opens and sends on a serial
 /// line. This class adds three properties. Each wait ends at a time of CLOCK_BOOTTIME [ns], not after a pause
-/// between two bytes. A received frame is checked by functions of this project before its contents are used.
-/// Bytes after a frame are detected. docs/explanation/libraries.md gives the reasons.
+/// between two bytes. Functions of this project check a received frame before its contents are used. Bytes
+/// after a frame are detected. docs/explanation/libraries.md gives the reasons.
 ///
-/// A repetition of a request is the same frame, so it writes the same output values. It is sent within the
-/// deadline of its exchange and does not extend that deadline.
+/// If a request is repeated, the same frame is sent, so the same output values are written. The repetition is
+/// sent within the deadline of the exchange and does not extend this deadline.
 ///
-/// Only the constructors, open() of a serial line, cost() and describe() allocate. No function throws or
-/// resolves names. Requests are repeated only as LinkHabits states.
+/// The constructors, open() of a serial line, cost() and describe() allocate memory; all other functions do
+/// not. No function throws exceptions or resolves names. LinkHabits determines if requests are repeated.
 class ModbusLink {
  public:
   ModbusLink(const ModbusLink&) = delete;
@@ -38,56 +38,58 @@ class ModbusLink {
   ModbusLink& operator=(ModbusLink&&) = delete;
   virtual ~ModbusLink();
 
-  /// Opens the link. A link that is open is closed before.
+  /// Opens the link. If the link is already open, it is closed first.
   [[nodiscard]] BusStatus open(Nanoseconds deadline) noexcept;
-  /// Waits for the end of the settle time after open(). Bytes that arrive in this time are discarded.
+  /// Waits until the settle time after open() is over. Bytes that arrive in this time are discarded.
   [[nodiscard]] BusStatus settle(Nanoseconds deadline) noexcept;
   void close() noexcept;
   [[nodiscard]] bool is_open() const noexcept { return descriptor() >= 0; }
 
-  /// Sends a request and waits for the response. After `ok` and `exception` the link remains open. After any
-  /// other result it is closed, so that a late or duplicated reply cannot be taken for the response to a
-  /// later request.
+  /// Sends a request and waits for the response. After the results `ok` and `exception`, the link remains
+  /// open. After any other result it is closed, so that a late or duplicated reply cannot be taken for the
+  /// response to a later request.
   [[nodiscard]] BusStatus ask(std::uint8_t unit, const ModbusRequest& request, Nanoseconds deadline) noexcept;
-  /// Returns the data of the last successful ask(): bits or registers, high byte first. Valid until the next
-  /// ask().
+  /// Returns the data of the last successful ask(): bits or registers, high byte first. The data are valid
+  /// until the next ask().
   [[nodiscard]] std::span<const std::uint8_t> data() const noexcept { return data_; }
-  /// Returns the exception code if the last ask() ended in `exception`; else 0.
+  /// Returns the exception code if the last ask() returned `exception`; otherwise 0.
   [[nodiscard]] unsigned exception_code() const noexcept { return exception_code_; }
   /// Returns the reason of the last failure.
   [[nodiscard]] const char* detail() const noexcept { return detail_.data(); }
 
-  /// Delete the measurements for cost(), and add the round trip of the last ask() to them.
+  /// forget_measurements() deletes the measurements for cost(). keep_measurement() adds the round trip of the
+  /// last ask() to them.
   void forget_measurements() noexcept { measured_.reset(); }
   void keep_measurement() noexcept { measured_.add(answer_time(last_round_trip_)); }
-  /// Returns the duration of `transactions`, one after the other, and the calculation as text. `plan`
-  /// describes the transactions in this text.
+  /// Returns the duration of `transactions` that are executed one after the other, and the calculation as
+  /// text. The text contains `plan`, a description of the transactions.
   [[nodiscard]] virtual Board::Budget cost(std::span<const TransactionSize> transactions,
                                            const std::string& plan) const = 0;
   /// Returns, for example, "127.0.0.1:502" or "/dev/ttyUSB0 (115200 8N1)".
   [[nodiscard]] virtual std::string describe() const = 0;
 
  protected:
-  /// Takes the ownership of a libmodbus context. If it is null, open() fails.
+  /// Takes the ownership of a libmodbus context. If `context` is null, open() fails.
   ModbusLink(_modbus* context, const LinkHabits& habits, bool on_network) noexcept;
 
   [[nodiscard]] _modbus* context() const noexcept { return context_; }
   [[nodiscard]] int descriptor() const noexcept;
-  /// Stores the reason why a link cannot be opened, closes the link and returns `status`.
+  /// Stores the reason why a link cannot be opened, closes the link, and returns `status`.
   BusStatus refuse(BusStatus status, const char* what, const char* why) noexcept;
-  /// Does the same as refuse() for a link on which a response may still arrive.
+  /// Does the same as refuse(), for a link on which a response may still arrive.
   BusStatus fail(BusStatus status, const char* what, const char* why) noexcept;
   BusStatus wait_until_ready(short events, Nanoseconds deadline, const char* what) noexcept;
-  /// Reads the available bytes of a link that is ready.
+  /// Reads the available bytes of a link that is ready for reading.
   BusStatus read_some(std::span<std::uint8_t> bytes, const char* what, std::size_t& got) noexcept;
-  /// Closes the link after the other end has closed it.
+  /// Closes the link, because the other end has closed it.
   BusStatus ended(const char* what) noexcept;
   [[nodiscard]] const RoundTrip& measured() const noexcept { return measured_; }
 
-  /// Reason for detail() if bytes arrive before a request is sent.
+  /// Reason that detail() returns if bytes arrive before a request is sent.
   static constexpr const char* unasked = "unexpected bytes: a late or repeated reply";
 
-  /// The checked response. `error` is whole_frame, or the errno that explains an incomplete frame.
+  /// A response that was checked. `error` is whole_frame, or the errno that explains why the frame is
+  /// incomplete.
   struct Received {
     ModbusReply reply;
     int error = 0;
@@ -95,36 +97,38 @@ class ModbusLink {
   };
   static constexpr int whole_frame = 0;
 
-  Descriptor held_;               ///< closed with the link
+  Descriptor held_;               ///< descriptor that is closed together with the link
   Nanoseconds heard_at_ = 0;      ///< time of the last received bytes
-  bool answer_may_come_ = false;  ///< a response to a request of the last session may still arrive
+  bool answer_may_come_ = false;  ///< true: a response to a request of the last session may still arrive
 
  private:
   virtual BusStatus connect(Nanoseconds deadline) noexcept = 0;
-  /// Writes the frame of a request. Returns its size, or 0 for a request that reply_pdu_size() refuses.
+  /// Writes the frame of a request. Returns the size of the frame; 0 for a request that reply_pdu_size()
+  /// refuses.
   virtual std::size_t build(std::uint8_t unit, const ModbusRequest& request, Frame& frame) noexcept = 0;
   /// Waits until a request may be sent.
   virtual BusStatus before_asking(Nanoseconds) noexcept { return BusStatus::ok; }
   virtual BusStatus send(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept = 0;
-  /// Checks all bytes received since the request `asked` was sent.
+  /// Checks all bytes that were received since the request `asked` was sent.
   [[nodiscard]] virtual ModbusReply judge(std::span<const std::uint8_t> bytes, std::uint8_t unit,
                                           const ModbusRequest& request,
                                           std::span<const std::uint8_t> asked) const noexcept = 0;
-  /// Receives with libmodbus into `buffer`. The caller has filled the buffer with the filler value.
+  /// Receives a response with libmodbus into `buffer`, which the caller has filled with the filler value.
   virtual Received hear(std::span<std::uint8_t> buffer, std::uint8_t unit, const ModbusRequest& request,
                         std::span<const std::uint8_t> asked, Nanoseconds deadline) noexcept;
   /// Returns the time that the wire needs to transmit this number of bytes after send() [ns].
   [[nodiscard]] virtual Nanoseconds sending_time(std::size_t) const noexcept { return 0; }
   /// numbers_answers() returns true if a response contains the transaction id of its request.
-  /// answers_previous() returns true if the bytes begin with the transaction id of the previous request.
+  /// answers_previous() returns true if the bytes begin with the transaction id of the request before the
+  /// present one.
   [[nodiscard]] virtual bool numbers_answers() const noexcept { return false; }
   [[nodiscard]] virtual bool answers_previous(std::span<const std::uint8_t>) const noexcept { return false; }
-  /// Returns the largest number of bytes before or after a response that are discarded. The number is below
-  /// the size of the shortest response, so the bytes cannot be the response to another request.
+  /// Returns how many bytes before or after a response are discarded at most. This number is smaller than the
+  /// shortest response, so the discarded bytes cannot be the response to another request.
   [[nodiscard]] virtual std::size_t most_stray() const noexcept { return 0; }
   /// Returns the index of the unit id in a frame.
   [[nodiscard]] virtual std::size_t unit_place() const noexcept = 0;
-  /// Returns the part of a round trip that is stored as a measurement.
+  /// Returns the part of a round trip that is stored as a measurement for cost().
   [[nodiscard]] virtual Nanoseconds answer_time(Nanoseconds round_trip) const noexcept { return round_trip; }
 
   BusStatus send_until_heard(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept;
@@ -143,14 +147,14 @@ class ModbusLink {
   Nanoseconds settle_;
   Nanoseconds repeat_after_;
   Nanoseconds opened_at_ = 0;
-  bool answered_ = false;  ///< the other end has responded since the link was opened
+  bool answered_ = false;  ///< true: the other end has responded since the link was opened
   Nanoseconds first_asked_at_ = 0;
   Nanoseconds asked_at_ = 0;
-  unsigned repeats_ = 0;         ///< repetitions of the last request
-  unsigned stale_ = 0;           ///< number of late responses to the previous request that may arrive
-  Nanoseconds quiet_until_ = 0;  ///< end of the time in which these responses may arrive
-  /// A reserved descriptor below 1024 for the link, because libmodbus waits with select(), which accepts no
-  /// descriptor above 1023.
+  unsigned repeats_ = 0;         ///< number of repetitions of the last request
+  unsigned stale_ = 0;           ///< number of late responses to the previous request that may still arrive
+  Nanoseconds quiet_until_ = 0;  ///< end of the time in which these late responses may arrive
+  /// A reserved descriptor below 1024 for the link. It is needed because libmodbus waits with select(), which
+  /// does not accept descriptors above 1023.
   Descriptor place_;
   Frame outgoing_{};
   Frame incoming_{};

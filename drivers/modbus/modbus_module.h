@@ -1,5 +1,5 @@
 #pragma once
-// One Modbus module on a link: the requests of an exchange and the evaluation of the responses.
+// One Modbus module on a link. The class sends the requests of an exchange and evaluates the responses.
 
 #include <array>
 #include <cstdint>
@@ -19,17 +19,17 @@
 namespace softgrip::drivers {
 
 struct ModbusModuleSettings {
-  std::string name;  ///< name in messages if the board has several modules
+  std::string name;  ///< name in messages, if the board has several modules
   BoardMap map;
-  std::uint8_t unit = 1;  ///< unit id; responses with another unit id are refused
-  std::size_t link = 0;   ///< index of the link over which the board reaches the module
+  std::uint8_t unit = 1;  ///< unit id of the module; a response with another unit id is refused
+  std::size_t link = 0;   ///< index of the link to the module
 };
 
-/// One module of a board. It stores the values that the last exchange wrote and read. Only the constructor
-/// and transactions() allocate.
+/// One module of a board. It stores the values that the last exchange wrote and read. The constructor and
+/// transactions() allocate memory; all other functions do not.
 class ModbusModule {
  public:
-  /// `link` must outlive the module. `index` is the module's number in the wiring.
+  /// `link` must exist longer than the module. `index` is the number of the module in the wiring.
   ModbusModule(ModbusModuleSettings settings, std::size_t index, const std::vector<ChannelWiring>& wiring,
                ModbusLink& link);
 
@@ -39,41 +39,42 @@ class ModbusModule {
   /// Returns the number of clients that the module reported in the last read; 0 if it does not count clients.
   [[nodiscard]] unsigned clients() const noexcept;
 
-  /// Prepares the module for a new session, after the link was opened. Writes the map's setup. If the
-  /// watchdog has tripped, the setup is delayed until the watchdog has been cleared.
+  /// Prepares the module for a new session after the link was opened: writes the setup of the map. If the
+  /// watchdog has tripped, the setup is written later, after the watchdog has been cleared.
   [[nodiscard]] BusStatus set_up(Nanoseconds deadline) noexcept;
-  /// Sends one request that changes nothing, to measure the link. Returns `ok` at once if the plan has no
-  /// read.
+  /// Sends one request that changes nothing, to measure the link. If the plan has no read, returns `ok` at
+  /// once.
   [[nodiscard]] BusStatus probe(Nanoseconds deadline) noexcept;
 
-  /// Encodes the commands for write(). A command outside the range of its output is limited to this range,
-  /// and the function returns `write_refused`.
+  /// Encodes the commands for write(). If a command is outside the range of its output, it is limited to the
+  /// range, and the function returns `write_refused`.
   [[nodiscard]] BusStatus encode(std::span<const double> commands_kpa) noexcept;
-  /// Writes the outputs and feeds the watchdog. Once per session, it also clears a tripped watchdog.
+  /// Writes the outputs and feeds the watchdog. The first call in a session also clears a tripped watchdog.
   [[nodiscard]] BusStatus write(Nanoseconds deadline) noexcept;
   /// Decides if this exchange reads before it writes; reads_first() returns the decision. Every 8th exchange
-  /// reads first, in order to detect values that another client has written since the last exchange, before
-  /// they are overwritten. The last exchange must have read back the values that it had written. Otherwise an
-  /// output that did not take its value would look like a write of another client.
+  /// reads first. In this way, it detects values that another client has written since the last exchange,
+  /// before it overwrites them. The exchange reads first only if the last exchange read back the values that
+  /// it had written. Otherwise, an output that did not take its value would look like a write of another
+  /// client.
   void begin_exchange() noexcept;
   [[nodiscard]] bool reads_first() const noexcept { return reads_first_; }
 
-  /// Performs the reads that write() has not done.
+  /// Performs the reads of the plan that write() has not performed.
   [[nodiscard]] BusStatus read(Nanoseconds deadline) noexcept;
-  /// Checks the outputs that the board reports. For an output with another value than the written one,
-  /// returns `overwritten` if the exchange read first, else `write_refused`. After `write_refused`,
+  /// Checks the outputs that the board reports. If an output differs from the written value, returns
+  /// `overwritten` if the exchange read first, and `write_refused` if it did not. After `write_refused`,
   /// found_kpa() returns the reported outputs.
   [[nodiscard]] BusStatus check() noexcept;
-  /// Returns the reported output of a channel [kPa]. NaN if the channel is not wired to the module, or if the
-  /// output has the written value.
+  /// Returns the output of a channel that the board reported [kPa]. Returns NaN if the channel is not wired
+  /// to the module, or if the output has the written value.
   [[nodiscard]] double found_kpa(std::size_t channel) const noexcept { return found_kpa_[channel]; }
   void forget_found() noexcept;
-  /// Copies the module's values of a channel into its reading.
+  /// Copies the values of a channel that the module has read into the reading of this channel.
   void fill(std::size_t channel, Reading& reading) const noexcept;
 
   /// Returns the reason of the last failure.
   [[nodiscard]] const char* detail() const noexcept { return detail_; }
-  /// Returns all requests of one exchange in their order.
+  /// Returns all requests of one exchange in the order in which they are sent.
   [[nodiscard]] std::vector<TransactionSize> transactions() const;
 
  private:
@@ -101,17 +102,20 @@ class ModbusModule {
   ExchangePlan plan_;
   ModbusLink& link_;
   std::vector<std::uint16_t> output_words_;
-  std::vector<double> requested_raws_;  ///< written value of each output, after rounding and limiting
+  std::vector<double> requested_raws_;  ///< for each output, the value that was written, after rounding and
+                                        ///< limiting
   ReadBackHistory accepted_;
   std::vector<double> found_kpa_;
-  std::vector<std::vector<std::uint16_t>> replies_;  ///< one per read of the plan; bits as 0 or 1
+  std::vector<std::vector<std::uint16_t>> replies_;  ///< one reply per read of the plan; a bit is stored as 0
+                                                     ///< or 1
   Nanoseconds sampled_at_ = 0;
-  std::uint32_t unlooked_ = 0;  ///< exchanges since the last one that read first
-  bool confirmed_ = false;      ///< the last exchange read back the values that it had written
+  std::uint32_t unlooked_ = 0;  ///< number of exchanges since the last exchange that read first
+  bool confirmed_ = false;      ///< true: the last exchange read back the values that it had written
   bool reads_first_ = false;
-  bool alternate_due_ = false;  ///< the next write of the heartbeat has the alternate value
-  bool clear_due_ = false;      ///< the session is new, so a tripped watchdog may be cleared
-  bool setup_due_ = false;      ///< the watchdog was tripped when the session was opened, so the setup is due
+  bool alternate_due_ = false;  ///< true: the next write of the heartbeat has the alternate value
+  bool clear_due_ = false;      ///< true: the session is new, so a tripped watchdog may be cleared
+  bool setup_due_ = false;      ///< true: the watchdog had tripped when the session was opened, so the setup
+                                ///< must still be written
   std::array<char, 200> own_detail_{};
   const char* detail_ = "";
 };

@@ -1,6 +1,6 @@
 #pragma once
-// Checks if bytes from an untrusted source, beginning with the function code, are the Modbus response to a
-// request. The functions have no state. mbap.h and rtu_frame.h check the framing.
+// Checks if bytes from an untrusted source are the Modbus response to a request. The bytes begin with the
+// function code. The functions have no state. mbap.h and rtu_frame.h check the framing.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,21 +10,21 @@
 
 namespace softgrip::drivers {
 
-/// The reason why bytes are not the expected response.
+/// The reason why the received bytes are not the expected response.
 enum class ReplyDefect : std::uint8_t {
   none,
-  transaction,  ///< response to another request: a late or a duplicated reply
-  protocol,     ///< not Modbus
+  transaction,  ///< the bytes are the response to another request: a late or a duplicated reply
+  protocol,     ///< the bytes are not a Modbus frame
   length,       ///< the length in the header does not match the response
-  unit,         ///< response of another unit
-  function,     ///< another function code
+  unit,         ///< the response comes from another unit
+  function,     ///< the response has another function code than the request
   byte_count,   ///< the number of data bytes does not match the request
-  echo,         ///< the write is confirmed with another address or value
-  trailing,     ///< more bytes than the response has
-  checksum,     ///< the bytes were changed in transmission (serial lines)
+  echo,         ///< the response confirms a write with another address or value
+  trailing,     ///< there are more bytes than the response has
+  checksum,     ///< the checksum is wrong: bytes were changed in transmission (serial lines)
   own_echo,     ///< the received bytes are the request itself (serial lines)
 };
-/// Returns a sentence for the event log.
+/// Returns a sentence about a defect for the event log.
 [[nodiscard]] const char* text_of(ReplyDefect defect) noexcept;
 
 /// The bit that an exception sets in the function code, and the size of an exception without framing [bytes].
@@ -36,18 +36,18 @@ struct ModbusReply {
   State state = State::incomplete;
   ReplyDefect defect = ReplyDefect::none;
   std::uint8_t exception_code = 0;
-  /// For a complete reply: the data that was read (bits or registers, high byte first); empty for writes.
-  /// Points into the given bytes.
+  /// The data that a complete reply contains (bits or registers, high byte first); empty for a write. The
+  /// span points into the bytes of the reply.
   std::span<const std::uint8_t> data = {};
 };
 
 /// Checks the bytes of a reply that have arrived so far, beginning with the function code. `incomplete` means
-/// that they are a correct beginning of the response, so a wrong byte is detected before the rest arrives.
-/// `complete` and `exception` apply to the first pdu_size_of(reply, request) bytes. The functions for the
-/// framing check the bytes after them.
+/// that the bytes are a correct beginning of the response. Therefore, a wrong byte is detected before the
+/// rest of the response arrives. `complete` and `exception` apply to the first pdu_size_of(reply, request)
+/// bytes. The functions for the framing check the bytes after these.
 [[nodiscard]] ModbusReply parse_pdu(std::span<const std::uint8_t> pdu, const ModbusRequest& request) noexcept;
 
-/// Returns the size of a reply that is complete or an exception [bytes].
+/// Returns the size of a reply whose state is `complete` or `exception` [bytes].
 [[nodiscard]] std::size_t pdu_size_of(const ModbusReply& reply, const ModbusRequest& request) noexcept;
 
 [[nodiscard]] inline bool is_answer(const ModbusReply& reply) noexcept {

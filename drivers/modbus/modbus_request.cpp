@@ -7,7 +7,7 @@
 namespace softgrip::drivers {
 namespace {
 
-/// Appends to a buffer. The caller has checked its size.
+/// Appends values to a buffer. The caller must have checked that the buffer is large enough.
 class Writer {
  public:
   explicit Writer(std::span<std::uint8_t> bytes) : bytes_(bytes) {}

@@ -15,8 +15,8 @@
 
 namespace softgrip::drivers {
 
-/// Discards bytes of the previous session, because a module may still send a response of up to the longest
-/// frame. Returns after a silence on the line.
+/// Discards the bytes of the previous session, because a module may still send a response. Such a response
+/// may be as long as the longest frame. Returns after a silence on the line.
 BusStatus ModbusRtuFraming::listen(Nanoseconds usual, Nanoseconds deadline) noexcept {
   heard_at_ = monotonic_now();
   if (!answer_may_come_) return BusStatus::ok;
@@ -60,8 +60,8 @@ BusStatus ModbusRtuFraming::before_asking(Nanoseconds deadline) noexcept {
   }
 }
 
-/// Receives a response that up to max_stray_bytes stray bytes may precede. Each read asks only for the bytes
-/// that are missing for the earliest possible end of a response.
+/// Receives a response. Up to max_stray_bytes stray bytes may precede the response. Each read requests only
+/// as many bytes as are missing until the earliest possible end of a response.
 ModbusLink::Received ModbusRtuFraming::hear(std::span<std::uint8_t> buffer, std::uint8_t unit,
                                             const ModbusRequest& request, std::span<const std::uint8_t> asked,
                                             Nanoseconds deadline) noexcept {

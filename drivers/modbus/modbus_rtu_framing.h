@@ -9,23 +9,23 @@
 
 namespace softgrip::drivers {
 
-/// RTU has no transaction id, so the bytes of a response do not show to which request it belongs. Therefore a
-/// request is sent only after the silence of the specification. Unexpected bytes before a request close the
-/// link, unless they are fewer than the shortest response. After a failure, a new link first listens for as
-/// long as a late response may take. libmodbus does none of this. It also does not find a response after
-/// stray bytes, so this class receives without libmodbus.
+/// RTU has no transaction id, so the bytes of a response do not show to which request the response belongs.
+/// Therefore, a request is sent only after the silence of the specification. If unexpected bytes arrive
+/// before a request, the link is closed. Fewer bytes than those of the shortest response are discarded. After
+/// a failure, a new link first listens for as long as a late response may take. libmodbus has none of these
+/// functions. It also does not find a response after stray bytes, so this class receives without libmodbus.
 class ModbusRtuFraming : public ModbusLink {
  protected:
   ModbusRtuFraming(_modbus* context, const LinkHabits& habits, bool on_network, Nanoseconds character,
                    Nanoseconds silence) noexcept
       : ModbusLink(context, habits, on_network), character_(character), silence_(silence) {}
 
-  /// Discards late responses after a link was opened. `usual` is the response time of a module without the
-  /// times of bytes and silence [ns].
+  /// Discards late responses after a link was opened. `usual` is the response time of a module [ns]. It does
+  /// not include the transmission time and the silence.
   BusStatus listen(Nanoseconds usual, Nanoseconds deadline) noexcept;
   [[nodiscard]] Nanoseconds character() const noexcept { return character_; }
   [[nodiscard]] Nanoseconds silence() const noexcept { return silence_; }
-  /// Returns the sizes of the last request and its response.
+  /// Returns the sizes of the last request and of its response.
   [[nodiscard]] const TransactionSize& last_size() const noexcept { return last_size_; }
 
  private:

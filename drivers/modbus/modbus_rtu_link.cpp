@@ -48,7 +48,7 @@ BusStatus ModbusRtuLink::connect(Nanoseconds deadline) noexcept {
 }
 
 BusStatus ModbusRtuLink::send(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept {
-  // libmodbus appends the checksum.
+  // libmodbus appends the checksum to the frame.
   const auto unchecked = static_cast<int>(frame.size()) - 2;
   if (::modbus_send_raw_request(context(), frame.data(), unchecked) != static_cast<int>(frame.size())) {
     return fail(BusStatus::disconnected, "sending", text_of_errno(errno < MODBUS_ENOBASE ? errno : ENOBUFS));
@@ -72,8 +72,8 @@ BusStatus ModbusRtuLink::take_echo(std::span<const std::uint8_t> frame, Nanoseco
   return BusStatus::ok;
 }
 
-/// Returns the response time of module and adapter without the times of bytes and of one silence. A module
-/// recognises the end of a request by the silence and responds after it.
+/// Returns the response time of module and adapter, without the transmission time and without one silence. A
+/// module recognises the end of a request by the silence, and responds after the silence.
 Nanoseconds ModbusRtuLink::answer_time(Nanoseconds round_trip) const noexcept {
   const auto bytes = static_cast<Nanoseconds>(last_size().request + last_size().reply + 2 * rtu_overhead);
   return std::max<Nanoseconds>(0, round_trip - bytes * character() - silence());

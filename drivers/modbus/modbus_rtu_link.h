@@ -11,8 +11,9 @@
 
 namespace softgrip::drivers {
 
-/// open() opens the device by its name, so that it finds an adapter that was unplugged and connected again.
-/// It allocates memory for this search, and fails for a name that udev gave to several adapters.
+/// Link to the modules on a serial line. open() opens the device by its name, so that it also finds an
+/// adapter that was unplugged and connected again. open() allocates memory for this search. It fails for a
+/// name that udev gave to several adapters.
 class ModbusRtuLink final : public ModbusRtuFraming {
  public:
   explicit ModbusRtuLink(SerialLine line);

@@ -11,12 +11,12 @@
 namespace softgrip::drivers {
 namespace {
 
-/// Assumed duration of a character on the serial line [ns], at 9600 baud. The actual rate is unknown.
+/// Assumed duration of a character on the serial line at 9600 baud [ns]. The actual baud rate is unknown.
 constexpr Nanoseconds slow_character = 1'041'667;
 
 }  // namespace
 
-// libmodbus receives an open socket, so it never opens the device of this context.
+// libmodbus receives an open socket. Therefore, it never opens the device "/dev/null" of this context.
 ModbusRtuTcpLink::ModbusRtuTcpLink(TcpAddress address)
     : ModbusRtuFraming(::modbus_new_rtu("/dev/null", 9600, 'N', 8, 1), address.habits, true, slow_character,
                        nanoseconds(address.silence_s)),

@@ -8,12 +8,12 @@
 
 namespace softgrip::drivers {
 
-/// Link to modules on the line of a serial server. The server may deliver a late response into the next
-/// connection. After a failure, a new connection therefore first listens for such a response, as on a serial
-/// line.
+/// Link to the modules on the serial line of a serial server. The server may deliver a late response into the
+/// next connection. Therefore, after a failure, a new connection first listens for such a response, as on a
+/// serial line.
 class ModbusRtuTcpLink final : public ModbusRtuFraming {
  public:
-  /// If the host is not a numeric address, open() reports it and fails.
+  /// Creates a closed link. If the host is not a numeric address, open() fails and reports this.
   explicit ModbusRtuTcpLink(TcpAddress address);
   ~ModbusRtuTcpLink() override = default;
 

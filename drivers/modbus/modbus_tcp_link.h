@@ -1,5 +1,5 @@
 #pragma once
-// One TCP session with a Modbus server.
+// One TCP connection to a Modbus server.
 
 #include <cstdint>
 #include <span>
@@ -10,14 +10,14 @@
 
 namespace softgrip::drivers {
 
-/// This class connects within a deadline to an IPv4 or IPv6 address and gives each request its own
-/// transaction id. libmodbus cannot do this: raw requests of version 3.1.6 always have the transaction id 0.
-/// With equal ids, a repeated reply could be taken for the response to the next request. This risk remains
-/// for a gateway that does not return the id (TcpAddress::numbered is false). Its late responses are detected
-/// only if they arrive before the next request is sent.
+/// Connects within a deadline to an IPv4 or IPv6 address, and gives each request its own transaction id.
+/// libmodbus cannot do this: raw requests of version 3.1.6 always have the transaction id 0. If all ids were
+/// equal, a repeated reply could be taken for the response to the next request. This risk remains for a
+/// gateway that does not return the id (TcpAddress::numbered is false). The late responses of such a gateway
+/// are detected only if they arrive before the next request is sent.
 class ModbusTcpLink final : public ModbusLink {
  public:
-  /// If the host is not a numeric address, open() reports it and fails.
+  /// Creates a closed link. If the host is not a numeric address, open() fails and reports this.
   explicit ModbusTcpLink(TcpAddress address);
   ~ModbusTcpLink() override = default;
 
@@ -38,8 +38,8 @@ class ModbusTcpLink final : public ModbusLink {
   [[nodiscard]] std::size_t unit_place() const noexcept override { return mbap_unit; }
 
   TcpAddress address_;
-  /// Last transaction id. The count continues in later sessions, so that an old reply that a gateway delivers
-  /// into a new session is detected.
+  /// Last transaction id. Later connections continue with the next id. Therefore, an old reply that a gateway
+  /// delivers into a new connection is detected.
   std::uint16_t transaction_ = 0;
 };
 

@@ -18,13 +18,14 @@
 namespace softgrip::drivers {
 namespace {
 
-// MODBUS over Serial Line V1.02, 2.5.1.1: 3.5 characters, or a fixed time above 19200 baud.
+// Silence between two frames in MODBUS over Serial Line V1.02, 2.5.1.1: 3.5 characters, or a fixed time above
+// 19200 baud.
 constexpr double silent_characters = 3.5;
 constexpr double fixed_silence_s = 1.75e-3;
 constexpr std::uint32_t fixed_above_baud = 19200;
 
 bool is_pseudo_terminal(int descriptor) noexcept {
-  // Major numbers of Unix98 pseudo-terminals: Documentation/admin-guide/devices.txt of the kernel.
+  // Major device numbers of Unix98 pseudo-terminals (Documentation/admin-guide/devices.txt of the kernel).
   constexpr unsigned first_slave_major = 136;
   constexpr unsigned last_slave_major = 143;
   struct stat about {};
@@ -41,7 +42,7 @@ tcflag_t line_flags(const SerialLine& line) noexcept {
   return flags;
 }
 
-/// Returns true if the device has the rate and the format of the line.
+/// Returns true if the device really has the baud rate and the format of `line`.
 bool keeps_to(int descriptor, const SerialLine& line) noexcept {
   termios2 settings{};  // contains the baud rate as a number
   if (::ioctl(descriptor, TCGETS2, &settings) != 0) return false;

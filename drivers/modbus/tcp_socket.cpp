@@ -15,19 +15,21 @@
 namespace softgrip::drivers {
 namespace {
 
-// During an exchange, the deadline detects a peer that no longer responds. At other times, these options make
-// the kernel close the connection to such a peer.
+// During an exchange, the deadline detects that the other end no longer responds. At other times, these
+// options make the kernel close the connection to an end that does not respond.
 constexpr int keepalive_idle_s = 2;
 constexpr int keepalive_interval_s = 1;
 constexpr int keepalive_probes = 3;
 constexpr unsigned user_timeout_ms = 3000;
 
 void set_option(int socket, int level, int name, int value) noexcept {
-  // Without these options a session is slower or a dead peer is detected later, so an error is ignored.
+  // Without these options, a connection is slower, or a dead connection is detected later. Therefore, an
+  // error is ignored.
   (void)::setsockopt(socket, level, name, &value, sizeof value);
 }
 
-/// Converts the host and port to `address`. Returns the size of the address, or 0 if the host is not numeric.
+/// Converts the host and port to `address`. Returns the size of `address`; 0 if the host is not a numeric
+/// address.
 socklen_t parse_address(const TcpAddress& from, sockaddr_storage& address) noexcept {
   sockaddr_in v4{.sin_family = AF_INET, .sin_port = htons(from.port), .sin_addr = {}, .sin_zero = {}};
   sockaddr_in6 v6{};
@@ -42,8 +44,8 @@ socklen_t parse_address(const TcpAddress& from, sockaddr_storage& address) noexc
   return sizeof v6;
 }
 
-/// Returns true if a socket is connected to itself. This can happen if no program listens on a port of this
-/// machine and the kernel chooses the same port as the local one.
+/// Returns true if a socket is connected to itself. This can happen on a port of this machine on which no
+/// program listens, if the kernel chooses the same port as the local port.
 bool talks_to_itself(int socket) noexcept {
   sockaddr_storage local{};
   sockaddr_storage peer{};
@@ -92,7 +94,8 @@ TcpConnection connect_tcp(const TcpAddress& to, Nanoseconds deadline) noexcept {
 }
 
 int send_whole(int socket, std::span<const std::uint8_t> frame) noexcept {
-  // Only one request is sent at a time, so a socket that does not accept 260 bytes is blocked.
+  // Only one request is sent at a time. Therefore, a socket that does not accept 260 bytes at once is
+  // blocked.
   const ssize_t sent = ::send(socket, frame.data(), frame.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   if (sent == static_cast<ssize_t>(frame.size())) return 0;
   return sent < 0 ? errno : ENOBUFS;

@@ -10,17 +10,18 @@
 
 namespace softgrip::drivers {
 
-/// A connection, or the reason why there is none.
+/// A connection, or the reason why the connection failed.
 struct TcpConnection {
   Descriptor socket;
   BusStatus status = BusStatus::disconnected;
   const char* why = "";
 };
 
-/// Connects to an IPv4 or IPv6 address. Fails if the time `deadline` of CLOCK_BOOTTIME [ns] passes before.
+/// Connects to an IPv4 or IPv6 address. Fails if the connection is not open at the time `deadline` of
+/// CLOCK_BOOTTIME [ns].
 [[nodiscard]] TcpConnection connect_tcp(const TcpAddress& to, Nanoseconds deadline) noexcept;
 
-/// Sends a frame. Returns 0, or the errno if the frame was not sent completely.
+/// Sends a frame. Returns 0 if the frame was sent completely, otherwise the errno.
 [[nodiscard]] int send_whole(int socket, std::span<const std::uint8_t> frame) noexcept;
 /// Returns true if an errno means that the other end has closed the connection.
 [[nodiscard]] bool is_closed(int error) noexcept;

@@ -9,8 +9,8 @@
 namespace softgrip::modbus {
 namespace {
 
-// Largest number of queued pieces of replies. A client that does not read its replies is disconnected when
-// the queue exceeds this number.
+// Largest number of parts of replies in the queue. If a client does not read its replies, the queue exceeds
+// this number, and the client is disconnected.
 constexpr std::size_t max_outgoing = 1024;
 
 bool would_block(int error) {
@@ -50,8 +50,8 @@ bool Connection::broken() const {
 }
 
 void Connection::queue(const Request& request, const Reply& reply, Clock::time_point now) {
-  // A pseudo-terminal transmits without delay. The reply is therefore delayed by the time that a real serial
-  // line needs to transmit request and reply.
+  // A pseudo-terminal transmits without delay. Therefore, the server delays the reply by the time that a real
+  // serial line needs to transmit request and reply.
   constexpr std::size_t unit_and_checksum = 3;
   std::size_t bytes = request.pdu.size() + unit_and_checksum;
   for (const Piece& piece : reply.pieces) bytes += piece.bytes.size();

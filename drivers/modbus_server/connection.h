@@ -1,5 +1,5 @@
 #pragma once
-// The connection of one Modbus client. It receives requests, sends pieces of replies when they are due, and
+// The connection of one Modbus client. It receives requests, sends parts of replies when they are due, and
 // never blocks.
 
 #include <chrono>
@@ -14,7 +14,7 @@
 
 namespace softgrip::modbus {
 
-/// The times of a real serial line, with which a pseudo-terminal simulates this line.
+/// The times of a real serial line. With them, a pseudo-terminal simulates such a line.
 struct WireTime {
   std::chrono::nanoseconds character{0};
   std::chrono::nanoseconds silence{0};     ///< silence by which a module recognises the end of a request
@@ -34,13 +34,13 @@ class Connection {
   /// Reads the received bytes and passes each complete request to `serve`. Returns false if the caller must
   /// close the connection.
   [[nodiscard]] bool receive(const Serve& serve);
-  /// Sends all pieces that are due. Returns false if the caller must close the connection.
+  /// Sends all parts of replies that are due. Returns false if the caller must close the connection.
   [[nodiscard]] bool send_due(Clock::time_point now);
-  /// Returns the time at which the next piece is due, or nothing.
+  /// Returns the time at which the next part of a reply is due; nothing if none waits.
   [[nodiscard]] std::optional<Clock::time_point> next_due() const;
-  /// Returns true if a piece is due and the descriptor has not accepted it yet.
+  /// Returns true if a part of a reply is due, but the descriptor has not accepted it yet.
   [[nodiscard]] bool blocked() const noexcept { return blocked_; }
-  /// Returns true if a client on the network has sent only a part of a request.
+  /// Returns true if a client on the network has sent an incomplete request.
   [[nodiscard]] bool half() const {
     const auto* const network = std::get_if<RequestStream>(&stream_);
     return network != nullptr && network->half();
@@ -61,7 +61,8 @@ class Connection {
   Descriptor descriptor_;
   std::variant<RequestStream, RtuRequestStream> stream_;
   WireTime wire_time_;
-  std::vector<Outgoing> outgoing_;  // sorted by due time; pieces with equal times in the order of insertion
+  std::vector<Outgoing> outgoing_;  // sorted by the time at which they are due; parts with equal times are in
+                                    // the order of insertion
   bool closing_ = false;
   bool blocked_ = false;
 };

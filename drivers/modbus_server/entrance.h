@@ -9,26 +9,27 @@
 namespace softgrip::modbus {
 
 /// Accepts clients. If no descriptor is free, a waiting client cannot be accepted, and each poll() returns at
-/// once, so that the server would use a complete processor core. The listener therefore pauses. Before the
+/// once. The server would then use a complete processor core. Therefore, the listener pauses. Before the
 /// pause, it closes its spare descriptors and accepts one more client, because this client may be the one
 /// that stops the rig.
 class Entrance {
  public:
-  /// Time until the next attempt [ns].
+  /// Duration of the pause until the listener tries again [ns].
   static constexpr Nanoseconds rest = ns_per_s / 10;
 
   Entrance() = default;
-  /// @param listener  from listen_tcp() or listen_unix(); if it is empty, no client is accepted.
+  /// @param listener  a socket from listen_tcp() or listen_unix(); if it is empty, no client is accepted.
   explicit Entrance(Descriptor listener);
 
   /// Returns the descriptor for poll(), or -1 while the listener pauses.
   [[nodiscard]] int descriptor(Nanoseconds now) const noexcept {
     return now < rests_until_ ? -1 : listener_.get();
   }
-  /// Returns the next client as accept_client() does; empty if no client waits or none can be accepted.
+  /// Returns the next client, as accept_client() does. Returns an empty descriptor if no client waits, or if
+  /// no client can be accepted.
   [[nodiscard]] Descriptor accept(Nanoseconds now);
-  /// Returns true if the last accept() found no free descriptor. The caller should close descriptors that it
-  /// can spare.
+  /// Returns true if the last accept() found no free descriptor. In this case, the caller should close
+  /// descriptors that it does not need.
   [[nodiscard]] bool short_of_descriptors() const noexcept { return short_; }
 
  private:

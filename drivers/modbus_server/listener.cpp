@@ -16,8 +16,8 @@
 namespace softgrip::modbus {
 namespace {
 
-// If the queue is full, the kernel drops a client's first packet, and the client waits 1 s before it tries
-// again.
+// If the queue is full, the kernel drops the first packet of a client. The client then waits 1 s before it
+// tries again.
 constexpr int backlog = 128;
 
 tl::unexpected<std::string> failure(const std::string& what) {
@@ -26,7 +26,7 @@ tl::unexpected<std::string> failure(const std::string& what) {
 
 using AddressList = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
-/// Converts a numeric address and port. Returns null if the address is not numeric.
+/// Converts a numeric address and a port. Returns null if the address is not numeric.
 AddressList numeric(const std::string& address, const std::string& port) {
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
@@ -95,7 +95,7 @@ tl::expected<Descriptor, std::string> listen_unix(const std::string& path) {
 Descriptor accept_client(const Descriptor& listener) {
   Descriptor client{::accept4(listener.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
   if (client) {
-    // Sends small replies without delay. Has no effect on a Unix socket.
+    // Sends small replies without delay. On a Unix socket, this option has no effect.
     const int on = 1;
     ::setsockopt(client.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   }

@@ -18,7 +18,7 @@ struct Listener {
 /// Returns true for a numeric IPv4 or IPv6 address.
 [[nodiscard]] bool is_numeric(const std::string& address);
 
-/// Returns true for 127.0.0.0/8 and ::1.
+/// Returns true for the loopback addresses 127.0.0.0/8 and ::1.
 [[nodiscard]] bool is_loopback(const std::string& address);
 
 /// Listens on a numeric address. Port 0 selects a free port. The error is one sentence.
@@ -27,8 +27,8 @@ struct Listener {
 /// Listens on a Unix domain socket that only this user may open. An old socket at the path is replaced.
 [[nodiscard]] tl::expected<Descriptor, std::string> listen_unix(const std::string& path);
 
-/// Returns the descriptor of the next client, which does not block and is closed on exec; empty if no client
-/// waits.
+/// Returns the descriptor of the next client; empty if no client waits. The descriptor does not block and is
+/// closed on exec.
 [[nodiscard]] Descriptor accept_client(const Descriptor& listener);
 
 }  // namespace softgrip::modbus

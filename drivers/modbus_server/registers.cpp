@@ -20,7 +20,7 @@ Registers::Answer refused(std::span<const std::uint8_t> pdu, std::uint8_t code) 
   return {exception_reply(pdu[0], code), false};
 }
 
-/// Returns the first five bytes: function, address, and value or quantity.
+/// Returns the first five bytes of the request: function code, address, and value or quantity.
 Registers::Answer echoed(std::span<const std::uint8_t> pdu) {
   return {Bytes(pdu.begin(), pdu.begin() + 5), true};
 }
@@ -142,7 +142,7 @@ Registers::Answer Registers::read_write(std::span<const std::uint8_t> pdu) {
   if (!writable(write_first, write_count) || !append_values(reply, read_first, read_count, true)) {
     return refused(pdu, illegal_address);
   }
-  // By the specification, the write comes before the read.
+  // The specification requires that the write is executed before the read.
   store(write_first, pdu.subspan(10));
   reply.resize(2);
   append_values(reply, read_first, read_count, true);

@@ -1,6 +1,6 @@
 #pragma once
-// The registers of a Modbus server and its responses to requests, without framing. Semantics: MODBUS
-// Application Protocol Specification V1.1b3, sections 6.3, 6.4, 6.6, 6.12, 6.17 and 7.
+// The registers of a Modbus server, and its responses to requests without framing. The responses follow
+// MODBUS Application Protocol Specification V1.1b3, sections 6.3, 6.4, 6.6, 6.12, 6.17 and 7.
 
 #include <cstdint>
 #include <map>
@@ -15,9 +15,10 @@ namespace softgrip::modbus {
 /// Returns the reply that reports an exception.
 [[nodiscard]] Bytes exception_reply(std::uint8_t function, std::uint8_t code);
 
-/// A set of registers. A request for an undefined address causes an exception instead of the value 0, so that
-/// a client with a wrong address detects its error. Like the ADAM-6000, the set accepts the read functions of
-/// both tables (holding, input) for an address that only one of them contains.
+/// A set of registers. A request for an undefined address causes an exception. The value 0 is not returned,
+/// so that a client with a wrong address detects its error. There are two tables: holding registers and input
+/// registers. As in the ADAM-6000, the read functions of both tables can read an address that only one table
+/// contains.
 class Registers {
  public:
   enum class Access : std::uint8_t { read_only, read_write };
@@ -26,7 +27,8 @@ class Registers {
   void define_input(std::uint16_t address, std::uint16_t value = 0);
   void define_coil(std::uint16_t address, bool value = false);
   void define_discrete_input(std::uint16_t address, bool value = false);
-  /// Adds a function code. All other codes cause the exception illegal_function.
+  /// Permits a function code. A request with a function code that is not permitted causes the exception
+  /// illegal_function.
   void allow(std::uint8_t function) { functions_.insert(function); }
 
   [[nodiscard]] std::uint16_t holding(std::uint16_t address) const { return holding_.at(address).value; }
@@ -41,10 +43,10 @@ class Registers {
 
   struct Answer {
     Bytes pdu;
-    bool wrote = false;  ///< the request changed registers or wrote the same values again
+    bool wrote = false;  ///< true: the request wrote registers, with new or with unchanged values
   };
-  /// Returns the response to one request PDU (at least one byte). A request is executed completely or not at
-  /// all.
+  /// Returns the response to one request PDU (function code and data, at least one byte). A request is
+  /// executed either completely or not at all.
   Answer answer(std::span<const std::uint8_t> pdu);
 
  private:
@@ -61,7 +63,7 @@ class Registers {
   Answer read_write(std::span<const std::uint8_t> pdu);
   [[nodiscard]] std::optional<std::uint16_t> value_of(std::size_t address, bool holding) const;
   [[nodiscard]] bool writable(std::uint16_t first, std::size_t count) const;
-  /// Appends values; returns false if one of the addresses does not exist.
+  /// Appends the values of registers to `pdu`. Returns false if one of the addresses does not exist.
   bool append_values(Bytes& pdu, std::uint16_t first, std::size_t count, bool holding) const;
   void store(std::uint16_t first, std::span<const std::uint8_t> data);
 

@@ -13,15 +13,16 @@ namespace {
 using drivers::mbap_size;
 using drivers::rtu_overhead;
 
-// Largest number of received bytes that wait. If a client exceeds it, the connection is closed. Complete
-// requests are removed after each reception, so that a correct client does not reach this number.
+// Largest number of received bytes that wait to be processed. If a client exceeds this number, its connection
+// is closed. Complete requests are removed after each reception, so a correct client never reaches this
+// number.
 constexpr std::size_t max_pending = 16 * drivers::max_frame;
 
 constexpr std::chrono::milliseconds no_lump{100};
 
-/// Returns the size of the serial frame at the start of `bytes`; 0 if the size is not known yet. For a
-/// function code that no board of this project supports, returns the number of all bytes, so that the server
-/// can respond with an exception.
+/// Returns the size of the serial frame at the start of `bytes`; 0 if the size is not known yet. If no board
+/// of this project supports the function code, returns the number of all bytes, so that the server can
+/// respond with an exception.
 std::size_t rtu_request_size(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < 2) return 0;
   constexpr std::size_t crc_size = 2;
@@ -49,7 +50,8 @@ std::size_t rtu_request_size(std::span<const std::uint8_t> bytes) {
   }
 }
 
-/// Removes the first `frame` bytes and returns their request. The bytes from `begin` to `end` are the PDU.
+/// Removes the first `frame` bytes and returns the request in them. The bytes from `begin` to `end` are the
+/// PDU (function code and data).
 Request taken_from(Bytes& pending, std::size_t frame, std::size_t begin, std::size_t end) {
   const auto at = [&](std::size_t index) { return pending.begin() + static_cast<std::ptrdiff_t>(index); };
   Request request{0, pending[begin - 1], Bytes(at(begin), at(end))};
@@ -69,7 +71,8 @@ std::optional<Request> RequestStream::next() {
   if (broken_ || pending_.size() < mbap_size) return std::nullopt;
   const std::uint16_t transaction = word_at(pending_, 0);
   const std::uint16_t protocol = word_at(pending_, 2);
-  const std::size_t length = word_at(pending_, 4);  // length of the unit id and the PDU
+  const std::size_t length = word_at(pending_, 4);  // length field of the header: size of the unit id and the
+                                                    // PDU
   if (protocol != 0 || length < 2 || length > max_pdu + 1) {
     broken_ = true;
     return std::nullopt;

@@ -18,11 +18,11 @@ using Clock = std::chrono::steady_clock;
 using drivers::max_pdu;
 using drivers::word_at;
 
-/// The two kinds of wire.
+/// The two types of transmission: Modbus TCP and Modbus RTU.
 enum class Wire : std::uint8_t { tcp, rtu };
 
 struct Request {
-  std::uint16_t transaction = 0;  ///< 0 on a serial line, which has no transaction ids
+  std::uint16_t transaction = 0;  ///< transaction id; 0 on a serial line, which has no transaction ids
   std::uint8_t unit = 0;
   Bytes pdu;  ///< function code and data, 1 to max_pdu bytes
 };
@@ -31,11 +31,12 @@ struct Request {
 class RequestStream {
  public:
   void append(std::span<const std::uint8_t> bytes);
-  /// Removes and returns the next complete request, or nothing.
+  /// Removes the next complete request and returns it; returns nothing if there is none.
   [[nodiscard]] std::optional<Request> next();
-  /// Returns true after an invalid header. The stream cannot be synchronised again: close the connection.
+  /// Returns true after an invalid header. The end of the invalid request is unknown, so the connection must
+  /// be closed.
   [[nodiscard]] bool broken() const noexcept { return broken_; }
-  /// Returns true if a part of a request has arrived.
+  /// Returns true if an incomplete request has arrived.
   [[nodiscard]] bool half() const noexcept { return !pending_.empty(); }
 
  private:
@@ -44,14 +45,14 @@ class RequestStream {
 };
 
 /// Divides the bytes of a serial line into requests. In the specification, a silence of 3.5 characters ends a
-/// frame. On a busy machine bytes arrive in groups, so this class determines the end of a frame from the
-/// length that its function code implies. Bytes that arrive after a silence of more than 100 ms begin a new
-/// frame.
+/// frame. On a busy machine, bytes arrive in groups. Therefore, this class determines the end of a frame from
+/// the length that the function code implies. Bytes that arrive after a silence of more than 100 ms begin a
+/// new frame.
 class RtuRequestStream {
  public:
   void append(std::span<const std::uint8_t> bytes, Clock::time_point now);
-  /// Removes and returns the next complete request, or nothing. A frame with a wrong checksum is discarded
-  /// with all other waiting bytes, and the server does not respond to it.
+  /// Removes the next complete request and returns it; returns nothing if there is none. A frame with a wrong
+  /// checksum is discarded together with all other waiting bytes, and the server does not respond to it.
   [[nodiscard]] std::optional<Request> next();
 
  private:
@@ -59,7 +60,7 @@ class RtuRequestStream {
   Clock::time_point last_byte_;
 };
 
-/// Returns a complete frame with the PDU of a reply. On a serial line, `transaction` is not used.
+/// Returns a complete frame that contains the PDU of a reply. On a serial line, `transaction` is not used.
 [[nodiscard]] Bytes frame_on(Wire wire, std::uint16_t transaction, std::uint8_t unit,
                              std::span<const std::uint8_t> pdu);
 
