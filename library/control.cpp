@@ -173,7 +173,7 @@ struct Feedforward::Parts {
   double tick_s = 0;
   double time_s = 0;
 
-  /// Returns a reference that has the value `ahead` at any time.
+  /// Returns a reference that has the value `ahead` at all times.
   [[nodiscard]] control::Reference reference(double ahead) const noexcept {
     control::Reference reference;
     reference.start(time_s, ahead);

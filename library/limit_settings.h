@@ -1,5 +1,5 @@
 #pragma once
-// Conversion of the public limits to those of control/.
+// Converts the public limits to the limits of control/.
 
 #include "control/elements/limits.h"
 #include "library/include/softgrip/control.h"

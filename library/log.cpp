@@ -43,8 +43,8 @@ void require_no_infinity(const std::string& argument, const std::vector<double>&
   }
 }
 
-/// Converts the columns of a log and shifts its times so that they begin at 0. Throws InvalidArgument for a
-/// wrong number of values or an invalid value.
+/// Converts the columns of a log, and shifts the times so that the first time is 0. Throws InvalidArgument if
+/// the number of values is wrong or a value is invalid.
 sysid::Log columns_of(const Log& log) {
   const std::string unit = name_of(log.unit);
   library::require_times("time_s", log.time_s, 2);
@@ -79,7 +79,7 @@ std::string sentence_of(const document::Problems& problems) {
   return first.hint.empty() ? first.message : first.message + " (" + first.hint + ")";
 }
 
-/// Checks a log with the reader of log files, so that arrays must satisfy the same conditions as files.
+/// Checks a log with the reader of log files. Therefore, arrays must satisfy the same conditions as files.
 sysid::Log accepted(const std::string& argument, const Log& log, const sysid::LogOptions& options) {
   document::Problems problems;
   const std::string name = log.name.empty() ? "log" : log.name;
@@ -201,7 +201,8 @@ Log read_log(const std::string& path, const ReadOptions& options) {
   try {
     return imported(path, options);
   } catch (const FileError&) {
-    // A file with the columns of a log was meant as a log: report the problems that the log reader found.
+    // A file that has the columns of a log was meant as a log. Therefore, report the problems that the log
+    // reader found.
     const auto text = read_file(path, sysid::LogOptions{}.bytes);
     if (text && text->substr(0, text->find('\n')).find("pressure_command_kpa") != std::string::npos)
       library::refuse(problems);

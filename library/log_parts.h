@@ -1,5 +1,5 @@
 #pragma once
-// Checks of public logs, and their conversion to those of sysid/.
+// Checks public logs and converts them to the logs of sysid/.
 
 #include <optional>
 #include <string>
@@ -12,16 +12,16 @@
 
 namespace softgrip::library {
 
-/// The unit that logs must have.
+/// The unit that all logs must have.
 struct NeededUnit {
-  std::string of;  ///< what has this unit, for messages: "the model NAME"
+  std::string of;  ///< name of the object that determines the unit, for messages: "the model NAME"
   Unit unit = Unit::mm;
 };
 
 /// Returns the unit of a model as the unit that logs must have.
 [[nodiscard]] NeededUnit needed_for(const Model& model);
 
-/// Checks logs as the commands do, and converts them. Throws InvalidArgument.
+/// Checks logs in the same way as the `softgrip` commands, and converts them. Throws InvalidArgument.
 /// @param argument       name of the argument, for messages
 /// @param measured_stay  see sysid::begin_before_first_command()
 [[nodiscard]] std::vector<sysid::Log> checked_logs(const std::string& argument, const std::vector<Log>& logs,

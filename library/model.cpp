@@ -19,9 +19,9 @@
 namespace softgrip {
 namespace {
 
-/// Largest difference between a step and the mean step, as a share of the mean step.
+/// Largest permitted difference between a time step and the mean time step, as a share of the mean time step.
 constexpr double most_jitter = 1e-6;
-/// Permitted steps of an inverse [s].
+/// Shortest and longest time step that an inverse permits [s].
 constexpr double shortest_step_s = 1e-4;
 constexpr double longest_step_s = 1;
 
@@ -169,7 +169,8 @@ Inverse Model::inverse(std::span<const double> time_s, std::span<const double> d
   library::require_between("start_kpa", options.start_kpa, options.pressure_min_kpa, options.pressure_max_kpa,
                            "kPa");
   Feedforward feedforward(*this, limits, tick_s);
-  // Reference at `preview_s()` after a sample, linear between samples and constant after the last one.
+  // Value of the reference preview_s() after a sample. Between samples, the reference is linear, and after
+  // the last sample, it is constant.
   const double ahead = feedforward.preview_s() / tick_s;
   const auto whole = static_cast<std::size_t>(ahead);
   const double part = ahead - static_cast<double>(whole);

@@ -1,5 +1,5 @@
 #pragma once
-// The content of a public Model, and the checks of arguments that all public functions share.
+// The content of a public Model. Also checks arguments in the way that all public functions use.
 
 #include <memory>
 #include <span>
@@ -18,25 +18,25 @@ struct Model::Parts {
 
 namespace library {
 
-/// Wraps a valid model.
+/// Returns a public Model that contains a valid model.
 [[nodiscard]] Model wrapped(model::Model model);
 [[nodiscard]] model::OutputUnit unit_of(Unit unit) noexcept;
 [[nodiscard]] Unit unit_of(model::OutputUnit unit) noexcept;
 
-/// Throws FileError with all problems.
+/// Throws FileError with all problems in its text.
 [[noreturn]] void refuse(const document::Problems& problems);
 
 /// Returns the unit as text for messages: "mm" or "deg".
 [[nodiscard]] std::string in_brackets(model::OutputUnit unit);
 
-// Each of the following functions throws InvalidArgument.
+// Each of the following functions throws InvalidArgument if its requirement is not met.
 /// Requires one value for each of `count` times.
 void require_size(const std::string& argument, std::size_t size, std::size_t count, const std::string& unit);
 /// Requires finite values.
 void require_finite(const std::string& argument, std::span<const double> values, const std::string& unit);
-/// Requires at least `fewest` times that are finite and increasing.
+/// Requires finite and increasing times, at least `fewest` of them.
 void require_times(const std::string& argument, std::span<const double> time_s, std::size_t fewest);
-/// Requires a number in [lower, upper].
+/// Requires a number from `lower` to `upper`.
 void require_between(const std::string& argument, double value, double lower, double upper,
                      const std::string& unit);
 /// Requires a finite number above 0.

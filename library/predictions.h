@@ -1,5 +1,5 @@
 #pragma once
-// Conversion of scores and intervals of sysid/ to the public structs.
+// Converts the scores and intervals of sysid/ to the public structs.
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// Conversion between the readings of the public interface and those of the drivers.
+// Converts the readings of the public interface to those of the drivers, and back.
 
 #include "library/include/softgrip/board.h"
 #include "model/reading.h"

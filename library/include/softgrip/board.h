@@ -1,6 +1,6 @@
 #pragma once
 /// @file
-/// The interface of I/O boards, and a simulated board. Stable.
+/// The interface of I/O boards, and a simulated board. The changelog announces every incompatible change.
 
 #include <chrono>
 #include <cstddef>
@@ -17,14 +17,14 @@
 
 namespace softgrip {
 
-/// Reason why a reading can or cannot be used.
+/// The reason why a reading can or cannot be used.
 enum class Validity : std::uint8_t {
   valid,         ///< usable
-  none_yet,      ///< no response so far
+  none_yet,      ///< there has been no response yet
   out_of_range,  ///< outside the electrical range of the sensor
   sensor_error,  ///< an error code of the sensor or of the board
   jumped,        ///< changed faster than the finger can move
-  frozen,        ///< constant while the command changed
+  frozen,        ///< did not change although the command changed
   stale,         ///< older than permitted
 };
 
@@ -37,26 +37,26 @@ struct Reading {
       std::numeric_limits<double>::quiet_NaN();  ///< temperature [degrees Celsius]; NaN: no sensor
   std::chrono::nanoseconds sampled_at{0};        ///< time of the sample
   std::uint32_t sequence = 0;                    ///< number of responses so far
-  Validity validity = Validity::none_yet;        ///< assessment by the driver
+  Validity validity = Validity::none_yet;        ///< validity of the reading according to the driver
 };
 
 /// Result of an exchange with a board.
 enum class BusStatus : std::uint8_t {
-  ok,                ///< commands written, readings taken
-  disconnected,      ///< no session; call connect()
-  timed_out,         ///< the deadline passed
+  ok,                ///< the commands were written and the readings taken
+  disconnected,      ///< there is no connection; call connect()
+  timed_out,         ///< the deadline passed before the exchange was complete
   bad_reply,         ///< the response is malformed
   exception,         ///< the board returned an error
-  write_refused,     ///< the outputs did not take the commanded values
+  write_refused,     ///< the outputs did not change to the commanded values
   overwritten,       ///< another client also writes the outputs
   watchdog_tripped,  ///< the watchdog of the board holds the outputs at their safe value
-  closed_at_once,    ///< the connection was closed before its first response
+  closed_at_once,    ///< the connection was closed before the first response
 };
 /// Returns the name of the enumerator.
 [[nodiscard]] SOFTGRIP_API std::string name_of(BusStatus status);
 
-/// An I/O board with one output and one set of inputs per channel. Derive from it to write a driver. All
-/// calls come from one thread.
+/// An I/O board with one output and one set of inputs per channel. To write a driver, derive a class from
+/// Board. All functions are called from one thread.
 class SOFTGRIP_API Board {
  public:
   Board() = default;
@@ -66,26 +66,27 @@ class SOFTGRIP_API Board {
 
   /// Returns the number of channels.
   [[nodiscard]] virtual std::size_t channels() const noexcept = 0;
-  /// Opens or reopens the session. The call may block until the deadline. The outputs keep their values.
+  /// Opens or reopens the connection. The call may block until the deadline. The outputs keep their values.
   /// @param deadline  longest duration of the call
   [[nodiscard]] virtual BusStatus connect(std::chrono::nanoseconds deadline) noexcept = 0;
-  /// Writes one pressure per channel and reads all channels. If the result is not `ok`, the readings are
-  /// unchanged. The function must not allocate.
+  /// Writes one pressure per channel and reads all channels. If the result is not `ok`, the readings do not
+  /// change. The function must not allocate memory.
   /// @param commands_kpa  commands [kPa], channels() values
   /// @param readings      channels() values, written by the call
   /// @param deadline      longest duration of the call
   [[nodiscard]] virtual BusStatus exchange(std::span<const double> commands_kpa, std::span<Reading> readings,
                                            std::chrono::nanoseconds deadline) noexcept = 0;
-  /// Returns the reason of the last failure of connect() or exchange().
+  /// Returns the reason why the last connect() or exchange() failed.
   [[nodiscard]] virtual std::string detail() const;
-  /// Returns one line for display: product, address.
+  /// Returns one line for the user with product and address.
   [[nodiscard]] virtual std::string describe() const = 0;
 };
 
 /// An object that a finger touches.
 struct SimulatedObject {
   double position = 0;    ///< displacement at contact, in the unit of the model
-  double yielding = 0.1;  ///< motion beyond the contact relative to free motion: 0 (rigid) to 1 (no effect)
+  double yielding = 0.1;  ///< motion beyond the contact divided by the motion without an object: 0 (rigid) to
+                          ///< 1 (no effect)
 };
 
 /// One channel of a SimulatedBoard.
@@ -95,16 +96,16 @@ struct SimulatedFinger {
   double noise = 0;                            ///< standard deviation of a reading, >= 0
   double pressure_min_kpa = 0;                 ///< lower end of the output [kPa]
   double pressure_max_kpa = 100;               ///< upper end of the output [kPa]
-  std::uint64_t seed = 1;                      ///< seed of all noise
+  std::uint64_t seed = 1;                      ///< seed of the random numbers of all noise
 };
 
-/// A simulated board whose fingers are models. Only advance() advances its clock. Equal settings and equal
-/// calls give bit-identical readings. The daemon uses the same simulated board.
+/// A simulated board whose fingers are models. Its clock changes only in advance(). If all settings and calls
+/// are equal, the readings are identical in every bit. The daemon uses the same simulated board.
 class SOFTGRIP_API SimulatedBoard final : public Board {
  public:
   /// Creates a board. Throws InvalidArgument.
   /// @param fingers  one per channel, 1 to 16
-  /// @param tick_s   usual period of exchange() [s], > 0
+  /// @param tick_s   usual time between two calls of exchange() [s], > 0
   explicit SimulatedBoard(std::vector<SimulatedFinger> fingers, double tick_s = 0.005);
   ~SimulatedBoard() override;
 
@@ -115,14 +116,15 @@ class SOFTGRIP_API SimulatedBoard final : public Board {
   [[nodiscard]] std::string detail() const override;
   [[nodiscard]] std::string describe() const override;
 
-  /// Returns the time of the board's clock, which begins at 1 s.
+  /// Returns the time of the board's clock, which starts at 1 s.
   [[nodiscard]] std::chrono::nanoseconds now() const noexcept;
   /// Advances the clock. A negative duration is ignored.
   void advance(std::chrono::nanoseconds duration) noexcept;
-  /// Places an object at the finger of a channel. An empty `object` removes it. A call for an unknown channel
-  /// has no effect.
+  /// Places an object at the finger of a channel. If `object` is empty, removes the object. A call for an
+  /// unknown channel has no effect.
   void set_object(std::size_t channel, const std::optional<SimulatedObject>& object) noexcept;
-  /// Returns the displacement of the finger without the errors of its sensor; NaN for an unknown channel.
+  /// Returns the true displacement of the finger, without the errors of its sensor; NaN for an unknown
+  /// channel.
   [[nodiscard]] double displacement(std::size_t channel) const noexcept;
 
  private:

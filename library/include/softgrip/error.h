@@ -1,26 +1,26 @@
 #pragma once
 /// @file
-/// Exceptions of the library. Stable.
+/// The exceptions of the library. The changelog announces every incompatible change.
 ///
 /// Functions that are called once (loading, fitting, construction) report errors by these exceptions.
-/// Functions that are called in a control loop do not throw; they return the error as a value.
+/// Functions that a control loop calls do not throw. They report errors by their return value.
 
 #include <stdexcept>
 #include <string>
 
 #include <softgrip/export.h>
 
-/// softgrip: models, control, identification and diagnosis of soft pneumatic fingers.
+/// Namespace of softgrip: models, control, identification and diagnosis of soft pneumatic fingers.
 namespace softgrip {
 
-/// Base class of all exceptions of the library. what() is a sentence for display.
+/// Base class of all exceptions of the library. what() returns a sentence for the user.
 class SOFTGRIP_API Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
   ~Error() override;
 };
 
-/// An invalid argument: a wrong number of values, a value that is not finite, or a value out of its range.
+/// An argument is invalid: the number of its values is wrong, or a value is not finite or out of range.
 /// what() names the argument, the expected shape or range, and the unit.
 class SOFTGRIP_API InvalidArgument : public Error {
  public:
@@ -36,23 +36,23 @@ class SOFTGRIP_API InvalidArgument : public Error {
   std::string argument_;
 };
 
-/// A file that cannot be read or written, or whose content is refused. what() lists each problem with file,
-/// line and column.
+/// A file cannot be read or written, or its content is refused. what() lists each problem with file, line and
+/// column.
 class SOFTGRIP_API FileError : public Error {
  public:
   using Error::Error;
   ~FileError() override;
 };
 
-/// Valid arguments for which no result exists, for example a model without an inverse, or logs that cannot be
-/// fitted.
+/// The arguments are valid, but there is no result. Examples are a model without an inverse, and logs that
+/// cannot be fitted.
 class SOFTGRIP_API Refused : public Error {
  public:
   using Error::Error;
   ~Refused() override;
 };
 
-/// A computation that ended early because its std::stop_token requested it.
+/// A computation ended early, because its std::stop_token requested this.
 class SOFTGRIP_API Cancelled : public Error {
  public:
   using Error::Error;

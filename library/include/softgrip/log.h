@@ -1,6 +1,6 @@
 #pragma once
 /// @file
-/// Logs: measured runs of a finger, from arrays or from a file. Stable.
+/// Measured logs of a finger, from arrays or from a file. The changelog announces every incompatible change.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,66 +14,70 @@
 
 namespace softgrip {
 
-/// One measured run of one finger. All columns have one value per time; optional columns may be empty.
-/// Fill the arrays directly, or use read_log(). Functions that take logs check them.
+/// A measured log of one finger. All columns have one value per time. Optional columns may be empty. Fill the
+/// arrays directly, or use read_log(). Each function that gets a log checks it.
 struct Log {
   std::string name = {};                          ///< short name for results and reports
-  std::vector<double> time_s = {};                ///< times [s], increasing. The first one counts as 0
+  std::vector<double> time_s = {};                ///< times [s], increasing; the first time counts as 0
   std::vector<double> pressure_command_kpa = {};  ///< commanded pressure [kPa], finite
-  std::vector<double> displacement = {};          ///< readings in `unit`; NaN: no reading
-  std::vector<double> pressure_kpa = {};          ///< measured pressure [kPa], optional; NaN: no reading
+  std::vector<double> displacement = {};          ///< readings in `unit`; NaN: the reading is missing
+  std::vector<double> pressure_kpa = {};          ///< measured pressure [kPa], optional; NaN: the reading is
+                                                  ///< missing
   std::vector<double> temperature_c = {};         ///< temperature [degrees Celsius], optional
   std::vector<double> supply_kpa = {};            ///< supply pressure [kPa], optional
   Unit unit = Unit::mm;                           ///< unit of the displacement
-  std::string path = {};                          ///< file of the log; empty: created in memory
-  std::string sha256 = {};                        ///< hash of the file; empty: created in memory
-  std::vector<std::string> notes = {};  ///< findings of the reader, such as the mapping of an import
+  std::string path = {};                          ///< path of the file of the log; empty: the log was created
+                                                  ///< in memory
+  std::string sha256 = {};                        ///< hash of the file; empty: the log was created in memory
+  std::vector<std::string> notes = {};  ///< notes of the reader, such as the columns that an import assigned
 };
 
 /// Settings of read_log().
 struct ReadOptions {
-  std::string channel = {};  ///< the finger to read; empty if the file has only one
-  bool import_file = true;   ///< if the file is not a log, convert it as `softgrip import` proposes
-  /// Column for each role (`time`, `command`, `pressure`, `displacement`, `temperature`, `supply`), as its
-  /// name or its number from 1. For absent roles, names and units of the columns determine a proposal. If the
-  /// map is not empty, the file is always imported.
+  std::string channel = {};  ///< name of the finger to read; empty if the file has only one finger
+  bool import_file = true;   ///< true: a file that is not a log is converted as `softgrip import` proposes
+  /// Column for each role (`time`, `command`, `pressure`, `displacement`, `temperature`, `supply`), given by
+  /// its name or by its number from 1. For a role that is missing here, a column is proposed from the names
+  /// and units of the columns. If the map is not empty, the file is always imported.
   std::map<std::string, std::string> columns = {};
   std::map<std::string, std::string> units =
-      {};  ///< unit for each role, if the file does not state it: `pressure`: `psi`
+      {};  ///< unit for each role whose unit the file does not state, for example `pressure`: `psi`
   std::optional<double> rate_hz = {};  ///< sampling rate of a file without times [Hz]
   std::string sheet = {};              ///< name of the sheet in a workbook
 };
 
-/// Reads a log of softgrip (CSV, a folder of a recording), or converts a file of another program (text, XLSX,
-/// TDMS, MCAP, MATLAB, HDF5). The notes of the result state how a file was converted.
-/// Throws FileError with all problems, and InvalidArgument for options that do not exist.
+/// Reads a log of softgrip (CSV, or the folder of a recording). Converts a file of another program (text,
+/// XLSX, TDMS, MCAP, MATLAB, HDF5); the notes of the result describe the conversion. Throws FileError with
+/// all problems of the file. Throws InvalidArgument for options that do not exist.
 [[nodiscard]] SOFTGRIP_API Log read_log(const std::string& path, const ReadOptions& options = {});
 
-/// Writes a log as CSV. Reading it back gives equal columns. Throws FileError and InvalidArgument.
+/// Writes a log as CSV. If this file is read, the columns are equal to those of `log`. Throws FileError and
+/// InvalidArgument.
 SOFTGRIP_API void write_log(const std::string& path, const Log& log);
 
-/// Checks a log as `softgrip identify` does. Throws InvalidArgument, which names the column, the expected
-/// values and the unit.
+/// Checks a log as `softgrip identify` does. Throws InvalidArgument, whose text names the column, the
+/// expected values and the unit.
 SOFTGRIP_API void check(const Log& log);
 
-/// Input signal of the model.
+/// The input signal of the model.
 enum class Drive : std::uint8_t {
-  command,   ///< the commanded pressure, the input of the whole model
-  measured,  ///< the measured pressure, the input after the blocks of the valve
+  command,   ///< the commanded pressure, which is the input of the whole model
+  measured,  ///< the measured pressure, which replaces the output of the valve blocks
 };
 
-/// Known initial state of a log.
+/// The initial state of a log.
 enum class Begin : std::uint8_t {
   automatic,  ///< determined from the log
-  rest,       ///< at rest under the first pressure
-  unknown,    ///< estimated from the readings
+  rest,       ///< the finger is at rest under the first pressure
+  unknown,    ///< the state is unknown and is estimated from the readings
 };
 
-/// Interpretation of logs. The options --drive, --begin and --held of `softgrip` have the same meaning.
+/// Settings for the use of logs. They correspond to the options --drive, --begin and --held of `softgrip`.
 struct LogUse {
   Drive drive = Drive::command;    ///< input signal of the model
-  Begin begin = Begin::automatic;  ///< the initial state
-  bool held = false;               ///< the command keeps its value until the next sample
+  Begin begin = Begin::automatic;  ///< initial state of each log
+  bool held = false;               ///< true: the command keeps its value until the next sample; false: it is
+                                   ///< linear between samples
 };
 
 }  // namespace softgrip

@@ -1,6 +1,6 @@
 #pragma once
 /// @file
-/// Models of a finger: simulation and inverse. Stable.
+/// Models of a finger, their simulation and their inverse. The changelog announces every incompatible change.
 
 #include <cstddef>
 #include <cstdint>
@@ -35,12 +35,12 @@ struct Parameter {
 
 /// Settings of Model::simulate().
 struct SimulateOptions {
-  /// False: the pressure is linear between samples. True: each sample's pressure is held until the next one,
-  /// as a board holds its output; the displacement of a sample does not depend on the pressure of that
-  /// sample.
+  /// False: the pressure is linear between samples. True: the pressure of each sample is held until the next
+  /// sample, as a board holds its output. In this case, the displacement of a sample does not depend on the
+  /// pressure of the same sample.
   bool held = false;
   double noise = 0;  ///< standard deviation of white noise on the output, in the unit of the model; >= 0
-  std::uint64_t seed = 1;                      ///< seed of all noise. Equal seeds give equal bits
+  std::uint64_t seed = 1;                      ///< seed of all noise; equal seeds give identical results
   std::span<const double> supply_kpa = {};     ///< supply pressure [kPa], one value per sample, or empty
   std::span<const double> temperature_c = {};  ///< temperature [degrees Celsius], one per sample, or empty
 };
@@ -51,67 +51,66 @@ struct InverseOptions {
   double pressure_max_kpa = 100;     ///< largest command [kPa], above the smallest
   double slew_up_kpa_per_s = 300;    ///< fastest rise of the command [kPa/s], > 0
   double slew_down_kpa_per_s = 300;  ///< fastest fall of the command [kPa/s], > 0
-  double start_kpa = 0;              ///< command under which the finger is at rest at the first sample [kPa]
+  double start_kpa = 0;              ///< command under which the finger rests at the first sample [kPa]
 };
 
 /// Result of Model::inverse().
 struct Inverse {
-  std::vector<double> pressure_kpa;  ///< command [kPa], one per sample, held until the next sample
-  /// One value per sample: 1 if, because of the limits, the command does not reach the reference; otherwise
-  /// 0.
+  std::vector<double> pressure_kpa;  ///< command [kPa], one value per sample; each value is held until the
+                                     ///< next sample
+  /// One value per sample: 1 if the command cannot reach the reference because of the limits; otherwise 0.
   std::vector<std::uint8_t> out_of_reach;
 };
 
-/// A model: a chain of blocks from the commanded pressure to the sensor reading. It is immutable; copies are
-/// cheap and share the parameters. Threads may use one model at the same time.
+/// A model: a chain of blocks from the commanded pressure to the sensor reading. It never changes. Copies are
+/// cheap, because they share the parameters. Several threads may use one model at the same time.
 ///
-/// The blocks and their sources in the literature are in the reference page "blocks".
+/// The reference page "blocks" describes the blocks and their sources in the literature.
 class SOFTGRIP_API Model {
  public:
   /// Reads a model file (YAML). Throws FileError.
   [[nodiscard]] static Model load(const std::string& path);
   /// Reads the text of a model file. Throws FileError.
-  /// @param yaml  the text
-  /// @param name  name of the text in error messages
+  /// @param yaml  text of the model file
+  /// @param name  name that error messages use for the text
   [[nodiscard]] static Model parse(const std::string& yaml, const std::string& name = "model");
 
-  /// Writes a model file. load() of this file gives an equal model. Throws FileError.
+  /// Writes a model file. load() reads an equal model from this file. Throws FileError.
   void save(const std::string& path) const;
-  /// Returns the text of a model file. The numbers have enough digits, so parse() gives an equal model.
+  /// Returns the text of a model file. The numbers have so many digits that parse() gives an equal model.
   [[nodiscard]] std::string yaml() const;
 
   /// Returns the name of the model.
   [[nodiscard]] const std::string& name() const noexcept;
   /// Returns the origin of the parameters, in one line.
   [[nodiscard]] const std::string& source() const noexcept;
-  /// Returns 16 hexadecimal digits that identify the model: any change of a parameter changes them.
+  /// Returns 16 hexadecimal digits that identify the model. Any change of a parameter changes these digits.
   [[nodiscard]] std::string hash() const;
   /// Returns the unit of the output.
   [[nodiscard]] Unit unit() const noexcept;
   /// Returns all parameters in the order of the chain.
   [[nodiscard]] std::vector<Parameter> parameters() const;
-  /// Returns a copy with another value of a parameter. Throws InvalidArgument if there is no such parameter,
-  /// or if the copy would not be a valid model.
+  /// Returns a copy of the model in which one parameter has another value. Throws InvalidArgument if there is
+  /// no such parameter, or if the copy would not be a valid model.
   /// @param parameter  name of the parameter, as in parameters()
   /// @param value      new value, in the unit of the parameter
   [[nodiscard]] Model with(const std::string& parameter, double value) const;
 
-  /// Simulates the finger, which is at rest under the first pressure. `softgrip simulate` uses the same
-  /// function. Throws InvalidArgument.
+  /// Simulates the finger, which is at rest under the first pressure at the start. `softgrip simulate` uses
+  /// the same function. Throws InvalidArgument.
   /// @param time_s        times [s], at least 1 value, increasing
-  /// @param pressure_kpa  commanded pressure [kPa], one per time
+  /// @param pressure_kpa  commanded pressure [kPa], one value per time
   /// @param options       settings of hold, noise, supply pressure and temperature
-  /// @return the readings, one per time, in the unit of the model
+  /// @return the readings, one value per time, in the unit of the model
   [[nodiscard]] std::vector<double> simulate(std::span<const double> time_s,
                                              std::span<const double> pressure_kpa,
                                              const SimulateOptions& options = {}) const;
 
-  /// Computes the command with which the finger follows a displacement. The method is the feedforward
-  /// `full_model` of the daemon: it solves hysteresis and creep implicitly, and compensates lags by lead and
-  /// dead times by preview. If the first value differs from the displacement at rest, this difference decays
-  /// in 0.5 s or more.
-  /// simulate() with `held` shows the motion under this command.
-  /// Throws InvalidArgument, and Refused if the model has no inverse.
+  /// Computes the command for which the displacement of the finger follows a reference. The method is the
+  /// feedforward `full_model` of the daemon. It inverts hysteresis and creep implicitly, compensates lags by
+  /// lead, and compensates dead times by preview. If the first value of the reference differs from the
+  /// displacement at rest, this difference decays in 0.5 s or more. simulate() with `held` gives the
+  /// displacement for this command. Throws InvalidArgument, and Refused if the model has no inverse.
   /// @param time_s        times [s], at least 2 values, with equal steps (within 1e-6 of the step)
   ///                      of 0.0001 to 1 s
   /// @param displacement  the reference in the unit of the model, one value per time
@@ -119,7 +118,7 @@ class SOFTGRIP_API Model {
   [[nodiscard]] Inverse inverse(std::span<const double> time_s, std::span<const double> displacement,
                                 const InverseOptions& options = {}) const;
 
-  /// Opaque content.
+  /// Content of the object; its definition is not public.
   struct Parts;
   /// Creates a model from its content; only the library itself uses it.
   explicit Model(std::shared_ptr<const Parts> parts) noexcept;
@@ -130,26 +129,26 @@ class SOFTGRIP_API Model {
   std::shared_ptr<const Parts> parts_;
 };
 
-/// Simulates a finger step by step. Construction allocates memory. step() and reset() allocate no memory if
-/// `sample_time_s` is given. Only one thread may use an object at a time.
+/// Simulates a finger step by step. The constructor allocates memory. If `sample_time_s` is above 0, step()
+/// and reset() allocate no memory. Only one thread at a time may use an object.
 class SOFTGRIP_API Simulator {
  public:
   /// Creates a finger at rest under 0 kPa.
-  /// @param model          model of the finger
+  /// @param sample_time_s  usual duration of a step [s]; 0: the duration is irregular
   /// @param sample_time_s  usual duration of a step [s]; 0: irregular
   /// @param seed           seed of the noise of the model's sensor
   explicit Simulator(const Model& model, double sample_time_s = 0, std::uint64_t seed = 1);
   ~Simulator();
-  /// Takes over the state. `other` can then only be assigned to or destroyed.
+  /// Moves the state of `other` into this object. After that, `other` can only be assigned to or destroyed.
   Simulator(Simulator&& other) noexcept;
-  /// Takes over the state. `other` can then only be assigned to or destroyed.
+  /// Moves the state of `other` into this object. After that, `other` can only be assigned to or destroyed.
   Simulator& operator=(Simulator&& other) noexcept;
 
-  /// Resets the model to its state of rest at a constant command [kPa].
+  /// Sets the state of a finger that rests at a constant command [kPa].
   void reset(double pressure_kpa) noexcept;
-  /// Simulates a step of `duration_s` [s], >= 0, while the command changes linearly to `pressure_kpa` [kPa].
-  /// Returns the reading in the unit of the model. An argument that is not finite, or a negative duration,
-  /// gives NaN and changes nothing.
+  /// Simulates a step of `duration_s` [s], >= 0, in which the command changes linearly to `pressure_kpa`
+  /// [kPa]. Returns the reading in the unit of the model. If an argument is not finite, or the duration is
+  /// negative, returns NaN and changes nothing.
   double step(double duration_s, double pressure_kpa) noexcept;
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// Validation: prediction of logs to which a model was not fitted. Stable; later versions may add fields to
-/// the result.
+/// Prediction of logs to which a model was not fitted. The changelog announces every incompatible change.
+/// Later versions may add members to the result.
 
 #include <string>
 #include <vector>
@@ -25,7 +25,7 @@ struct Validation {
 /// Predicts logs with a model, as `softgrip validate` does. Throws InvalidArgument.
 /// @param model  the model
 /// @param logs   at least one log, in the unit of the model
-/// @param use    interpretation of the logs
+/// @param use    how the logs are used: input, initial state, hold of the command
 [[nodiscard]] SOFTGRIP_API Validation validate(const Model& model, const std::vector<Log>& logs,
                                                const LogUse& use = {});
 

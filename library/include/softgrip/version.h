@@ -1,6 +1,6 @@
 #pragma once
 /// @file
-/// Version of the library. Stable.
+/// The version of the library. The changelog announces every incompatible change.
 
 #include <string>
 
@@ -8,8 +8,8 @@
 
 namespace softgrip {
 
-/// Returns the version of the loaded library, with the commit: "0.2.0+1a2b3c4". The part before `+` follows
-/// semantic versioning. Before 1.0.0, a new minor version may change the interface.
+/// Returns the version of the loaded library with its commit, for example "0.2.0+1a2b3c4". The part before
+/// `+` follows semantic versioning. Before version 1.0.0, a new minor version may change the interface.
 [[nodiscard]] SOFTGRIP_API std::string version();
 
 }  // namespace softgrip
