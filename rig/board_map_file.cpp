@@ -78,7 +78,7 @@ class BoardReader {
     return static_cast<drivers::WordOrder>(in.choice("word_order", names));
   }
 
-  /// Returns the address on the wire that belongs to the key `address` of the file.
+  /// Returns the address in Modbus requests that belongs to the key `address` of the file.
   std::uint16_t address(MapReader& in, std::int64_t registers) {
     const std::int64_t base = map_.address_base;
     const std::int64_t number = in.integer("address", base, base + last_address);
@@ -111,7 +111,7 @@ class BoardReader {
     const std::string key = "is" + std::string(suffix_of(block.unit));
     const std::vector<double> electrical = in.numbers(key, 2, {-1000, 1000});
     block.scaling = {raw[0], electrical[0], raw[1], electrical[1]};
-    // If a value could not be read, the two scaling points are not compared.
+    // If one of the values could not be read, the two scaling points cannot be compared.
     if (problems_.size() != before || !in.has("at_raw") || !in.has(key)) return;
     if (raw[0] == raw[1]) in.report("at_raw", "the two scaling points must differ");
     if (electrical[0] == electrical[1]) in.report(key, "the two scaling points must differ");
@@ -198,7 +198,7 @@ class BoardReader {
     map_.read_back = block;
   }
 
-  /// Reads one write. If `heartbeat` is true, the write may have a second value.
+  /// Reads one write. If `heartbeat` is true, the write may have a second value, which is used alternately.
   drivers::FixedWrite fixed_write(const Node& node, const std::string& what, bool heartbeat = false) {
     MapReader in(document_, node, problems_, what);
     drivers::FixedWrite write;
@@ -216,8 +216,8 @@ class BoardReader {
     return write;
   }
 
-  /// Reads the value of a write. For the texts functions_1_to_16 and functions_17_to_32, calculates the bit
-  /// mask of the functions in this group that feed the watchdog.
+  /// Reads the value of a write. For the texts functions_1_to_16 and functions_17_to_32, computes the bit
+  /// mask of the function codes in this group that feed the watchdog.
   std::uint16_t value_of(MapReader& in, std::int64_t largest) {
     const Node* const node = in.child("value", true);
     if (node == nullptr) return 0;
@@ -265,7 +265,7 @@ class BoardReader {
     drivers::BoardWatchdog& watchdog = map_.watchdog;
     const std::size_t before = problems_.size();
     if (in.choice("kind", {"communication_timeout", "none"}) == 1) return;
-    // If the kind is misspelt, further keys show that the map describes a watchdog.
+    // If the kind is misspelt, the presence of other keys shows that the map describes a watchdog.
     if (problems_.size() != before && in.keys().size() <= 1) return;
     watchdog.kind = drivers::BoardWatchdog::Kind::communication_timeout;
     watchdog.timeout_s = in.number("timeout_s", {0.001, 3600});
@@ -286,8 +286,8 @@ class BoardReader {
     if (const Node* count = in.child("clients", false)) watchdog.clients = client_count(*count);
   }
 
-  /// Reads the function codes that feed the watchdog. The function that writes the outputs must be one of
-  /// them, because each exchange contains this request.
+  /// Reads the function codes that feed the watchdog. One of them must be the function code that writes the
+  /// outputs, because every exchange contains a request with this code.
   void feeding_functions(MapReader& in) {
     std::vector<std::uint8_t>& functions = map_.watchdog.functions;
     for (const Node* item : in.sequence("functions", true)) {
@@ -295,14 +295,14 @@ class BoardReader {
       if (code.has_value()) functions.push_back(static_cast<std::uint8_t>(*code));
     }
     const std::uint8_t used = map_.has_fc23 ? std::uint8_t{23} : map_.outputs.registers.function;
-    if (used < fc_write_register) return;  // the error has been reported at the outputs
+    if (used < fc_write_register) return;  // the error was already reported at the outputs
     if (std::find(functions.begin(), functions.end(), used) == functions.end()) {
       in.report("functions", "the outputs are written by function " + std::to_string(used) +
                                  ", which does not feed the watchdog");
     }
   }
 
-  /// Reports keys that need outputs or inputs in a board that has no outputs or no inputs.
+  /// Reports keys that need outputs if the board has no outputs. Does the same for inputs.
   void check_directions(MapReader& in) {
     const auto needs = [&](std::string_view key, const std::string& direction) {
       if (in.has(key) && !in.has(direction)) {
@@ -330,8 +330,8 @@ class BoardReader {
     }
   }
 
-  /// Checks that one request can read a complete number. Two requests could return the halves of a number
-  /// from different moments.
+  /// Checks that one request can read a complete number. If two requests were needed, the two halves of the
+  /// number could come from different times.
   void check_max_registers(MapReader& in) {
     if (!in.good("max_registers")) return;
     std::uint16_t least = 1;

@@ -1,5 +1,6 @@
 #pragma once
-// Reads board files (YAML) into a BoardMap. Unknown keys are errors, and all problems are reported together.
+// Reads board files (YAML) into a BoardMap. Unknown keys are errors. All problems of a file are reported
+// together.
 
 #include <optional>
 #include <string>
@@ -9,12 +10,12 @@
 
 namespace softgrip::rig {
 
-/// Reads a board map from a parsed document. Adds all errors to `problems`; returns nothing if there is an
-/// error.
+/// Reads a board map from a parsed document. Adds all errors to `problems`, and returns nothing if there are
+/// errors.
 [[nodiscard]] std::optional<drivers::BoardMap> read_board_map(const document::Document& document,
                                                               document::Problems& problems);
 
-/// Calls parse_file() and read_board_map().
+/// Reads a file with parse_file() and read_board_map().
 [[nodiscard]] std::optional<drivers::BoardMap> load_board_map(const std::string& path,
                                                               document::Problems& problems);
 

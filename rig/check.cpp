@@ -20,7 +20,7 @@ namespace softgrip::rig {
 
 namespace {
 
-/// Keys that identify a kind of file. All kinds have `name`, so it is not listed.
+/// The keys that identify one kind of file. The key `name` is not listed, because files of all kinds have it.
 struct Signature {
   FileKind kind;
   std::vector<std::string> keys;
@@ -42,8 +42,8 @@ const std::array<Signature, 6>& signatures() {
   return all;
 }
 
-/// Returns the number of points of a document for one kind of file: 2 points for each key of this kind, 1
-/// point for each misspelt key.
+/// Returns the number of points that a document gets for one kind of file: 2 points for each key of this
+/// kind, and 1 point for each misspelt key.
 std::size_t score(const document::Document& document, const Signature& signature) {
   std::size_t points = 0;
   for (const document::Node::Entry& entry : document.root.entries) {
@@ -64,20 +64,20 @@ void report_unknown(const document::Document& document, document::Problems& prob
       "`steps`"));
 }
 
-/// A rig, and the document that contains the places of its keys in the file.
+/// A rig, and the document that contains the locations of its keys in the file.
 struct ReadRig {
   document::Document document;
   RigReading reading;
 };
 
-/// The rigs and sequences that are checked against each other after all files are read.
+/// The rigs and sequences that were read. After all files are read, they are checked against each other.
 struct Read {
   std::vector<ReadRig> rigs;
   std::vector<control::Sequence> sequences;
 };
 
 /// Reads a document as a file of the kind `file.kind`, and stores rigs and sequences in `read`. `parsed` is
-/// true if the document has no syntax error and therefore contains the complete file.
+/// true if the document has no syntax error, so that it contains the complete file.
 void read_as(const document::Document& document, bool parsed, std::span<const control::Argument> arguments,
              CheckedFile& file, document::Problems& problems, Read& read) {
   const auto keep_name = [&](const auto& value) {
@@ -115,7 +115,7 @@ void read_as(const document::Document& document, bool parsed, std::span<const co
 }
 
 /// Returns a substitute for a channel whose model, feedforward, gains or limits could not be read. The limits
-/// of the substitute are so wide that they accept each sequence.
+/// of the substitute are so wide that every sequence is within them.
 control::ChannelSettings anything(const control::ChannelSettings& known) {
   constexpr double wide = 1e6;
   control::ChannelSettings channel;
@@ -153,13 +153,13 @@ void compare(const Read& read, document::Problems& problems) {
   }
 }
 
-/// A file to be checked.
+/// A file that must be checked.
 struct Candidate {
   std::string path;
   bool from_folder = false;
 };
 
-/// Returns the files of a folder and of its subfolders in alphabetical order.
+/// Returns the files of a folder and of all folders in it, in alphabetical order.
 std::vector<Candidate> files_below(const std::string& folder) {
   namespace fs = std::filesystem;
   std::vector<Candidate> found;
@@ -179,7 +179,7 @@ std::vector<Candidate> files_below(const std::string& folder) {
   return found;
 }
 
-/// Returns the files to check, without repetition.
+/// Returns the files that must be checked, each file once.
 std::vector<Candidate> candidates_of(std::span<const std::string> paths, document::Problems& problems) {
   std::vector<Candidate> all;
   const auto add = [&](const Candidate& one) {
@@ -225,7 +225,7 @@ FileKind kind_of(const document::Document& document, document::Problems& problem
       best_points = points;
     }
   }
-  // An incomplete document has a syntax error, which has been reported.
+  // A document that is incomplete has a syntax error, which was already reported.
   if (best == FileKind::unknown && document.complete) report_unknown(document, problems);
   return best;
 }
@@ -249,8 +249,8 @@ CheckReport check_files(std::span<const std::string> paths, std::span<const cont
   report.has_rig = !read.rigs.empty();
   fit_sequences(read, problems);
   compare(read, problems);
-  // A model is read more than once if two rigs refer to it, or if its file is also an argument. Its problems
-  // are reported once.
+  // A model is read more than once if two rigs refer to its file, or if the file is also an argument. The
+  // problems of the model are reported only once.
   report.problems = problems.without_repeats();
   for (CheckedFile& file : report.files) {
     file.errors = count_of(report.problems.list(), file.path);

@@ -1,5 +1,5 @@
 #pragma once
-// Suffixes of keys in rig files and board maps whose values are in V, mA or kPa.
+// The suffixes of keys in rig files and board maps that give the unit of a value: V, mA or kPa.
 
 #include <array>
 #include <string_view>

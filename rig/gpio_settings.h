@@ -1,5 +1,5 @@
 #pragma once
-// The `gpio` map of a rig file: the digital lines and their functions.
+// The settings in the `gpio` map of a rig file: the digital lines and their functions.
 
 #include <vector>
 
@@ -9,18 +9,20 @@
 namespace softgrip::rig {
 
 struct GpioSettings {
-  /// An input counts as changed after it has been steady for this time [s].
+  /// An input counts as changed after its new level has been steady for this time [s].
   double debounce_s = 0;
-  /// Time without a message from the lines or the loop after which the lines count as lost, or the loop as
-  /// stalled [s].
+  /// If no read of the lines succeeds for this time, the lines count as lost. If the loop executes no tick
+  /// for this time, the loop counts as stalled [s].
   double stale_after_s = 0;
-  /// Longest interval between two reads of the levels [s]. If an edge is missed, the new level is detected
-  /// within this time.
+  /// Longest time between two reads of the levels [s]. If an edge is missed, the new level is detected within
+  /// this time.
   double look_interval_s = 0.005;
-  /// The enable output is switched off while a fault other than the emergency stop is latched.
+  /// True: the enable output is switched off while a fault is latched. An emergency stop switches it off in
+  /// any case.
   bool enable_drops_on_fault = true;
   std::vector<drivers::GpioLineSettings> lines;  ///< at most one per role
-  std::vector<document::Problem> places;         ///< place of each line in the rig file, without a message
+  std::vector<document::Problem> places;         ///< for each line, its location in the rig file, as a
+                                                 ///< problem without a message
 
   [[nodiscard]] bool has(drivers::GpioRole role) const noexcept {
     for (const drivers::GpioLineSettings& line : lines) {

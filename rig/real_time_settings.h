@@ -1,5 +1,5 @@
 #pragma once
-// Real-time settings that are requested from the operating system; the `real_time` map of a rig file.
+// The settings in the `real_time` map of a rig file, which the daemon requests from the operating system.
 
 #include <cstddef>
 #include <optional>
@@ -8,24 +8,24 @@
 namespace softgrip::rig {
 
 struct RealTimeSettings {
-  /// If true, the daemon does not start (exit code 1) if a setting below cannot be verified. If false, the
-  /// daemon starts and reports the setting that failed, the reason and the consequence.
+  /// If true and a setting below cannot be verified, the daemon does not start (exit code 1). If false, the
+  /// daemon starts in any case. It reports each setting that failed, with the reason and the consequence.
   bool required = false;
-  /// SCHED_FIFO priority of the loop thread, 1 to 80; 0: ordinary scheduling. Kernel threads that the loop
-  /// depends on have priorities above 80. The priority of the bus thread is 1 lower.
+  /// SCHED_FIFO priority of the loop thread, 1 to 80; 0: no real-time scheduling. The kernel threads on which
+  /// the loop depends have priorities above 80. The priority of the bus thread is 1 lower.
   int priority = 70;
   /// If true, the daemon calls mlockall() for current and future pages, does not trim the heap, and does not
   /// use mmap() for large blocks.
   bool lock_memory = true;
-  /// Amount of stack that each real-time thread writes to before the first tick, so that its pages exist
-  /// [bytes].
+  /// Number of bytes of its stack that each real-time thread writes before the first tick, so that the pages
+  /// are resident in memory.
   std::size_t prefault_stack_bytes = 256 * 1024;
-  /// Amount of heap that is allocated, written to and freed before the first tick [bytes].
+  /// Number of bytes of the heap that are allocated, written and freed before the first tick.
   std::size_t prefault_heap_bytes = 8 * 1024 * 1024;
-  /// Longest permitted wake-up latency from a sleep state of the processor, which is written to
-  /// /dev/cpu_dma_latency [us]; if it is absent, nothing is written.
+  /// Longest permitted time in which a processor wakes up from a sleep state [us]. The value is written to
+  /// /dev/cpu_dma_latency; if it is empty, nothing is written.
   std::optional<int> cpu_dma_latency_us = 0;
-  /// Processors on which the loop and bus threads may run; empty: all.
+  /// Processors on which the threads of loop and bus may run; empty: all processors.
   std::vector<int> cpus;
 };
 

@@ -17,11 +17,11 @@ namespace {
 using document::Location;
 using document::Node;
 
-/// Largest plausible ratio of the displacement of the free finger at the pressure limit to the displacement
-/// limit. The ratio may exceed 1, because gripping a part needs more pressure than free motion.
+/// Largest plausible ratio of the free finger's displacement at the pressure limit to the displacement limit.
+/// The ratio may exceed 1, because gripping a part needs more pressure than free motion.
 constexpr double most_times_too_far = 2;
-/// Largest plausible ratio of `max_speed_mm_per_s` to the speed of the model. The ratio may exceed 1, because
-/// a finger that loses its part moves faster than its valve alone would move it.
+/// Largest plausible ratio of `max_speed_mm_per_s` to the speed of the model. The ratio may exceed 1: a
+/// finger that loses its part moves faster than the valve could move it.
 constexpr double most_times_too_fast = 10;
 
 const Node* channel_node(const document::Document& document, std::size_t channel) {
@@ -29,8 +29,8 @@ const Node* channel_node(const document::Document& document, std::size_t channel
   return channels != nullptr && channel < channels->items.size() ? &channels->items[channel] : nullptr;
 }
 
-/// Returns the place of the key that applies to a channel: in the channel, in `channel_defaults`, or at the
-/// top of the file.
+/// Returns the location of the key that applies to a channel. The key is in the channel, in
+/// `channel_defaults`, or at the top level of the file.
 Location place_of(const document::Document& document, std::size_t channel, std::string_view map,
                   std::string_view key) {
   const Node* const own = channel_node(document, channel);
@@ -49,8 +49,8 @@ std::string about(double value) {
   return significant(std::round(value / unit) * unit, 6);
 }
 
-/// The keys and values of one end of the pressure range and of the corresponding end of the displacement
-/// range.
+/// The keys and the values of one end of the pressure range, and of the end of the displacement range that
+/// the finger reaches there.
 struct Reach {
   const char* pressure;
   const char* displacement;
@@ -91,7 +91,7 @@ void compare_speed(const document::Document& document, const control::ChannelSet
                                      " still permits the jump of a finger that loses its part"));
 }
 
-/// Returns the change of the rig file or of the wiring that makes a burst line detectable.
+/// Returns which change of the rig file or of the wiring makes a burst pressure line detectable.
 std::string remedy(const RigFile& rig, std::size_t channel) {
   if (!rig.settings.channels[channel].pressure_measured) {
     return "wire the valve's monitor output, or a pressure sensor, and give the channel a `pressure_monitor`";

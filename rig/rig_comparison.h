@@ -1,5 +1,5 @@
 #pragma once
-// Warns of values in a rig file that are permitted but implausible, by comparing limits and model.
+// Compares the limits of a rig file with the models, and warns of values that are permitted but implausible.
 
 #include <cstddef>
 
@@ -9,21 +9,22 @@
 
 namespace softgrip::rig {
 
-/// Adds a warning with a proposed value, at the key that should change, in these cases:
+/// In each of the following cases, adds a warning with a proposed value at the key that should be changed:
 /// - at a pressure limit, the free finger of the model goes more than twice as far as its displacement limit;
 /// - `max_speed_mm_per_s` is at least ten times the speed of the model within its slew limits;
-/// - a burst line would not be detected, because the channel has no pressure monitor, or because the measured
-///   pressure is not compared with the command.
+/// - a burst pressure line would not be detected, because the channel has no pressure monitor, or because the
+///   measured pressure is not compared with the command.
 ///
-/// The function simulates each model for several seconds of model time. `document` is the source of `rig`.
+/// The function simulates several seconds of each model. `document` is the document from which `rig` was
+/// read.
 void compare_limits(const document::Document& document, const RigFile& rig, document::Problems& problems);
 
-/// Returns true if a burst line or a lost supply on this channel would be a fault.
+/// Returns true if a burst pressure line or a lost supply of this channel would cause a fault.
 [[nodiscard]] bool sees_burst_line(const RigFile& rig, std::size_t channel);
 
-/// Adds a warning at the first grip step that verifies its result by displacement on a channel without
-/// detection of a burst line. Such a step would report HOLDING with a burst line. Adds at most one warning
-/// per sequence.
+/// Adds a warning at the first grip step that verifies its result by displacement on a channel where a burst
+/// pressure line is not detected. With a burst line, such a step would report HOLDING. Adds at most one
+/// warning per sequence.
 void compare_grips(const control::Sequence& sequence, const RigFile& rig, document::Problems& problems);
 
 }  // namespace softgrip::rig

@@ -16,7 +16,7 @@ namespace softgrip::rig {
 
 namespace {
 
-/// Returns the path of the file with the most similar name in the folder of `path`, which does not exist.
+/// `path` does not exist. Returns the path of the file in the same folder that has the most similar name.
 std::string nearest_file(const std::string& named, const std::string& path) {
   const std::filesystem::path wanted(path);
   std::error_code error;
@@ -30,14 +30,14 @@ std::string nearest_file(const std::string& named, const std::string& path) {
   return near.empty() ? std::string{} : std::filesystem::path(named).replace_filename(near).string();
 }
 
-/// Returns the errno with which reading the file would fail; 0 if it is readable.
+/// Returns the errno of the error that reading the file would cause; 0 if the file is readable.
 int reading_error(const std::string& path) {
   if (::access(path.c_str(), R_OK) != 0) return errno;
   std::error_code error;
   return std::filesystem::is_directory(path, error) ? EISDIR : 0;
 }
 
-/// Returns the text of a stored file, or null.
+/// Returns the text of a stored file; null if this file is not stored.
 const std::string* stored_text(const std::vector<InputFile>& stored, const std::string& path) {
   const auto found =
       std::find_if(stored.begin(), stored.end(), [&](const InputFile& file) { return file.path == path; });
@@ -55,7 +55,7 @@ void remember(Context& context, InputFile::Role role, const document::Document& 
 struct BoardKind {
   const char* key;
   void (*read)(Context& context, const document::Node& node);
-  bool after_channels;  ///< the board is read after the channels instead of before them
+  bool after_channels;  ///< true: the board is read after the channels; false: before the channels
 };
 constexpr std::array<BoardKind, 4> board_kinds{
     BoardKind{"simulated", read_simulated_board, true}, BoardKind{"modbus_tcp", read_modbus_tcp, false},
@@ -94,7 +94,7 @@ void read_board_and_channels(Context& context, MapReader& top) {
   if (kind != nullptr && kind->after_channels) read_board();
 }
 
-/// Reads a map of the file. Returns true if the map is present and has no error.
+/// Reads a map of the file with the function `read`. Returns true if the map is present and has no error.
 bool reads_well(Context& context, MapReader& top, std::string_view key,
                 void (*read)(Context& context, MapReader& top)) {
   const std::size_t before = context.problems.size();
@@ -102,7 +102,7 @@ bool reads_well(Context& context, MapReader& top, std::string_view key,
   return top.good(key) && context.problems.size() == before;
 }
 
-/// Returns true if all channels have names, so that sequences can refer to them.
+/// Returns true if all channels have names, because sequences refer to channels by name.
 bool all_named(const Context& context) {
   const auto& channels = context.rig.settings.channels;
   return !channels.empty() && context.names.size() == channels.size();

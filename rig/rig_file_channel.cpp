@@ -1,4 +1,4 @@
-// The channels of a rig file.
+// Reads the channels of a rig file.
 
 #include <algorithm>
 
@@ -12,8 +12,8 @@ namespace {
 
 using document::Node;
 
-/// Permitted gauge pressures and displacements in a rig file, for any supported finger. The limits of a rig
-/// are narrower.
+/// Gauge pressures and displacements that a rig file may contain, for any supported finger. The limits of a
+/// rig are narrower than these ranges.
 constexpr document::Range any_pressure_kpa{-100, 2000};
 constexpr document::Range any_displacement_mm{-1000, 1000};
 
@@ -57,8 +57,8 @@ control::LimitSettings read_limits(Context& context, const Node& node, const std
   return limits;
 }
 
-/// Reads `rest_kpa`, the pressure of all safe states. Without this key, the pressure is 0 kPa, or the
-/// pressure limit nearest to 0 kPa.
+/// Reads `rest_kpa`, the pressure of all safe states. If the key is missing, this pressure is 0 kPa, limited
+/// to the pressure range.
 void read_rest_pressure(MapReader& reader, const std::string& who, control::LimitSettings& limits) {
   const bool limits_known = reader.good("limits") && limits.pressure_max_kpa > limits.pressure_min_kpa;
   const auto rest_kpa = reader.optional_number("rest_kpa", any_pressure_kpa);
@@ -72,8 +72,8 @@ void read_rest_pressure(MapReader& reader, const std::string& who, control::Limi
                 "`rest_kpa` is the pressure of every safe state");
 }
 
-/// Reads the name of a channel. It is called before all other keys are read, because their messages contain
-/// the name.
+/// Reads the name of a channel. This function is called before all other keys are read, because messages
+/// about the keys contain the name.
 std::string read_channel_name(Context& context, MapReader& reader) {
   std::string name = read_name(reader, "name");
   if (name.empty()) return name;
@@ -85,7 +85,8 @@ std::string read_channel_name(Context& context, MapReader& reader) {
 void read_feedforward(Context& context, MapReader& reader, control::ChannelSettings& channel) {
   channel.feedforward.kind = static_cast<control::FeedforwardKind>(
       reader.choice("feedforward", {control::feedforward_names.begin(), control::feedforward_names.end()}));
-  // A command of the loop waits for the bus thread. The bus thread runs this time after the loop.
+  // A command of the loop waits until the bus thread sends it. This is the delay of the bus thread relative
+  // to the loop.
   const double lag_s = context.rig.loop.bus_offset_fraction * context.period_s();
   channel.feedforward.extra_latency_s = reader.optional_number("extra_latency_s", {0, 1}).value_or(lag_s);
 }
@@ -117,7 +118,7 @@ void read_wiring(Context& context, MapReader& reader, const std::string& who,
   context.rig.valves.push_back(facts);
 }
 
-/// Settings that all channels share. A channel may replace them.
+/// Settings that all channels share. A channel may replace each of them by its own setting.
 struct Shared {
   std::optional<control::PlausibilitySettings> plausibility;
   std::optional<control::ModelHealthSettings> health;
@@ -125,7 +126,8 @@ struct Shared {
 
 void read_own_or_shared(Context& context, MapReader& reader, const std::string& who, const Shared& shared,
                         control::ChannelSettings& channel) {
-  // If the document is incomplete, the shared maps may be in the part that was not read.
+  // If the document is incomplete, the shared maps may be in the part that was not read, so they are not
+  // reported as missing.
   const bool judge = context.document.complete && !reader.keys().empty();
   const Node* const plausibility = reader.child("plausibility", false);
   if (plausibility != nullptr) {
@@ -151,7 +153,7 @@ void check_feedforward_exists(Context& context, MapReader& reader, const control
   const auto exists =
       control::check_feedforward(channel.model, channel.feedforward, channel.limits, context.period_s());
   if (exists) return;
-  // Most models without an inverse can use the planned feedforward, which needs no inverse.
+  // Most models without an inverse can use the feedforward `planned`, because it needs no inverse.
   const control::FeedforwardSettings planned{control::FeedforwardKind::planned,
                                              channel.feedforward.extra_latency_s};
   const bool plannable =

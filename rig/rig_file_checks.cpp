@@ -1,4 +1,4 @@
-// Checks of a rig file that need the complete rig.
+// Checks the parts of a rig file that can only be checked together.
 
 #include <algorithm>
 #include <chrono>
@@ -12,8 +12,8 @@ namespace softgrip::rig {
 
 namespace {
 
-/// Returns the pressure of a valve after the watchdog of its Modbus module has tripped; nothing if the module
-/// has no watchdog.
+/// Returns the pressure that a valve has after the watchdog of its Modbus module has tripped; nothing if the
+/// module has no watchdog.
 std::optional<double> safe_value_kpa(const drivers::OutputWiring& valve, const ValveFacts& facts,
                                      const drivers::ModbusSettings& board) {
   if (valve.module >= board.modules.size()) return std::nullopt;
@@ -24,8 +24,8 @@ std::optional<double> safe_value_kpa(const drivers::OutputWiring& valve, const V
   return std::clamp(asked_kpa, facts.range_min_kpa, facts.range_max_kpa);
 }
 
-/// Returns nothing if the watchdog of a Modbus board puts each channel to its rest pressure, otherwise the
-/// text that a message appends as the reason. The text is empty if a module has no watchdog.
+/// Returns nothing if the watchdog of a Modbus board sets each channel to its rest pressure. Otherwise
+/// returns the reason, which is appended to a message. If a module has no watchdog, this text is empty.
 std::optional<std::string> stays_away(const Context& context, const drivers::ModbusSettings& board) {
   for (std::size_t i = 0; i < context.wiring.size(); ++i) {
     const std::optional<double> safe_kpa =
@@ -39,8 +39,8 @@ std::optional<std::string> stays_away(const Context& context, const drivers::Mod
   return std::nullopt;
 }
 
-/// Returns true if all channels of an industrial I/O board go to rest when the external circuit of the
-/// heartbeat switches off the valves.
+/// Returns true if all channels of an industrial I/O board go to their rest pressure when the external
+/// circuit of the heartbeat switches off the valves.
 bool heartbeat_vents(const Context& context, const drivers::IioSettings& board) {
   for (std::size_t i = 0; i < context.wiring.size(); ++i) {
     const ValveFacts& valve = context.rig.valves[i];
@@ -67,7 +67,7 @@ void check_watchdog(Context& context, MapReader& top) {
 }
 
 /// Returns the shortest time without messages after which the board sets an output to its safe value [s]; 0
-/// if it never does.
+/// if the board never does this.
 double watchdog_time_s(const Context& context) {
   if (const auto* modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board)) {
     return seconds(drivers::ModbusBoard(*modbus).watchdog_time().count());
@@ -78,9 +78,9 @@ double watchdog_time_s(const Context& context) {
   return simulated != nullptr ? simulated->watchdog_timeout_s : 0;
 }
 
-/// Checks that a gap in the communication causes the fault bus_down before the board's watchdog vents. A
-/// sequence continues after a gap that is too short for this fault. If the board had vented in the gap, the
-/// sequence would continue with vented fingers.
+/// Checks that a gap in the communication causes the fault bus_down before the board's watchdog vents. If a
+/// gap is too short for this fault, the sequence continues after the gap. If the board had vented in the gap,
+/// the sequence would continue with vented fingers.
 void check_watchdog_time(Context& context, MapReader& top) {
   const double timeout_s = watchdog_time_s(context);
   const std::chrono::nanoseconds timeout(nanoseconds(timeout_s));
@@ -99,8 +99,8 @@ void check_watchdog_time(Context& context, MapReader& top) {
 }
 
 /// Checks that the bus is fast enough for the rate. The round-trip time of a network is an estimate, so a
-/// user who knows it better may accept the rate. The transmission time on a serial line is exact, so an
-/// exchange could never meet a shorter deadline.
+/// user who knows this time better may accept the rate. The transmission time on a serial line is exact. A
+/// rate that needs a shorter time can never be reached, so the user cannot accept it.
 void check_budget(Context& context, MapReader& top) {
   const auto* const settings = std::get_if<drivers::ModbusSettings>(&context.rig.board);
   if (settings == nullptr) return;

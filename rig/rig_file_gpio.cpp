@@ -1,4 +1,4 @@
-// The digital lines of a rig file.
+// Reads the digital lines of a rig file.
 
 #include <array>
 
@@ -14,7 +14,7 @@ using drivers::GpioBias;
 using drivers::GpioLineSettings;
 using drivers::GpioRole;
 
-/// Largest length of the name of a line in the kernel [bytes].
+/// Length of the longest line name in the kernel [bytes].
 constexpr std::size_t longest_name = 31;
 
 std::string read_line_name(MapReader& reader) {
@@ -24,8 +24,8 @@ std::string read_line_name(MapReader& reader) {
   return text.value_or("");
 }
 
-/// Reads the word for a chip. Reports a word that matches several chips of this computer. A word that matches
-/// no chip is accepted, because it may be right on the computer of the rig.
+/// Reads the word that identifies a chip. Reports a word that matches several chips of this computer. A word
+/// that matches no chip is accepted, because the rig may be connected to another computer.
 std::string read_chip(MapReader& reader, const std::vector<ComputerDevice>& there) {
   std::string chip = reader.text("chip");
   const auto found = only_device(there, chip, "GPIO chip");
@@ -47,8 +47,8 @@ void read_which_line(MapReader& reader, GpioLineSettings& line, const std::vecto
   }
 }
 
-/// Warns if a broken wire would read as a released emergency stop or as a part in position. If a wire breaks,
-/// the pull resistor of the chip sets the level of the input.
+/// Warns if a broken wire would look like a released emergency stop, or like a part in position. If a wire
+/// breaks, the pull resistor of the chip determines the level of the input.
 void check_broken_wire(MapReader& reader, const GpioLineSettings& line) {
   if (line.bias != GpioBias::pull_up && line.bias != GpioBias::pull_down) return;
   const bool open_is_active = (line.bias == GpioBias::pull_up) != line.active_low;
@@ -61,7 +61,7 @@ void check_broken_wire(MapReader& reader, const GpioLineSettings& line) {
       "with this `active`, use the other pull resistor, and a contact that is closed in normal operation");
 }
 
-/// Reads the line of a role, if the file has it. `there` contains the chips of this computer.
+/// Reads the line for a purpose, if the file contains it. `there` contains the chips of this computer.
 void read_line(Context& context, MapReader& gpio, const std::vector<ComputerDevice>& there, GpioRole role) {
   const std::string name(drivers::name_of(role));
   const Node* const node = gpio.child(name, false);
@@ -103,7 +103,7 @@ void read_gpio(Context& context, MapReader& top) {
   if (const auto interval = reader.optional_number("look_interval_s", {0.001, 0.1})) {
     settings.look_interval_s = *interval;
   }
-  // A stored rig may be read on a computer without the rig's devices.
+  // If the rig is read from stored texts, this computer may not have the devices of the rig.
   const auto there = context.stored == nullptr ? drivers::chips_in() : std::vector<ComputerDevice>{};
   for (std::size_t i = 0; i < drivers::gpio_role_count; ++i)
     read_line(context, reader, there, static_cast<GpioRole>(i));

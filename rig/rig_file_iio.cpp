@@ -1,4 +1,4 @@
-// Reads the board of a rig file that consists of converters of this computer (industrial I/O).
+// Reads a board that consists of converters of this computer (industrial I/O) from a rig file.
 
 #include <cmath>
 
@@ -13,7 +13,7 @@ using document::Node;
 
 constexpr std::int64_t largest_raw = (std::int64_t{1} << 24) - 1;
 
-/// Reads the terminals. Each terminal must be a different channel of a converter.
+/// Reads the terminals of the board. No two terminals may be the same channel of a converter.
 class TerminalsReader {
  public:
   TerminalsReader(Context& context, const std::vector<ComputerDevice>& there)
@@ -38,7 +38,8 @@ class TerminalsReader {
     return terminals;
   }
 
-  /// Reads the heartbeat. It is called after outputs(), because the heartbeat must not be one of the outputs.
+  /// Reads the heartbeat. This function is called after outputs(), because the heartbeat must differ from all
+  /// outputs.
   std::optional<drivers::IioHeartbeat> heartbeat(MapReader& iio) {
     const Node* const node = iio.child("heartbeat", false);
     if (node == nullptr) return std::nullopt;
@@ -80,7 +81,7 @@ class TerminalsReader {
   }
 
   /// Reports a word that matches several converters of this computer, and a channel that is listed twice. A
-  /// word that matches no converter is accepted, because it may be right on the computer of the rig.
+  /// word that matches no converter is accepted, because the rig may be connected to another computer.
   void check_device(MapReader& reader, const drivers::IioTerminal& terminal, Known& known) const {
     if (!reader.good("device") || !reader.good("channel")) return;
     const auto device = only_device(there_, terminal.device, "converter");
@@ -109,7 +110,7 @@ void read_iio(Context& context, const Node& node) {
   MapReader reader(context.document, node, context.problems, "iio");
   drivers::IioSettings settings;
   settings.root = reader.optional_text("root").value_or(settings.root);
-  // A stored rig may be read on a computer without the rig's devices.
+  // If the rig is read from stored texts, this computer may not have the devices of the rig.
   const auto there =
       context.stored == nullptr ? drivers::converters_in(settings.root) : std::vector<ComputerDevice>{};
   TerminalsReader terminals(context, there);

@@ -1,4 +1,4 @@
-// Reads a Modbus board of a rig file: modules at network hosts, or on a serial line.
+// Reads a Modbus board from a rig file: its modules are at network hosts or on a serial line.
 
 #include <arpa/inet.h>
 
@@ -22,13 +22,13 @@ using drivers::ModbusModuleSettings;
 using drivers::ModbusSettings;
 
 constexpr int largest_tcp_unit = 255;
-// 0 is the broadcast address, to which no module responds; 248 to 255 are reserved (Modbus over Serial Line
-// V1.02, 2.2).
+// Largest permitted unit id. 0 is the broadcast address, to which no module responds, and 248 to 255 are
+// reserved (Modbus over Serial Line V1.02, 2.2).
 constexpr int largest_rtu_unit = 247;
-/// Longest time for which an adapter may delay responses without a warning [s].
+/// If an adapter delays responses by more than this time, a warning is given [s].
 constexpr double usual_latency_s = 0.0015;
 
-/// Reads a numeric address. Names are not accepted, because the time to resolve a name is not bounded.
+/// Reads a numeric address. Host names are not accepted, because resolving a name may take an unlimited time.
 std::string read_host(MapReader& reader) {
   std::string host = reader.text("host");
   std::array<unsigned char, sizeof(in6_addr)> address{};
@@ -51,7 +51,7 @@ std::optional<drivers::BoardMap> read_map(Context& context, MapReader& reader) {
 }
 
 /// Reads the settings of the session that the Modbus specification does not contain. check_waits() compares
-/// them with the deadlines after the deadlines are read.
+/// them with the deadlines, which are read later.
 drivers::LinkHabits read_habits(Context& context, MapReader& reader) {
   drivers::LinkHabits habits;
   habits.settle_s = reader.optional_number("settle_s", {0, 30}).value_or(0);
@@ -64,7 +64,7 @@ drivers::LinkHabits read_habits(Context& context, MapReader& reader) {
   return habits;
 }
 
-/// Checks that each waiting time is below the deadline that includes it.
+/// Checks that each waiting time is shorter than the deadline that includes it.
 void check_waits(Context& context) {
   const RigFile& rig = context.rig;
   for (const Context::Wait& wait : context.waits) {
@@ -82,8 +82,8 @@ void check_waits(Context& context) {
   }
 }
 
-/// Reads `accept_no_transaction_id`. To accept responses without a transaction id, the file must contain the
-/// sentence that states the risk.
+/// Reads `accept_no_transaction_id`. If responses have no transaction id, the file must contain this key with
+/// the sentence that describes the risk.
 void read_numbering(MapReader& reader, drivers::TcpAddress& address) {
   constexpr std::string_view key = "accept_no_transaction_id";
   constexpr std::string_view words = "a late answer may pass for the answer to a later request";
@@ -101,8 +101,9 @@ void read_framing(MapReader& reader, drivers::TcpAddress& address) {
   address.silence_s = reader.optional_number("silence_s", {0, 1}).value_or(address.silence_s);
 }
 
-/// Reads the modules of a board. For a single module, the map of the board contains `map` and `unit`, and on
-/// a network also `host` and `port`. Several modules are in a list under `modules`, each with a name.
+/// Reads the modules of a board. If there is a single module, the map of the board contains `map` and `unit`,
+/// and on a network also `host` and `port`. Several modules are in a list under `modules`, and each module
+/// has a name.
 class ModulesReader {
  public:
   ModulesReader(Context& context, ModbusSettings& settings, bool serial)
@@ -163,8 +164,8 @@ class ModulesReader {
     return address;
   }
 
-  /// Returns the link to an address, which is added if it is new. Modules at one host and port share a
-  /// session, so they must state the same settings of the session.
+  /// Returns the link to an address. If there is no such link yet, adds it. Modules at the same host and port
+  /// share a session, so their session settings in the file must be equal.
   std::size_t link_of(MapReader& reader, const drivers::TcpAddress& address) {
     auto& links = settings_.links;
     for (std::size_t link = 0; link < links.size(); ++link) {
@@ -195,23 +196,23 @@ void read_format(MapReader& reader, drivers::SerialLine& line) {
   (void)drivers::set_format(texts[reader.choice("format", texts)], line);
 }
 
-/// Warns of a device name that the kernel assigns in the order in which adapters are connected.
+/// Warns of a device name that depends on the order in which adapters are connected.
 void advise_on_name(MapReader& reader, const std::string& device) {
   if (device.rfind("/dev/ttyUSB", 0) != 0 && device.rfind("/dev/ttyACM", 0) != 0) return;
   reader.warn("device", document::in_backticks(device) + " may be another adapter after the next start",
               "use the adapter's own name, see: ls -l /dev/serial/by-id");
 }
 
-/// Reports a device name that several adapters have, because the adapter connected last would be used. A name
-/// that does not exist is accepted, because it may be right on the computer of the rig.
+/// Reports a device name that several adapters have. The system would use the adapter that was connected
+/// last. A name that does not exist is accepted, because the rig may be connected to another computer.
 void check_device(MapReader& reader, const std::string& device) {
   if (!reader.good("device")) return;
   const auto unclear = drivers::unclear_serial_device(device);
   if (unclear && unclear->several) reader.report("device", unclear->message, unclear->hint);
 }
 
-/// Reads the latency of the adapter from the file, or else from the kernel for the connected adapter. Warns
-/// of an adapter with a long latency.
+/// Reads the latency of the adapter from the file. If the file does not give it, asks the kernel for the
+/// latency of the connected adapter. Warns of an adapter with a long latency.
 void read_adapter_latency(MapReader& reader, drivers::SerialLine& line) {
   const auto stated = reader.optional_number("adapter_latency_s", {0, 1});
   const auto found = drivers::adapter_latency(line.device);
@@ -230,7 +231,7 @@ drivers::SerialLine read_line(Context& context, MapReader& reader) {
     reader.report("device",
                   "`device` must be an absolute path, found `" + document::shown(line.device) + "`");
   }
-  // A stored rig may be read on a computer without the rig's devices.
+  // If the rig is read from stored texts, this computer may not have the devices of the rig.
   if (context.stored == nullptr) check_device(reader, line.device);
   line.baud = static_cast<std::uint32_t>(reader.integer("baud", baud_rates.front(), baud_rates.back()));
   if (reader.good("baud") && std::find(baud_rates.begin(), baud_rates.end(), line.baud) == baud_rates.end()) {

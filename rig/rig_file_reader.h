@@ -1,5 +1,5 @@
 #pragma once
-// Functions that read_rig() calls to read the maps of a rig file. Internal to rig_file*.cpp.
+// The functions by which read_rig() reads the maps of a rig file. Only rig_file*.cpp uses this file.
 
 #include <map>
 #include <optional>
@@ -19,27 +19,30 @@ struct KnownModule {
   std::string name;
   std::optional<drivers::ModuleTerminals> terminals;
 };
-/// Places of the terminals that are in use, by module and number.
+/// Locations in the file of the terminals that are already in use, by module and by number of the terminal.
 using UsedTerminals = std::map<std::pair<std::size_t, std::size_t>, document::Location>;
 
-/// State that the functions share while they read a rig file.
+/// The state that all functions share while a rig file is read.
 struct Context {
   const document::Document& document;
   document::Problems& problems;
   RigFile& rig;
-  std::string board_key;                            ///< key of the board's kind, such as "modbus_tcp"
+  std::string board_key;                            ///< key that gives the kind of the board, such as
+                                                    ///< "modbus_tcp"
   std::vector<KnownModule> modules;                 ///< modules of the board; empty for a simulated board
-  std::vector<drivers::ChannelWiring> wiring;       ///< one per channel
-  std::map<std::string, document::Location> names;  ///< names of channels, and their places in the file
+  std::vector<drivers::ChannelWiring> wiring;       ///< one entry per channel
+  std::map<std::string, document::Location> names;  ///< names of the channels, with their locations in the
+                                                    ///< file
   UsedTerminals inputs;
   UsedTerminals thermometers;  ///< inputs of temperature sensors, which several channels may share
   UsedTerminals outputs;
-  std::map<std::string, std::optional<model::Model>> models;  ///< by path, so that each file is read once
+  std::map<std::string, std::optional<model::Model>> models;  ///< models by path, so that each file is read
+                                                              ///< only once
 
-  bool rate_known = false;  ///< rate_hz has no error, so values can be compared with the period
+  bool rate_known = false;  ///< true: rate_hz has no error, so other values can be compared with the period
 
-  /// True for each part of the file that is present and has no error. A check that needs several parts runs
-  /// only if they all have no error.
+  /// Has one member for each part of the file, which is true if the part is present and has no error. A check
+  /// that needs several parts runs only if all of them have no error.
   struct Sound {
     bool loop = false;
     bool faults = false;
@@ -50,12 +53,12 @@ struct Context {
     bool rest = false;
   };
   Sound sound;
-  /// One per channel: true if model, feedforward, gains and limits are known.
+  /// One value per channel; true: model, feedforward, gains and limits are known.
   std::vector<bool> motion_known;
-  /// Texts of the files to which the rig refers; if it is null, the files are read from the disk.
+  /// Texts of the files to which the rig refers. If the pointer is null, the files are read from the disk.
   const std::vector<InputFile>* stored = nullptr;
 
-  /// A waiting time of a Modbus session that must be below a deadline, which is read later.
+  /// A waiting time of a Modbus session. It must be shorter than a deadline, which is read later.
   struct Wait {
     document::Location at;
     std::string_view key;
@@ -67,10 +70,10 @@ struct Context {
   [[nodiscard]] double period_s() const { return 1 / rig.settings.rate_hz; }
 };
 
-/// Returns a path in the rig file relative to the working directory.
+/// Converts a path in the rig file to a path relative to the working directory.
 [[nodiscard]] std::string resolved(const Context& context, const std::string& path);
-/// Reads the document in the file whose path is the value of `key`. If the file cannot be read, a problem is
-/// reported at the key.
+/// Reads the document whose path is the value of `key`. If the file cannot be read, a problem is reported at
+/// the key.
 [[nodiscard]] std::optional<document::Document> named_document(Context& context, MapReader& reader,
                                                                std::string_view key, InputFile::Role role);
 /// Reads the model in the file whose path is the value of `key`.
@@ -79,9 +82,9 @@ struct Context {
 
 /// Reads a name that can be used in folders, metrics and messages: letters, digits, `-` and `_`.
 [[nodiscard]] std::string read_name(MapReader& reader, std::string_view key);
-/// Returns a place as text, for example "12:5".
+/// Returns a location as text, for example "12:5" for line 12, column 5.
 [[nodiscard]] std::string place(document::Location at);
-/// Reports "`key` is already ... at 12:5".
+/// Reports "`key` is already ... at 12:5", where 12:5 is the location of the first use.
 void report_repeated(MapReader& reader, std::string_view key, const std::string& what,
                      document::Location first);
 
@@ -89,7 +92,7 @@ void report_repeated(MapReader& reader, std::string_view key, const std::string&
 void read_modbus_tcp(Context& context, const document::Node& node);
 void read_modbus_rtu(Context& context, const document::Node& node);
 void read_iio(Context& context, const document::Node& node);
-/// Reads the deadlines of connecting and exchanging, and the pauses between attempts to connect.
+/// Reads the deadlines for connecting and for an exchange, and the pauses between attempts to connect.
 void read_timing(Context& context, MapReader& board);
 void read_channels(Context& context, MapReader& top);
 void read_simulated_board(Context& context, const document::Node& node);
@@ -103,19 +106,19 @@ void read_recorder(Context& context, MapReader& top);
 void read_socket(Context& context, MapReader& top);
 void read_gpio(Context& context, MapReader& top);
 
-// The following two maps are at the top of the file, for all channels, or in a channel.
+// The following two maps are at the top level of the file, where they apply to all channels, or in a channel.
 [[nodiscard]] control::PlausibilitySettings read_plausibility(Context& context, const document::Node& node);
 [[nodiscard]] control::ModelHealthSettings read_model_health(Context& context, const document::Node& node);
 
-/// Returns 0 kPa if the rest pressure differs from 0 kPa only because the pressure limits exclude 0 kPa;
-/// otherwise the rest pressure.
+/// Returns 0 kPa if the rest pressure differs from 0 kPa only because the pressure range does not contain 0
+/// kPa. Otherwise returns the rest pressure.
 [[nodiscard]] double vented_kpa(const control::LimitSettings& limits);
-/// Returns true if a pressure lies between the rest pressure and vented_kpa(), or differs from this interval
-/// by at most 1 % of the pressure range.
+/// Returns true if a pressure is between the rest pressure and vented_kpa(). A distance from this interval of
+/// up to 1 % of the pressure range is permitted.
 [[nodiscard]] bool is_rest(const control::LimitSettings& limits, double pressure_kpa);
 
 // Each of the following functions reads one part of the wiring of a channel.
-/// Reads the valve. `rest_stated` is true if the file contains the channel's `rest_kpa`.
+/// Reads the valve. `rest_stated` is true if the file gives `rest_kpa` for the channel.
 [[nodiscard]] drivers::OutputWiring read_valve(Context& context, const document::Node& node,
                                                const std::string& who, const control::LimitSettings& limits,
                                                bool rest_stated, ValveFacts& facts);

@@ -1,4 +1,4 @@
-// Reads the maps of a rig file that apply to the complete rig.
+// Reads the maps of a rig file that apply to the whole rig.
 
 #include <array>
 #include <charconv>
@@ -30,7 +30,7 @@ std::uint32_t cycles(MapReader& reader, std::string_view key, std::int64_t lower
   return static_cast<std::uint32_t>(reader.integer(key, lower, 100'000));
 }
 
-/// Reads `overrun_cycles`, or the same key under its deprecated name `slipped_cycles`.
+/// Reads `overrun_cycles`. The deprecated name of this key is `slipped_cycles`.
 std::uint32_t overrun_cycles(MapReader& reader) {
   if (!reader.has("slipped_cycles")) return cycles(reader, "overrun_cycles", 0);
   const std::uint32_t number = cycles(reader, "slipped_cycles", 0);
@@ -56,7 +56,8 @@ std::vector<int> read_cpus(Context& context, MapReader& reader) {
   return cpus;
 }
 
-/// Converts permissions in the form of ls, such as `rw-rw----`. Returns nothing for another text.
+/// Converts permissions in the form that `ls` prints, such as `rw-rw----`. Returns nothing for any other
+/// text.
 std::optional<unsigned> in_letters(std::string_view text) {
   constexpr std::string_view letters = "rwxrwxrwx";
   if (text.size() != letters.size()) return std::nullopt;
@@ -68,8 +69,8 @@ std::optional<unsigned> in_letters(std::string_view text) {
   return mode;
 }
 
-/// Converts permissions in the form of chmod: three octal digits, with an optional leading 0. Returns nothing
-/// for another text.
+/// Converts permissions in the form that `chmod` accepts: three octal digits, with an optional leading 0.
+/// Returns nothing for any other text.
 std::optional<unsigned> octal(std::string_view text) {
   if (text.size() == 4 && text[0] == '0') text.remove_prefix(1);
   unsigned mode = 0;
@@ -130,7 +131,7 @@ void read_safety(Context& context, MapReader& top) {
   }
 }
 
-/// Reads the three keys of the pressure fault. They must be given together.
+/// Reads the three keys of the pressure fault. The file must give all three keys or none of them.
 void read_pressure_fault(Context& context, MapReader& reader) {
   control::FaultSettings& faults = context.rig.settings.faults;
   const auto wanted = reader.optional_integer("pressure_cycles", 0, 100000);

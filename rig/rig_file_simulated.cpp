@@ -1,4 +1,4 @@
-// Reads the simulated board of a rig file.
+// Reads a simulated board from a rig file.
 
 #include <algorithm>
 #include <array>
@@ -13,8 +13,8 @@ namespace {
 
 using document::Node;
 
-/// Returns the seed of a channel, which differs between channels. It is computed from the seed of the board
-/// by a step of SplitMix64 (Steele, Lea, Flood 2014).
+/// Returns the seed of a channel; each channel has another seed. It is computed from the seed of the board by
+/// a step of SplitMix64 (Steele, Lea, Flood 2014).
 std::uint64_t seed_of(std::uint64_t seed, std::uint64_t channel) {
   return scattered(seed + channel * 0x9e3779b97f4a7c15U);
 }
@@ -74,7 +74,7 @@ void read_object_event(Context& context, MapReader& reader, Event& event) {
   event.object = simulation::read_object(context.document, *node, context.problems);
 }
 
-/// Keys that determine the kind of an event. Each event has exactly one of them.
+/// The keys that determine the kind of an event. Each event must have exactly one of them.
 constexpr std::array<std::string_view, 5> happenings{"object", "line", "sensor", "bus", "writes"};
 
 Event read_event(Context& context, const Node& node) {

@@ -1,4 +1,4 @@
-// Reads the deadline of exchanges with a board, and the timing of attempts to open a lost session again.
+// Reads the deadline of exchanges with a board, and the settings for the attempts to reopen a lost session.
 
 #include "base/numbers.h"
 #include "document/number.h"

@@ -1,4 +1,5 @@
-// Reads the wiring of a channel of a rig file: valve, sensor, pressure monitor, temperature sensor.
+// Reads the wiring of a channel from a rig file: valve, displacement sensor, pressure monitor and temperature
+// sensor.
 
 #include <algorithm>
 #include <array>
@@ -16,13 +17,13 @@ namespace {
 using document::Node;
 using drivers::ElectricalUnit;
 
-/// Returns the permitted values in a rig file for V, mA or kPa at a terminal, for any supported board. The
-/// limits of the board map are narrower.
+/// Returns which values in V, mA or kPa a rig file may contain for a terminal, for any supported board. The
+/// limits of the board map are narrower than this range.
 constexpr document::Range range_of(ElectricalUnit unit) {
   return unit == ElectricalUnit::kilopascal ? document::Range{-200, 10'000} : document::Range{-100, 100};
 }
 
-/// A key with an electrical suffix, such as `at_v` or `at_ma`. The suffix determines the unit.
+/// A key whose suffix gives the unit of its value, such as `at_v` or `at_ma`.
 struct ElectricalKey {
   std::string name;
   ElectricalUnit unit = ElectricalUnit::volt;
@@ -62,8 +63,8 @@ drivers::TwoPoints read_scaling(MapReader& reader, const ElectricalKey& at_key, 
   return {at[0], is[0], at[1], is[1]};
 }
 
-/// Returns the index of a terminal's module: that of the module named by the key `module`, or else that of
-/// the only module with terminals of this direction.
+/// Returns the index of the module of a terminal. If the key `module` is present, it names the module.
+/// Otherwise, it is the only module that has terminals of this direction.
 std::size_t read_module(const Context& context, MapReader& reader, std::string_view key) {
   if (context.modules.size() <= 1) return 0;
   std::vector<std::string> names;
@@ -80,7 +81,7 @@ std::size_t read_module(const Context& context, MapReader& reader, std::string_v
   return reader.good("module") ? chosen : context.modules.size();
 }
 
-/// Returns the terminal of a module; null if the module could not be read or has no such terminal.
+/// Returns a terminal of a module; null if the module could not be read, or if it has no such terminal.
 const drivers::Terminal* terminal_of(const Context& context, std::string_view key, std::size_t module,
                                      std::size_t index) {
   if (module >= context.modules.size() || !context.modules[module].terminals) return nullptr;
@@ -89,8 +90,8 @@ const drivers::Terminal* terminal_of(const Context& context, std::string_view ke
   return index < terminals.size() ? &terminals[index] : nullptr;
 }
 
-/// Reads the number of a terminal, which must exist and may be used once.
-/// @param shared  terminals that may be used more than once; null: none.
+/// Reads the number of a terminal. The terminal must exist, and only one channel may use it.
+/// @param shared  terminals that several channels may use; null: there are none.
 std::size_t read_terminal(Context& context, MapReader& reader, std::string_view key, std::size_t module,
                           UsedTerminals& used, UsedTerminals* shared = nullptr) {
   const auto terminal = static_cast<std::size_t>(reader.integer(key, 0, 255));
@@ -117,7 +118,7 @@ void check_unit(MapReader& reader, const ElectricalKey& key, const drivers::Term
                               " but `" + key.name + "` is in " + std::string(drivers::name_of(key.unit)));
 }
 
-/// Reads the electrical range in which readings are valid.
+/// Reads the range of electrical values in which a reading is valid.
 void read_validity(MapReader& reader, const std::string& valid_key, drivers::InputWiring& wiring) {
   const auto valid = reader.numbers(valid_key, 2, range_of(wiring.unit));
   if (reader.good(valid_key) && valid[0] >= valid[1]) {
@@ -127,7 +128,7 @@ void read_validity(MapReader& reader, const std::string& valid_key, drivers::Inp
   wiring.valid_max = valid[1];
 }
 
-/// Reads `error_codes: [{at_ma: 3.75, tolerance_ma: 0.05}]`.
+/// Reads the error codes of a sensor, for example `error_codes: [{at_ma: 3.75, tolerance_ma: 0.05}]`.
 void read_error_codes(Context& context, MapReader& reader, const std::string& who,
                       drivers::InputWiring& wiring) {
   const std::string suffix(suffix_of(wiring.unit));
@@ -154,8 +155,8 @@ drivers::InputWiring read_input(Context& context, MapReader& reader, const std::
   return wiring;
 }
 
-/// Checks that the pressure limits are within the ranges of valve and board output, and that they use at
-/// least a fifth of the valve's range.
+/// Checks that the pressure limits are within the ranges of the valve and of the board's output. Also checks
+/// that they use at least a fifth of the valve's range.
 void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
                  const drivers::OutputWiring& wiring, const control::LimitSettings& limits,
                  const ValveFacts& facts) {
@@ -177,8 +178,8 @@ void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
   }
   const drivers::Terminal* const terminal = terminal_of(context, "output", wiring.module, wiring.output);
   if (terminal == nullptr) return;
-  // The nominal full scale of many boards is one count above the largest raw number, so the comparison has a
-  // tolerance.
+  // The comparison needs a tolerance, because the nominal full scale of many boards corresponds to 1 more
+  // than the largest raw number.
   const double slack = (terminal->highest - terminal->lowest) * 1e-3;
   for (const double pressure : {limits.pressure_min_kpa, limits.pressure_max_kpa}) {
     const double needed = wiring.scaling.x_at(pressure);
@@ -192,8 +193,8 @@ void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
   }
 }
 
-/// Warns if the valve does not go to the rest pressure without power. Software cannot do this, because
-/// without power the valve alone determines the pressure of its finger.
+/// Warns if the valve does not go to the rest pressure when its power fails. Software cannot prevent this,
+/// because the valve alone determines the pressure of its finger when it has no power.
 void check_power_loss(MapReader& reader, const std::string& who, const control::LimitSettings& limits,
                       bool rest_stated, const ValveFacts& facts) {
   const bool holds = facts.on_power_loss == PowerLoss::holds;

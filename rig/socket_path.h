@@ -1,5 +1,5 @@
 #pragma once
-// Finds the socket of a rig's daemon, for its clients.
+// Finds the socket of the daemon that runs a rig. The clients of the daemon use this function.
 
 #include <optional>
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace softgrip::rig {
 
-/// Returns `socket: path:` of a rig file, relative to the working directory. The rest of the file is not
-/// checked, because the daemon may run with an earlier version. A file that cannot be read or has no path is
-/// reported.
+/// Returns the value of `socket: path:` in a rig file, relative to the working directory. The rest of the
+/// file is not checked, because the daemon may run with an earlier version of the file. If the file cannot be
+/// read or has no such path, a problem is reported.
 [[nodiscard]] std::optional<std::string> socket_path_of(const std::string& rig_path,
                                                         document::Problems& problems);
 

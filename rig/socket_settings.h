@@ -1,5 +1,5 @@
 #pragma once
-// The Unix domain sockets of the daemon; the `socket` map of a rig file.
+// The settings in the `socket` map of a rig file: the Unix domain sockets of the daemon.
 
 #include <cstddef>
 #include <string>
@@ -8,26 +8,27 @@ namespace softgrip::rig {
 
 /// A Unix domain stream socket in the file system.
 struct SocketFile {
-  std::string path;  ///< empty: no socket
-  /// Permissions of the file of the socket.
+  std::string path;  ///< path of the socket file; empty: there is no such socket
+  /// Permissions of the socket file.
   unsigned mode = 0660;
-  /// Group of the file of the socket; empty: the group of the daemon.
+  /// Group of the socket file; empty: the group of the daemon.
   std::string group;
 };
 
-/// The socket of the operators. Each client of this socket may move the gripper.
+/// The socket for clients that may move the gripper, and the settings for both sockets.
 struct SocketSettings : SocketFile {
   SocketSettings() { path = "/run/softgrip/softgripd.sock"; }
-  /// Socket of read-only clients.
+  /// The socket for clients that may only read.
   SocketFile look;
-  /// Largest number of clients of each socket.
+  /// Largest number of clients on each of the two sockets.
   std::size_t max_clients = 16;
-  /// Longest line of a client [bytes]. After a longer line, the daemon sends an error and disconnects the
-  /// client.
+  /// Length of the longest line that a client may send [bytes]. After a longer line, the daemon sends an
+  /// error and disconnects the client.
   std::size_t max_line_bytes = 64 * 1024;
-  /// Largest amount of replies that a client has not read [bytes]. A client that exceeds it is disconnected.
+  /// Largest size of the replies that a client has not read yet [bytes]. A client that exceeds this size is
+  /// disconnected.
   std::size_t max_queue_bytes = 1024 * 1024;
-  /// Folder that contains the sequences that the request `start` can start.
+  /// Folder with the sequences that clients can start by name.
   std::string sequence_directory = "/etc/softgrip/sequences";
 };
 

@@ -46,7 +46,8 @@ constexpr std::array<RegisterInfo, name_count> table{{
 constexpr std::int64_t last_address = 0xffff;
 constexpr std::int64_t most_fingers = 16;
 
-/// Returns 0.01 for "0.01 kPa" if `unit` is "kPa"; 0 if the text has another form or another unit.
+/// Returns, for example, 0.01 for the text "0.01 kPa" if `unit` is "kPa". Returns 0 if the text has another
+/// form or another unit.
 double resolution_of(const std::string& text, std::string_view unit) {
   double value = 0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -72,7 +73,7 @@ class Reader {
     }
   }
 
-  /// Reports an address that is above the last possible one or is used twice.
+  /// Reports an address that is above the largest possible address, or that is used twice.
   void claim(document::Location at, std::int64_t address, std::string_view what) {
     const auto [taken, is_free] = claimed_.emplace(address, what);
     if (is_free && address <= last_address) return;

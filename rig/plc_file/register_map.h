@@ -1,5 +1,5 @@
 #pragma once
-// The register map of the PLC interface, as config/plc.yaml defines it.
+// Defines the register map of the PLC interface, as config/plc.yaml gives it.
 
 #include <array>
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace softgrip::plc {
 
-/// All registers. The registers whose names begin with finger_ exist once per finger.
+/// All registers. A register whose name begins with finger_ exists once per finger.
 enum class Name : std::uint8_t {
   command_counter,
   command,
@@ -39,8 +39,8 @@ enum class Name : std::uint8_t {
 };
 inline constexpr std::size_t name_count = static_cast<std::size_t>(Name::finger_valid) + 1;
 
-/// The blocks of the file: registers that the PLC writes (command), registers that the gateway writes
-/// (status), and registers that exist once per finger.
+/// The three blocks of registers in the file: registers that the PLC writes (command), registers that the
+/// gateway writes (status), and registers that exist once per finger (finger).
 enum class Block : std::uint8_t { command, status, finger };
 
 struct RegisterInfo {
@@ -53,22 +53,24 @@ struct RegisterInfo {
 [[nodiscard]] const std::array<RegisterInfo, name_count>& registers() noexcept;
 
 struct RegisterMap {
-  std::array<std::uint16_t, name_count> address{};  ///< for a finger: offset from its first register
-  std::array<double, name_count> resolution{};      ///< value of one count of a quantity, in its unit
+  std::array<std::uint16_t, name_count> address{};  ///< address of each register; for a register of a finger,
+                                                    ///< the offset from the first register of the finger
+  std::array<double, name_count> resolution{};      ///< for each quantity, the physical value of the register
+                                                    ///< value 1, in the unit of the quantity
   std::uint16_t first_finger = 0;
   std::uint16_t finger_stride = 0;
   std::uint16_t most_fingers = 0;
 
   [[nodiscard]] std::uint16_t at(Name name) const noexcept { return address[static_cast<std::size_t>(name)]; }
-  /// Returns the address of a register of one finger.
+  /// Returns the address of a register that belongs to one finger.
   [[nodiscard]] std::uint16_t at(Name name, std::size_t finger) const noexcept {
     return static_cast<std::uint16_t>(first_finger + finger_stride * finger + at(name));
   }
   [[nodiscard]] double of_one(Name name) const noexcept { return resolution[static_cast<std::size_t>(name)]; }
 };
 
-/// Reads the map under the key `registers`. Each register must be present, and no two registers may have the
-/// same address.
+/// Reads the map under the key `registers`. The file must contain each register, and no two registers may
+/// have the same address.
 [[nodiscard]] RegisterMap read_register_map(const document::Document& document, const document::Node& node,
                                             document::Problems& problems);
 

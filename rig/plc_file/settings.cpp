@@ -76,7 +76,7 @@ class SettingsReader {
     settings_.recipes.push_back(std::move(recipe));
   }
 
-  /// Reads the name of the sequence's parameter that a register sets. The name must end with the unit of the
+  /// Reads the name of the sequence's parameter that a register sets. This name must end with the unit of the
   /// register.
   static std::string parameter(MapReader& reader, std::string_view key, std::string_view ending) {
     std::string name = reader.optional_text(key).value_or("");

@@ -42,7 +42,7 @@ void read_access(const document::Document& document, const Node& node, document:
   settings.without_token = static_cast<Role>(reader.choice("without_token", {"none", "look", "operate"}));
   settings.session_idle_s = reader.optional_number("session_idle_s", {1, 86400}).value_or(1800);
   settings.session_s = reader.optional_number("session_s", {1, 604800}).value_or(43200);
-  // A wrong address has been reported by read_listen().
+  // read_listen() has already reported a wrong address.
   if (!modbus::is_numeric(settings.address) || modbus::is_loopback(settings.address)) return;
   if (reader.good("without_token") && settings.without_token != Role::none) {
     reader.report("without_token", "other machines can reach this address, so each client needs a token",

@@ -1,5 +1,6 @@
 #pragma once
-// Settings of softgrip-web: config/web.yaml as plain values. docs/how-to/operator-page.md describes the file.
+// The settings of softgrip-web: config/web.yaml as plain values. docs/how-to/operator-page.md describes the
+// file.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,27 +13,29 @@
 
 namespace softgrip::web {
 
-/// Permissions of a client in increasing order.
+/// Permissions of a client, in increasing order.
 enum class Role : std::uint8_t { none, look, operate };
 
 struct Settings {
   std::string name;
-  std::string look_socket;     ///< socket of softgripd from which the page reads
-  std::string operate_socket;  ///< socket for commands; empty: the page has no commands
-  std::string address;         ///< numeric IP address at which the page is served
+  std::string look_socket;     ///< path of softgripd's socket from which the page reads
+  std::string operate_socket;  ///< path of softgripd's socket for commands; empty: the page has no commands
+  std::string address;         ///< numeric IP address on which the page is served
   std::uint16_t port = 0;
   std::size_t max_connections = 64;
-  std::vector<std::string> hosts;  ///< host names of the page in addition to `localhost`
-  std::string tokens;              ///< path of the file of tokens; empty: no tokens
+  std::vector<std::string> hosts;  ///< host names of the page, in addition to `localhost`
+  std::string tokens;              ///< path of the file that contains the tokens; empty: there are no tokens
   Role without_token = Role::look;
-  double session_idle_s = 1800;  ///< time after which a session without requests and open page ends [s]
-  double session_s = 43200;      ///< time after which each session ends [s]
-  std::string recordings;        ///< folder of the daemon's recordings; empty: the page shows none
+  double session_idle_s = 1800;  ///< a session ends after this time without a request and without an open
+                                 ///< page [s]
+  double session_s = 43200;      ///< every session ends after this time [s]
+  std::string recordings;        ///< folder of the daemon's recordings; empty: the page shows no recordings
 };
 
-/// Reads a document and adds its problems to `problems`.
+/// Reads the settings from a document, and adds problems of the document to `problems`.
 [[nodiscard]] Settings read_settings(const document::Document& document, document::Problems& problems);
-/// Reads the file and adds all its problems to `problems`. Returns nothing if there is a problem.
+/// Reads the settings from a file. Adds all problems of the file to `problems`, and returns nothing if there
+/// are any.
 [[nodiscard]] std::optional<Settings> load_settings(const std::string& path, document::Problems& problems);
 
 }  // namespace softgrip::web
