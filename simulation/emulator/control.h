@@ -1,11 +1,11 @@
 #pragma once
-// Control commands of the emulator for scripts and users, one line each:
+// Executes control commands of the emulator, which scripts and users send as single lines:
 //
 //   status                 one line of JSON: true state of board, fingers and faults
-//   fault NAME             begins a fault of the faults file
+//   fault NAME             begins the fault NAME of the faults file
 //   clear NAME             ends the fault NAME
-//   object out | back      removes the object, or puts it back
-//   object stone | screw | POSITION_MM[:YIELDING]    sets another object
+//   object out | back      removes the object, or puts the same object back
+//   object stone | screw | POSITION_MM[:YIELDING]    puts a new object between the fingers
 //   quit                   ends the emulator
 
 #include <optional>
@@ -17,15 +17,16 @@
 
 namespace softgrip::simulation {
 
-/// Returns the object that a text of a user describes ("stone", "screw", "13", "13:0.2"), or nullopt.
+/// Returns the object that a text describes ("stone", "screw", "13", "13:0.2"), or nullopt for any other
+/// text.
 [[nodiscard]] std::optional<simulation::PlantObject> object_named(std::string_view text);
 
 struct ControlAnswer {
-  std::string line;   ///< "ok", "error: ..." or the status, without line break
+  std::string line;   ///< reply to the command: "ok", "error: ..." or the status, without a line break
   bool quit = false;  ///< the command requests the end of the emulator
 };
 
-/// Executes one command line at `now`.
+/// Executes one command line at the time `now`.
 [[nodiscard]] ControlAnswer control(Emulator& emulator, Nanoseconds now, std::string_view line);
 
 }  // namespace softgrip::simulation

@@ -1,6 +1,7 @@
 #pragma once
-// Emulates a board: registers according to a board map, converters and the watchdog of the board. The signals
-// at its terminals are voltages or currents. The class does not know the devices at the terminals.
+// Emulates a board: its registers according to a board map, its converters and its watchdog. The signals at
+// its terminals are voltages or currents. This class does not model the valves and sensors that are connected
+// to the terminals.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,35 +16,36 @@ namespace softgrip::simulation {
 
 class EmulatedBoard {
  public:
-  /// Creates the board in the state after power-on. Outputs have their safe values (0 if the map contains
-  /// none), and the watchdog is inactive until the first request that feeds it.
+  /// Creates the board in the state after power-on. The outputs have their safe values, or 0 if the map gives
+  /// no safe values. The watchdog is inactive until the first request that feeds it.
   explicit EmulatedBoard(const drivers::BoardMap& map);
 
   [[nodiscard]] const drivers::BoardMap& map() const noexcept { return map_; }
 
-  /// Returns the reply to a request that arrives at `now`. Calls must be in order of time.
+  /// Returns the reply to a request that arrives at `now`. The calls must be in the order of time.
   Registers::Answer answer(Nanoseconds now, std::span<const std::uint8_t> pdu);
 
-  /// Trips the watchdog if its time-out has passed at `now`.
+  /// If the time-out of the watchdog has passed at `now`, trips the watchdog.
   void advance(Nanoseconds now);
-  /// Returns the time at which the watchdog trips if no request feeds it before. Returns nullopt if the
-  /// watchdog is inactive, has tripped or does not exist.
+  /// Returns the time at which the watchdog trips if no request feeds it before that time. Returns nullopt if
+  /// the watchdog is inactive or has tripped, or if the board has no watchdog.
   [[nodiscard]] std::optional<Nanoseconds> watchdog_due() const noexcept;
   [[nodiscard]] bool tripped() const noexcept { return tripped_; }
-  /// Returns true after a client has written an output.
+  /// Returns true if a client has written an output since the board was created.
   [[nodiscard]] bool commanded() const noexcept { return commanded_; }
 
   /// Returns the signal of an output terminal [V or mA].
   [[nodiscard]] double output(std::size_t terminal) const { return outputs_.at(terminal); }
-  /// Writes the number of connected clients to the register for this number, if the map has one.
+  /// Writes the number of connected clients to the register for this number. Does nothing if the map has no
+  /// such register.
   void count_clients(std::size_t clients);
-  /// While true, writes are confirmed but have no effect.
+  /// If `ignored` is true, the board confirms writes but does not execute them.
   void ignore_writes(bool ignored) noexcept { writes_ignored_ = ignored; }
 
   /// Sets the signal at an input terminal [V or mA].
   void set_input(std::size_t terminal, double electrical);
-  /// Sets an input to the board's error value, or to the upper end of its range if the map has no error
-  /// value.
+  /// Sets an input to the board's error value. If the map has no error value, sets the input to the upper end
+  /// of its range.
   void set_input_error(std::size_t terminal);
 
  private:
@@ -66,14 +68,15 @@ class EmulatedBoard {
 
   drivers::BoardMap map_;
   Registers registers_;
-  std::vector<double> outputs_;  // V or mA
+  std::vector<double> outputs_;  // signals of the output terminals [V or mA]
   Nanoseconds fed_at_ = 0;
-  std::optional<bool> alternated_;  // the last heartbeat write had the second of its two values
+  std::optional<bool> alternated_;  // true: the last write of the heartbeat had the second of its two values
   bool watchdog_awake_ = false;
   bool tripped_ = false;
   bool commanded_ = false;
   bool writes_ignored_ = false;
-  std::vector<bool> cleared_;  // for each clearing write: received since the watchdog tripped
+  std::vector<bool> cleared_;  // for each write that clears the watchdog; true: it was received since the
+                               // watchdog tripped
 };
 
 }  // namespace softgrip::simulation

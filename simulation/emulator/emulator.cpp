@@ -28,7 +28,8 @@ Nanoseconds interval_of(const FaultSpec& fault) {
   return std::max<Nanoseconds>(1, std::llround(fault.interval_s * 1e9));
 }
 
-/// Returns true while a jumping sensor has its offset: in the first, third, ... interval.
+/// Returns true in the first, third, fifth ... interval of a jumping sensor. In these intervals, its reading
+/// has an offset.
 bool is_off(const FaultSpec& fault, Nanoseconds since, Nanoseconds now) {
   return (now - since) / interval_of(fault) % 2 == 0;
 }
@@ -58,7 +59,8 @@ void Emulator::advance(Nanoseconds now) {
       ++watchdog_trips_;
       take_commands();
     }
-    // Faults are applied in each step, because a jumping sensor also changes while its fault stays active.
+    // Faults must be applied in each step: a jumping sensor also changes while its fault is active without
+    // interruption.
     faults_.advance(now_);
     apply_faults();
     if (now_ % grid == 0 && observer_) observer_();
@@ -85,7 +87,7 @@ bool Emulator::tripped() const noexcept {
 Reply Emulator::serve(Nanoseconds now, const Request& request, std::size_t link, Nanoseconds opened_at) {
   advance(now);
   EmulatedBoard* const board = board_at(link, request.unit);
-  // On a serial line all modules receive all requests. Only the addressed module replies.
+  // On a serial line, all modules receive all requests, but only the addressed module replies.
   if (board == nullptr && wire_ == Wire::rtu) return {};
   ++requests_;
   const auto index = wire_fault(request, now - opened_at);

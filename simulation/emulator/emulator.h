@@ -1,6 +1,6 @@
 #pragma once
-// Emulates a rig: board, fingers and faults. The class has no sockets and no clock: the caller passes
-// requests and the times at which they arrive.
+// Emulates a rig: board, fingers and faults. This class has no sockets and no clock. The caller passes the
+// requests, together with the times at which they arrive.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace softgrip::simulation {
 
-/// One module of the board and its address.
+/// One module of the board, and its unit id and link.
 struct EmulatedModule {
   drivers::BoardMap map;
   std::uint8_t unit = 1;
@@ -24,8 +24,8 @@ struct EmulatedModule {
 };
 
 struct EmulatorSettings {
-  /// Modules of the board. A request to any other unit of a link gets exception 11 on a network and no reply
-  /// on a serial line.
+  /// Modules of the board. A request to a unit that does not exist gets exception 11 on a network, and no
+  /// reply on a serial line.
   std::vector<EmulatedModule> modules;
   Wire wire = Wire::tcp;
   std::vector<drivers::ChannelWiring> wiring;
@@ -35,18 +35,19 @@ struct EmulatorSettings {
 
 class Emulator {
  public:
-  /// The plants advance in steps that end at multiples of this time [ns], and also at each request and event.
+  /// Step of the simulated fingers [ns]. A step ends at each multiple of this time, and at each request and
+  /// event.
   static constexpr Nanoseconds grid = 1'000'000;
-  /// Name of a fault that always exists. It removes the object while it is active.
+  /// Name of a fault that always exists. While this fault is active, the object is removed.
   static constexpr std::string_view object_out = "object_out";
 
-  /// Creates the rig at time 0.
+  /// Creates the rig. The time of the new rig is 0.
   explicit Emulator(EmulatorSettings settings);
 
-  /// Advances to `now`. Calls must be in order of time.
+  /// Advances the rig to the time `now`. The calls must be in the order of time.
   void advance(Nanoseconds now);
-  /// Processes a request that arrives at `now` on a link, over a connection that was opened at `opened_at`.
-  /// Returns the reply. The reply is empty if the board does not respond.
+  /// Processes a request that arrives on a link at `now`, over a connection that was opened at `opened_at`.
+  /// Returns the reply; it is empty if the board does not respond.
   [[nodiscard]] Reply serve(Nanoseconds now, const Request& request, std::size_t link = 0,
                             Nanoseconds opened_at = 0);
   /// Sets the number of clients that are connected to a link.
@@ -54,20 +55,20 @@ class Emulator {
   /// Returns true if new connections are accepted.
   [[nodiscard]] bool reachable() const { return !faults_.first_active(FaultKind::disconnect); }
 
-  /// Begin or end a fault. Both functions return false if no fault has this name.
+  /// trigger() begins a fault, and clear() ends it. Both return false if no fault has this name.
   bool trigger(std::string_view name, Nanoseconds now);
   bool clear(std::string_view name, Nanoseconds now);
-  /// Puts an object between the fingers, for all channels. An empty value removes the object.
+  /// Puts an object between the fingers of all channels. If `object` is empty, removes the object.
   void set_object(const std::optional<simulation::PlantObject>& object);
 
-  /// Sets a function that is called at every multiple of `grid`.
+  /// Sets a function that is called at each multiple of the time `grid`.
   void on_grid(std::function<void()> observer) { observer_ = std::move(observer); }
 
   [[nodiscard]] Wire wire() const noexcept { return wire_; }
   [[nodiscard]] Nanoseconds now() const noexcept { return now_; }
   [[nodiscard]] const std::vector<Finger>& fingers() const noexcept { return fingers_; }
   [[nodiscard]] const std::vector<EmulatedBoard>& modules() const noexcept { return boards_; }
-  /// Returns true after a client has written an output.
+  /// Returns true if a client has written an output since the rig was created.
   [[nodiscard]] bool commanded() const noexcept;
   /// Returns true while the watchdog of a module holds its outputs.
   [[nodiscard]] bool tripped() const noexcept;
@@ -91,7 +92,7 @@ class Emulator {
   [[nodiscard]] EmulatedBoard* board_at(std::size_t link, std::uint8_t unit) noexcept;
 
   std::vector<EmulatedBoard> boards_;
-  std::vector<Place> places_;  // unit and link of each board
+  std::vector<Place> places_;  // unit id and link of each board
   Wire wire_;
   std::vector<Finger> fingers_;
   FaultSchedule faults_;

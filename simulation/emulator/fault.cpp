@@ -20,14 +20,14 @@ constexpr std::array<std::string_view, 21> kind_names{
 
 constexpr double longest_s = 86400;
 
-/// Shortest permitted duration or interval [s].
+/// Shortest duration and shortest interval that a faults file may contain [s].
 constexpr double shortest_s = 1e-4;
 
 document::Range up_to(double upper) {
   return {0, upper};
 }
 
-/// Reads the keys that only this kind of fault has.
+/// Reads the keys that belong only to this kind of fault.
 void read_own_keys(FaultSpec& fault, document::MapReader& map) {
   switch (fault.kind) {
     case FaultKind::late_reply:

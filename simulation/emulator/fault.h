@@ -1,13 +1,13 @@
 #pragma once
-// Faults of the emulated rig and the reader of faults files.
+// Defines the faults of the emulated rig, and reads faults files:
 //
 //   faults:
 //     - name: slow_wire
 //       kind: dripped_reply
-//       at_s: 5           # begins 5 s after the first command to an output; without at_s only by a trigger
-//       for_s: 2          # lasts 2 s; without for_s until it is cleared
-//       replies: 1        # only for faults of the wire: ends after this number of affected requests
-//       interval_s: 0.05  # a key of this kind of fault; such keys are required
+//       at_s: 5           # begins 5 s after the first command to an output; without at_s, only when
+//       triggered for_s: 2          # lasts 2 s; without for_s, until it is cleared replies: 1        # only
+//       for faults of the transmission: ends after this number of affected requests interval_s: 0.05  # a key
+//       of this kind of fault; such keys are required
 //
 // docs/reference/emulator.md describes the file.
 
@@ -24,21 +24,22 @@
 namespace softgrip::simulation {
 
 enum class FaultKind : std::uint8_t {
-  // faults of the wire
-  lost_request,       ///< the request is neither executed nor answered
+  // faults of the transmission
+  lost_request,       ///< the request is lost: it is neither executed nor answered
   no_reply,           ///< the request is executed, but not answered
-  late_reply,         ///< the reply is delayed by delay_s, possibly beyond the replies to later requests
-  dripped_reply,      ///< the reply is sent in single bytes, one every interval_s
+  late_reply,         ///< the reply is delayed by delay_s, so it may arrive after the replies to later
+                      ///< requests
+  dripped_reply,      ///< the reply is sent as single bytes, one byte every interval_s
   cut_reply,          ///< only the first half of the reply is sent
   repeated_reply,     ///< the reply is sent twice
-  wrong_unit,         ///< the unit id in the reply is one too high
-  wrong_transaction,  ///< the transaction id in the reply is one too high
-  wrong_length,       ///< the length in the header of the reply is one byte too large
+  wrong_unit,         ///< the unit id in the reply is too large by one
+  wrong_transaction,  ///< the transaction id in the reply is too large by one
+  wrong_length,       ///< the length in the header of the reply is too large by one
   exception_reply,    ///< the reply is the Modbus exception `code`, and the request is not executed
-  settling,           ///< requests within settle_s after the connection was opened are lost
+  settling,           ///< requests that arrive within settle_s after the connection was opened are lost
   few_registers,      ///< a request for more than `most` registers gets exception 3
-  stray_bytes,        ///< each reply has `before` extra bytes before it and `behind` bytes after it
-  disconnect,         ///< connections are closed, and new ones are closed immediately
+  stray_bytes,        ///< each reply has `before` extra bytes before it, and `behind` extra bytes after it
+  disconnect,         ///< open connections are closed, and new connections are closed immediately
   // faults of the board
   ignored_write,  ///< writes are confirmed but have no effect
   // faults of a channel
@@ -46,29 +47,29 @@ enum class FaultKind : std::uint8_t {
   sensor_jumping,       ///< the reading has the offset by_mm in every second interval of interval_s
   sensor_out_of_range,  ///< the sensor gives no valid reading
   line_blocked,         ///< the pressure of the finger stays constant
-  line_leaking,         ///< the finger receives (1 - share) of the pressure
+  line_leaking,         ///< the finger receives (1 - share) of the commanded pressure
   object_removed,       ///< the object is removed, and put back at the end of the fault
 };
 
 [[nodiscard]] std::string_view name_of(FaultKind kind) noexcept;
 
-/// Returns true for a fault of the wire, which corrupts replies.
+/// Returns true for a fault of the transmission, which loses requests or changes replies.
 [[nodiscard]] constexpr bool on_the_wire(FaultKind kind) noexcept {
   return kind <= FaultKind::disconnect;
 }
-/// Returns true for a fault of one channel.
+/// Returns true for a fault that affects a channel.
 [[nodiscard]] constexpr bool of_a_channel(FaultKind kind) noexcept {
   return kind >= FaultKind::sensor_stuck;
 }
 
-/// One entry of a faults file. The members from `delay_s` on have a meaning only for the kinds that use them.
+/// One entry of a faults file. Each member from `delay_s` on is used only by some kinds of faults.
 struct FaultSpec {
   std::string name;
   FaultKind kind = FaultKind::no_reply;
   std::optional<double> at_s;
   std::optional<double> for_s;
   std::optional<std::uint32_t> replies;
-  std::optional<std::size_t> channel;  ///< affected channel of a channel fault; nullopt: all channels
+  std::optional<std::size_t> channel;  ///< channel that a channel fault affects; nullopt: all channels
 
   double delay_s = 0;
   double interval_s = 0;
@@ -77,15 +78,15 @@ struct FaultSpec {
   std::uint16_t most = 0;
   std::uint16_t before = 0;
   std::uint16_t behind = 0;
-  LineFault line;      ///< line_blocked, line_leaking
-  SensorFault sensor;  ///< sensor_stuck, sensor_jumping, sensor_out_of_range
+  LineFault line;      ///< used by the kinds line_blocked and line_leaking
+  SensorFault sensor;  ///< used by the kinds sensor_stuck, sensor_jumping and sensor_out_of_range
 };
 
-/// Returns a fault of this kind without a name and with default values.
+/// Returns a fault of this kind that has default values and no name.
 [[nodiscard]] FaultSpec fault_of(FaultKind kind);
 
-/// Reads a faults file for a rig with these channels. Problems are added to `problems`. The result is valid
-/// only if no problem was added.
+/// Reads a faults file for a rig with the channels `channels`. Adds the problems of the file to `problems`.
+/// The result is valid only if no problem was added.
 [[nodiscard]] std::vector<FaultSpec> read_faults(const document::Document& document,
                                                  const std::vector<std::string>& channels,
                                                  document::Problems& problems);

@@ -1,6 +1,6 @@
 #pragma once
-// Determines which faults are active. A fault begins at its scheduled time or by a trigger, and ends after
-// its duration or by a command.
+// Determines which faults are active at a time. A fault begins at its scheduled time, or when it is
+// triggered. It ends after its duration, or by a control command.
 
 #include <cstddef>
 #include <optional>
@@ -16,33 +16,34 @@ class FaultSchedule {
  public:
   explicit FaultSchedule(std::vector<FaultSpec> faults);
 
-  /// Sets the time from which at_s counts. Later calls have no effect.
+  /// Sets the time that counts as 0 for at_s. Only the first call has an effect.
   void start(Nanoseconds now);
   [[nodiscard]] bool started() const noexcept { return started_at_.has_value(); }
-  /// Begins and ends the faults that are due by `now`. Returns true if a fault changed.
+  /// Begins and ends all faults that are due at or before `now`. Returns true if a fault began or ended.
   bool advance(Nanoseconds now);
   /// Returns the next scheduled time at which a fault begins or ends.
   [[nodiscard]] std::optional<Nanoseconds> next_change() const;
 
-  /// Begins a fault now, independent of its at_s. Returns false if no fault has this name.
+  /// Begins a fault now, whatever its at_s is. Returns false if no fault has this name.
   bool trigger(std::string_view name, Nanoseconds now);
-  /// Ends a fault. Only a trigger begins it again. Returns false if no fault has this name.
+  /// Ends a fault. After that, only trigger() can begin it. Returns false if no fault has this name.
   bool clear(std::string_view name);
 
-  /// Counts a reply that a fault of the wire affected. The fault ends after FaultSpec::replies such replies.
+  /// Counts a reply that was affected by a fault of the transmission. The fault ends after FaultSpec::replies
+  /// such replies.
   void count_reply(std::size_t index);
 
   [[nodiscard]] const std::vector<FaultSpec>& faults() const noexcept { return faults_; }
   [[nodiscard]] bool active(std::size_t index) const { return states_[index].active; }
-  /// Returns the time at which the active fault began.
+  /// Returns the time at which an active fault began.
   [[nodiscard]] Nanoseconds since(std::size_t index) const { return states_[index].since; }
-  /// Returns the first active fault of this kind, or nullopt.
+  /// Returns the index of the first active fault of this kind; nullopt if none is active.
   [[nodiscard]] std::optional<std::size_t> first_active(FaultKind kind) const;
 
  private:
   struct State {
     bool active = false;
-    bool spent = false;  ///< the scheduled start of the fault has passed or was cancelled
+    bool spent = false;  ///< true: the scheduled start of the fault has passed, or was cancelled
     Nanoseconds since = 0;
     std::uint32_t replies = 0;
   };

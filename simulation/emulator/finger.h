@@ -1,5 +1,5 @@
 #pragma once
-// One emulated finger: its plant and its wiring to the board.
+// One emulated finger: its simulation, and its wiring to the board.
 
 #include <optional>
 #include <span>
@@ -17,18 +17,18 @@ class Finger {
   [[nodiscard]] const std::string& name() const noexcept { return wiring_.name; }
   [[nodiscard]] const simulation::Plant& plant() const noexcept { return plant_; }
 
-  /// Sets the commanded pressure from the signal at the output terminal. `modules` contains the modules of
-  /// the board, indexed as in the wiring.
+  /// Reads the signal at the output terminal and sets the commanded pressure. `modules` contains the modules
+  /// of the board, with the same indices as in the wiring.
   void take_command(std::span<const EmulatedBoard> modules);
-  /// Advances by `duration_s` with a constant command.
+  /// Advances the finger by `duration_s`, in which the command is constant.
   void advance(double duration_s) noexcept { plant_.advance(duration_s); }
-  /// Sets the inputs of the board to the sensor signals.
+  /// Sets the inputs of the board to the signals of the sensors.
   void show(std::span<EmulatedBoard> modules) const;
 
-  /// Sets the faults. A fault that has not changed does not begin again, so that a stuck sensor keeps its
-  /// value.
+  /// Sets the faults of the finger. A fault that has not changed is not restarted, so a stuck sensor keeps
+  /// its value.
   void set_faults(const simulation::LineFault& line, const simulation::SensorFault& sensor);
-  /// Places the object of the finger if `there` is true, and removes it otherwise.
+  /// If `there` is true, places the object of the finger, otherwise removes it.
   void place_object(bool there);
   [[nodiscard]] bool has_object() const noexcept { return plant_.object().has_value(); }
   /// Sets the object that place_object() places.

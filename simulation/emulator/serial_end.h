@@ -1,6 +1,6 @@
 #pragma once
-// The emulated board's end of a serial line, which is a serial device or a pseudo-terminal. The daemon opens
-// the other end.
+// The end of a serial line that the emulated board uses: a serial device or a pseudo-terminal. The daemon
+// opens the other end.
 
 #include <string>
 
@@ -14,8 +14,8 @@ namespace softgrip::simulation {
 
 class SerialEnd {
  public:
-  /// Opens an existing device. If the path does not exist, it creates a link with this name to a new
-  /// pseudo-terminal. The destructor removes the link. The error is one sentence.
+  /// Opens an existing device. If the path does not exist, creates a pseudo-terminal and a link with this
+  /// path to it. The destructor removes the link. The error is one sentence.
   [[nodiscard]] static tl::expected<SerialEnd, std::string> open(const drivers::SerialLine& line);
   SerialEnd(SerialEnd&& other) noexcept;
   SerialEnd& operator=(SerialEnd&& other) noexcept;
@@ -23,10 +23,10 @@ class SerialEnd {
   SerialEnd& operator=(const SerialEnd&) = delete;
   ~SerialEnd();
 
-  /// Returns the times that must be simulated: the turnaround, and on a pseudo-terminal also the times of the
-  /// bytes.
+  /// Returns the times that the server must simulate. These are the turnaround time and, on a
+  /// pseudo-terminal, also the transmission times of the bytes.
   [[nodiscard]] WireTime wire_time() const noexcept;
-  /// Returns the descriptor for reading and writing. It can be taken once.
+  /// Returns the descriptor for reading and writing. It can be returned only once.
   [[nodiscard]] Descriptor take() noexcept { return std::move(end_); }
   [[nodiscard]] bool taken() const noexcept { return !end_; }
 
@@ -37,9 +37,9 @@ class SerialEnd {
 
   drivers::SerialLine line_;
   Descriptor end_;
-  // For a pseudo-terminal: a descriptor of the daemon's end, so that the line does not hang up when the
-  // daemon closes it. For a device: a descriptor with a lock, so that other Modbus clients cannot use the
-  // device.
+  // For a pseudo-terminal, this is a descriptor of the daemon's end, so that the line remains open when the
+  // daemon closes this end. For a device, it is a descriptor with a lock, so that no other Modbus client can
+  // use the device.
   Descriptor kept_;
   std::string link_;
   bool pseudo_ = false;

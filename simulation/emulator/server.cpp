@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t max_modbus_clients = 32;
 constexpr std::size_t max_control_clients = 8;
 constexpr std::size_t max_control_line = 1024;
-// Longest wait in poll(), so that the truth log and scheduled faults are on time.
+// Longest wait in poll(). The limit is needed so that the truth log and scheduled faults are not late.
 constexpr std::chrono::milliseconds longest_wait{20};
 
 }  // namespace
@@ -44,7 +44,7 @@ void Server::run(const std::function<void()>& idle) {
     plug_line();
     watched.clear();
     watched.push_back({sockets_.signals.get(), POLLIN, 0});
-    // A listener that is closed or paused has the descriptor -1, which poll() skips.
+    // If a listener is closed or pauses, its descriptor is -1, which poll() ignores.
     watched.push_back({control_entrance_.descriptor(now()), POLLIN, 0});
     for (const modbus::Entrance& entrance : entrances_)
       watched.push_back({entrance.descriptor(now()), POLLIN, 0});
@@ -81,7 +81,8 @@ void Server::run(const std::function<void()>& idle) {
   }
 }
 
-/// Closes the newest client, because poll() fails if it watches more descriptors than the process may have.
+/// Closes the newest client. This is needed if poll() fails, because it watches more descriptors than the
+/// process may have.
 bool Server::give_up_client() {
   if (sockets_.line || clients_.empty()) return false;
   clients_.pop_back();
@@ -89,8 +90,8 @@ bool Server::give_up_client() {
   return true;
 }
 
-/// While the fault `disconnect` is active, removes the serial line and its name. Afterwards creates the line
-/// again under the same name.
+/// Removes the serial line and its name while the fault `disconnect` is active. After the fault, creates the
+/// line again with the same name.
 void Server::plug_line() {
   if (!sockets_.line || !clients_.empty()) return;
   if (sockets_.end && sockets_.end->taken()) sockets_.end.reset();
@@ -129,10 +130,11 @@ void Server::serve(Client& client, short events, bool& open) {
 
 void Server::accept_modbus(std::size_t link) {
   Descriptor client = entrances_[link].accept(now());
-  // While the fault `disconnect` is active, or if max_modbus_clients are connected, a new client is accepted
-  // and closed immediately.
+  // If the fault `disconnect` is active, or if max_modbus_clients are already connected, a new client is
+  // accepted and then closed immediately.
   if (client && emulator_.reachable() && clients_.size() < max_modbus_clients) {
-    const bool rtu = emulator_.wire() == Wire::rtu;  // RTU over TCP, as serial device servers transmit it
+    const bool rtu = emulator_.wire() == Wire::rtu;  // true: RTU frames over TCP, as serial device servers
+                                                     // transmit them
     clients_.push_back(
         {rtu ? Connection(std::move(client), WireTime{}) : Connection(std::move(client)), link, now()});
   }
@@ -184,8 +186,8 @@ void Server::answer_control(const ControlClient& client, std::string_view line) 
   const ControlAnswer answer = control(emulator_, now(), line);
   quit_ = quit_ || answer.quit;
   const std::string text = answer.line + "\n";
-  // A reply fits into the empty buffer of a socket. If a client does not read its replies, later ones are
-  // lost.
+  // A reply fits into the buffer of the socket if the buffer is empty. If a client does not read its replies,
+  // its further replies are lost.
   if (client.socket) {
     ::send(client.socket.get(), text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   } else if (::write(STDOUT_FILENO, text.data(), text.size()) < 0) {

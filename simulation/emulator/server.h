@@ -1,5 +1,5 @@
 #pragma once
-// The server of the emulator: one thread that uses poll() for Modbus clients, control clients and signals.
+// The server of the emulator. One thread waits with poll() for Modbus clients, control clients and signals.
 
 #include <csignal>
 #include <cstddef>
@@ -19,24 +19,25 @@ namespace softgrip::simulation {
 
 struct ServerSockets {
   std::vector<Descriptor> modbus;  ///< listening sockets, one per link of a network
-  /// Settings of the serial line, which is opened again after the fault `disconnect`; empty: the links are on
-  /// a network.
+  /// Settings of the serial line; empty if the links are on a network. With them, the line is opened again
+  /// after the fault `disconnect`.
   std::optional<drivers::SerialLine> line;
   std::optional<SerialEnd> end;
-  Descriptor control;           ///< listening socket, or empty
-  Descriptor signals;           ///< a signalfd: SIGUSR1 removes the object, all other signals end run()
-  bool standard_input = false;  ///< also read control commands from the standard input
+  Descriptor control;           ///< listening socket for control commands; empty: there is none
+  Descriptor signals;           ///< signalfd descriptor: SIGUSR1 removes the object, and every other signal
+                                ///< ends run()
+  bool standard_input = false;  ///< true: control commands are also read from the standard input
 };
 
 class Server {
  public:
   Server(Emulator& emulator, ServerSockets sockets);
-  /// Runs until a signal or the control command `quit`. `idle` is called at least every 20 ms.
+  /// Runs until a signal or the control command `quit` arrives. `idle` is called at least every 20 ms.
   void run(const std::function<void()>& idle);
 
  private:
   struct ControlClient {
-    Descriptor socket;  ///< empty: standard input
+    Descriptor socket;  ///< socket of the client; empty: the client is the standard input
     std::string pending;
     bool open = true;
     [[nodiscard]] int input() const noexcept;
@@ -44,7 +45,8 @@ class Server {
 
   [[nodiscard]] Nanoseconds now() const;
   [[nodiscard]] std::chrono::nanoseconds timeout() const;
-  /// Closes a client after the limit of descriptors was lowered. Returns false if no client is left.
+  /// Closes a client, because the limit of descriptors was lowered. Returns false if there is no client to
+  /// close.
   [[nodiscard]] bool give_up_client();
   void accept_modbus(std::size_t link);
   void count_clients();

@@ -1,10 +1,11 @@
 #pragma once
-// Writes the true state of the emulated rig: a log with a `channel` column and true values.
+// Writes the true state of the emulated rig to a log. The log has a row per channel, with the name of the
+// channel in the column `channel`:
 //
 //   time_s,channel,pressure_command_kpa,displacement_mm,pressure_kpa,reading_mm,object,watchdog_tripped
 //
-// displacement_mm and pressure_kpa are true values without noise. reading_mm is the sensor reading; it is
-// empty if there is no valid reading.
+// displacement_mm and pressure_kpa are true values without noise. reading_mm is the reading of the sensor. It
+// is empty if there is no valid reading.
 
 #include <cstdint>
 #include <fstream>
@@ -16,13 +17,13 @@ namespace softgrip::simulation {
 
 class TruthLog {
  public:
-  /// Creates the file. Every `decimation`-th call of add() writes one row per channel.
+  /// Creates the file. Only every `decimation`-th call of add() writes rows, one row per channel.
   TruthLog(const std::string& path, std::uint32_t decimation);
 
   void add(const Emulator& emulator);
-  /// Writes all buffered rows to the file.
+  /// Writes all rows in the buffer to the file.
   void flush() { file_.flush(); }
-  /// Returns false after a write has failed.
+  /// Returns false if a write has failed.
   [[nodiscard]] bool good() const { return file_.good(); }
 
  private:

@@ -36,8 +36,8 @@ Reply longer_than_it_is(Wire wire, const Request& request, const Bytes& pdu) {
   return at_once(std::move(whole));
 }
 
-/// Returns the reply with another transaction id, as if it belonged to another request. On a serial line,
-/// which has no transaction id, the checksum is wrong instead.
+/// Returns the reply with a transaction id that belongs to another request. On a serial line there is no
+/// transaction id, so the reply gets a wrong checksum.
 Reply of_another_question(Wire wire, const Request& request, const Bytes& pdu) {
   const auto next_transaction = static_cast<std::uint16_t>(request.transaction + 1);
   Bytes whole = frame_on(wire, next_transaction, request.unit, pdu);
@@ -45,8 +45,8 @@ Reply of_another_question(Wire wire, const Request& request, const Bytes& pdu) {
   return at_once(std::move(whole));
 }
 
-/// Returns the number of registers that a request reads or that it writes, the larger of the two. Returns 0
-/// for requests for bits.
+/// Returns the number of registers that a request reads, or the number that it writes, if this is larger.
+/// Returns 0 for requests that read or write bits.
 std::size_t most_registers_in(const Bytes& pdu) noexcept {
   constexpr std::size_t counted = 5;  // function, address, count
   constexpr std::size_t counted_twice = 9;

@@ -10,7 +10,8 @@ constexpr double pressure_span_kpa = 100;
 constexpr double nearest_mm = -5;
 constexpr double farthest_mm = 45;
 
-/// Both ends of the usual signal range of a terminal. The range of its converter may be wider.
+/// Lower and upper end of the usual signal range of a terminal. The range of the terminal's converter may be
+/// wider.
 struct Span {
   double low;
   double high;
@@ -27,7 +28,7 @@ Span span_of(const drivers::Terminal& terminal) {
   return {0, terminal.highest};
 }
 
-/// A terminal and the module that contains it.
+/// A terminal, and the index of the module that contains it.
 struct Place {
   std::size_t module;
   std::size_t index;
@@ -37,7 +38,7 @@ struct Place {
 struct Places {
   std::vector<Place> outputs;
   std::vector<Place> signals;    // inputs for displacement sensors
-  std::vector<Place> pressures;  // inputs that measure pressure directly
+  std::vector<Place> pressures;  // inputs in kPa, which measure pressure directly
 };
 
 Places places_of(std::span<const drivers::BoardMap> modules) {
@@ -84,8 +85,8 @@ drivers::OutputWiring output_at(const Place& place) {
   return wiring;
 }
 
-/// Returns the wiring of a pressure monitor. If the input is in V or mA, its full range represents the same
-/// pressures as that of the valve.
+/// Returns the wiring of a pressure monitor. If the input is in V or mA, the ends of its range represent the
+/// same pressures as the ends of the valve's range.
 drivers::InputWiring monitor_at(const Place& place, const drivers::OutputWiring& valve) {
   if (place.terminal.unit != drivers::ElectricalUnit::kilopascal) {
     return input_at(place, valve.scaling.y0, valve.scaling.y1);

@@ -1,6 +1,6 @@
 #pragma once
-// Simulates one finger: valve, actuator, load and sensor of a model, an optional object in its way, and
-// faults. The simulated board and the emulator use the same plant.
+// Simulates one finger: valve, actuator, load and sensor of a model, an object that the finger can touch, and
+// faults. The simulated board and the emulator use the same simulation.
 
 #include <cstdint>
 #include <memory>
@@ -10,10 +10,11 @@
 
 namespace softgrip::simulation {
 
-/// An object between the fingers. Beyond `position_mm`, the motion of the finger is multiplied by `yielding`.
+/// An object between the fingers. After contact at `position_mm`, the further motion of the finger is the
+/// free motion multiplied by `yielding`.
 struct PlantObject {
   double position_mm = 0;
-  double yielding = 0.1;  ///< 0 (rigid) to 1 (no effect)
+  double yielding = 0.1;  ///< 0 (rigid) to 1 (the object has no effect)
 
   bool operator==(const PlantObject&) const = default;
 };
@@ -26,16 +27,16 @@ struct LineFault {
     leaking,  ///< the finger receives (1 - share) of the command
   };
   Kind kind = Kind::none;
-  double share = 0;  ///< lost share of the command, 0 to 1; only for leaking
+  double share = 0;  ///< for leaking: share of the command that is lost, 0 to 1
 };
 
 /// A fault of the displacement sensor.
 struct SensorFault {
   enum class Kind : std::uint8_t {
     none,
-    stuck,         ///< repeats its last value
-    offset,        ///< each reading has the offset value_mm
-    out_of_range,  ///< no valid reading; the board shows its error value or an electrical limit
+    stuck,         ///< the sensor repeats its last value
+    offset,        ///< value_mm is added to each reading
+    out_of_range,  ///< there is no valid reading; the board shows its error value or an electrical limit
   };
   Kind kind = Kind::none;
   double value_mm = 0;
@@ -43,20 +44,21 @@ struct SensorFault {
 
 struct PlantSettings {
   model::Model model;
-  std::optional<PlantObject> object;  ///< object at the start
-  double sample_time_s = 0;           ///< usual duration of advance(); 0 if irregular
-  double displacement_noise_mm = 0;   ///< standard deviation, in addition to the sensor blocks of the model
+  std::optional<PlantObject> object;  ///< object that is present at the start; empty: there is none
+  double sample_time_s = 0;           ///< usual duration of a call of advance(); 0: the duration is irregular
+  double displacement_noise_mm = 0;   ///< standard deviation of noise that is added to the output of the
+                                      ///< model's sensor blocks
   double pressure_noise_kpa = 0;      ///< standard deviation of the measured pressure
   double temperature_c = 20;          ///< ambient temperature of the finger
   double temperature_noise_c = 0;     ///< standard deviation of the measured temperature
   std::uint64_t seed = 0;
 };
 
-/// Simulates a finger over time. The command is constant between changes, like an output that a board holds.
-/// advance() allocates no memory if sample_time_s is above 0.
+/// Simulates a finger over time. Between two calls of command(), the command is constant, as an output that a
+/// board holds. If sample_time_s is above 0, advance() allocates no memory.
 class Plant {
  public:
-  /// Creates a finger at rest with the command 0 kPa. The model must be valid.
+  /// Creates a finger that is at rest under the command 0 kPa. The model must be valid.
   explicit Plant(const PlantSettings& settings);
   Plant(const Plant&) = delete;
   Plant& operator=(const Plant&) = delete;
@@ -64,15 +66,15 @@ class Plant {
   Plant& operator=(Plant&&) noexcept;
   ~Plant();
 
-  /// Sets the output of the board [kPa]. A value that is not finite is ignored.
+  /// Sets the command, which is the output of the board [kPa]. A value that is not finite is ignored.
   void command(double command_kpa) noexcept;
-  /// Advances by `duration_s` >= 0 with a constant command.
+  /// Advances the simulation by `duration_s` >= 0, in which the command is constant.
   void advance(double duration_s) noexcept;
 
   [[nodiscard]] double held_command_kpa() const noexcept;
-  /// Returns the sensor reading [mm], with noise and faults; see sees_nothing().
+  /// Returns the sensor reading with noise and faults [mm]. It is not valid while sees_nothing() is true.
   [[nodiscard]] double reading_mm() const noexcept;
-  /// Returns the true displacement of the finger [mm], without the sensor.
+  /// Returns the true displacement of the finger, without errors of the sensor [mm].
   [[nodiscard]] double displacement_mm() const noexcept;
   /// Returns the reading of a pressure monitor [kPa], with noise.
   [[nodiscard]] double measured_pressure_kpa() const noexcept;
@@ -80,10 +82,11 @@ class Plant {
   [[nodiscard]] double pressure_kpa() const noexcept;
   /// Returns the reading of a temperature sensor [degC], with noise.
   [[nodiscard]] double measured_temperature_c() const noexcept;
-  /// Returns true while the sensor has the fault out_of_range. reading_mm() is then not valid.
+  /// Returns true while the sensor has the fault out_of_range. In this case, reading_mm() is not valid.
   [[nodiscard]] bool sees_nothing() const noexcept;
 
-  /// Places an object. An empty value removes the object. The finger reacts at the next advance().
+  /// Places an object. If `object` is empty, removes the object. The effect on the finger begins with the
+  /// next advance().
   void set_object(const std::optional<PlantObject>& object) noexcept;
   [[nodiscard]] const std::optional<PlantObject>& object() const noexcept;
   void set_fault(const LineFault& fault) noexcept;

@@ -13,8 +13,8 @@ namespace {
 
 using Kind = SimulatedEvent::Kind;
 
-/// Returns `value` as a converter with `bits` bits over [lower, upper] represents it. The input must not be
-/// NaN.
+/// Returns `value` as it is represented by a converter with `bits` bits over the range [lower, upper].
+/// `value` must not be NaN.
 double quantised(double value, double lower, double upper, int bits) noexcept {
   if (bits <= 0 || !(upper > lower)) return value;
   const double step = (upper - lower) / (std::exp2(bits) - 1);
@@ -41,7 +41,7 @@ struct SimulatedBoard::Parts {
   std::size_t next_event = 0;
   bool started = false;
   Nanoseconds started_at = 0;
-  Nanoseconds plants_at = 0;  ///< time of the plants
+  Nanoseconds plants_at = 0;  ///< time up to which the plants were simulated
   Nanoseconds fed_at = 0;     ///< time of the last exchange that reached the board
   bool connected = false;
   bool tripped = false;
@@ -68,8 +68,8 @@ void SimulatedBoard::Parts::move_to(Nanoseconds time) noexcept {
   plants_at = time;
 }
 
-/// Advances the plants to `time`. Events and a trip of the watchdog are applied at their own times, which lie
-/// between the exchanges.
+/// Advances the plants to `time`. Events and a trip of the watchdog can lie between two exchanges; they are
+/// applied at their own times.
 void SimulatedBoard::Parts::act_until(Nanoseconds time) noexcept {
   while (true) {
     constexpr Nanoseconds never = std::numeric_limits<Nanoseconds>::max();
@@ -83,7 +83,7 @@ void SimulatedBoard::Parts::act_until(Nanoseconds time) noexcept {
       move_to(event_at);
       happen(settings.events[next_event++]);
     } else if (trip_at == time) {
-      break;  // the exchange at this time still feeds the watchdog
+      break;  // an exchange at exactly this time still feeds the watchdog
     } else {
       move_to(trip_at);
       tripped = true;
@@ -181,7 +181,7 @@ std::size_t SimulatedBoard::channels() const noexcept {
 
 drivers::BusStatus SimulatedBoard::connect(std::chrono::nanoseconds) noexcept {
   Parts& parts = *parts_;
-  // The plants also move while no client is connected.
+  // The plants also move while there is no connection to the board, so they are advanced first.
   if (parts.started) parts.act_until(parts.clock.now());
   parts.connected = parts.bus != drivers::BusStatus::disconnected;
   if (!parts.connected) return parts.say(drivers::BusStatus::disconnected, "the simulated bus is down");

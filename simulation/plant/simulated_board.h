@@ -1,6 +1,7 @@
 #pragma once
-// Simulates a rig in this process: a board to which several plants are connected. The simulation is
-// deterministic: equal settings, clock readings and commands give bit-identical results.
+// Simulates a rig in this process: a board to which several simulated fingers (plants) are connected. The
+// simulation is deterministic. Equal settings, clock readings and commands give results that are identical in
+// every bit.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,18 +17,21 @@
 
 namespace softgrip::simulation {
 
-/// An event at a scripted time.
+/// An event that occurs at a given time of the simulation.
 struct SimulatedEvent {
   enum class Kind : std::uint8_t {
-    object,         ///< places `object` in the path of the finger; nullopt: removes it
-    line_fault,     ///< sets the fault `line`
-    sensor_fault,   ///< sets the fault `sensor`
-    bus_lost,       ///< every exchange returns `status`; if it is `disconnected`, connect() also fails
-    bus_restored,   ///< exchanges succeed again; if `status` ended the session, only after connect()
-    write_refused,  ///< outputs keep their values; an exchange with a new value reports the refusal
-    write_taken,    ///< outputs follow commands again
+    object,         ///< places `object` so that the finger can touch it; nullopt: removes the object
+    line_fault,     ///< sets the line fault of the finger to `line`
+    sensor_fault,   ///< sets the sensor fault of the finger to `sensor`
+    bus_lost,       ///< from now on, every exchange returns `status`; if it is `disconnected`, connect()
+                    ///< fails too
+    bus_restored,   ///< exchanges succeed again; if `status` ended the session, connect() must be called
+                    ///< first
+    write_refused,  ///< outputs keep their values; an exchange with a new value reports that the write was
+                    ///< refused
+    write_taken,    ///< the outputs follow the commands again
   };
-  /// Value of `channel` for an event that applies to all channels.
+  /// Value of `channel` for an event that affects all channels.
   static constexpr std::size_t every_channel = static_cast<std::size_t>(-1);
 
   double at_s = 0;  ///< time since the first exchange
@@ -44,28 +48,31 @@ struct SimulatedChannel {
   PlantSettings plant;
   bool measures_pressure = false;
   bool measures_temperature = false;
-  double valve_min_kpa = 0;  ///< lowest output; below 0 for vacuum
-  double valve_max_kpa = 0;  ///< highest output; commands outside the range are limited and reported
+  double valve_min_kpa = 0;  ///< lowest pressure of the valve; below 0 for vacuum
+  double valve_max_kpa = 0;  ///< highest pressure of the valve; commands outside the valve's range are
+                             ///< limited, and this is reported
   double vented_kpa = 0;     ///< output after a watchdog trip
-  double sensor_min_mm = 0;  ///< lower end of the measuring range; readings outside it are not valid
+  double sensor_min_mm = 0;  ///< lower end of the measuring range; readings outside the range are not valid
   double sensor_max_mm = 0;
-  int output_bits = 0;  ///< resolution over the output range; 0: not quantised
-  int input_bits = 0;   ///< resolution over the measuring range and over the pressure range; 0: not quantised
+  int output_bits = 0;  ///< resolution over the valve's range; 0: no quantisation
+  int input_bits = 0;   ///< resolution over the measuring range and over the pressure range; 0: no
+                        ///< quantisation
 };
 
 struct SimulatedBoardSettings {
   std::vector<SimulatedChannel> channels;
-  std::vector<SimulatedEvent> events;  ///< events in any order
-  /// Time without an exchange after which the outputs change to `vented_kpa` [s]. They keep this value until
-  /// connect(). 0: no watchdog.
+  std::vector<SimulatedEvent> events;  ///< events; their order does not matter
+  /// If there is no exchange for this time, the outputs change to `vented_kpa` [s]. They keep this value
+  /// until connect() is called. 0: the board has no watchdog.
   double watchdog_timeout_s = 0;
 };
 
-/// An exchange at time t first advances the plants to t with the previous commands. The new commands have an
-/// effect only after t. A measured value therefore never depends on the command of the same exchange.
+/// A simulated board. An exchange at time t first advances the plants to t with the previous commands. The
+/// new commands have an effect only after t. Therefore, a measured value never depends on the command of the
+/// same exchange.
 class SimulatedBoard final : public drivers::Board {
  public:
-  /// `clock` must outlive the board.
+  /// `clock` must exist longer than the board.
   SimulatedBoard(const SimulatedBoardSettings& settings, const Clock& clock);
   ~SimulatedBoard() override;
 
@@ -80,10 +87,10 @@ class SimulatedBoard final : public drivers::Board {
   [[nodiscard]] bool has_watchdog() const noexcept override;
   [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override;
 
-  /// Returns the plant of a channel, so that tests and scripts can change it. Only the thread that calls
-  /// exchange() may use it.
+  /// Returns the simulated finger of a channel, so that tests and scripts can change it. Only the thread that
+  /// calls exchange() may use it.
   [[nodiscard]] Plant& plant(std::size_t channel);
-  /// Applies an event now.
+  /// Applies an event at the present time.
   void happen(const SimulatedEvent& event) noexcept;
 
  private:
