@@ -1,6 +1,6 @@
 #pragma once
-// The interface of a block of the chain. Each mechanism is one block with one file under model/blocks/ and
-// one line in registry.h. docs/how-to/add-a-block.md describes the steps.
+// Defines the interface of a block of the chain. Each effect is one block, with one file under model/blocks/
+// and one line in registry.h. docs/how-to/add-a-block.md describes the steps.
 //
 // A block is a class template over the number type T (double; an automatic differentiation type):
 //
@@ -28,18 +28,18 @@
 //
 // The concepts below state this contract for the compiler. registry.h checks them for every block.
 //
-// A step calls next(segment) one or more times. The durations of the segments that it passes on sum to the
-// duration of its input (a delay may keep back a jump). The `begin` of the first segment equals the `end` of
-// the last segment of the previous step. A block whose output reverses within a sample passes two segments
-// on, so that Bouc-Wen receives the reversal. With its neutral parameter values, a block passes its input on
-// unchanged, and an element adds 0 mm.
+// A step calls next(segment) one or more times to pass segments on. The sum of the durations of these
+// segments is the duration of the input segment (a delay may keep back a jump). The `begin` of the first
+// segment equals the `end` of the last segment of the previous step. If the output of a block reverses within
+// a sample, the block passes two segments on, so that the Bouc-Wen block receives the reversal. With its
+// neutral parameter values, a block passes its input on unchanged, and an element adds 0 mm.
 //
-// Rest. reset(input) sets the state that a block reaches after its input rose from 0 to `input` once and was
-// then held for a long time. Lags and creep are settled, hysteresis is on its first loading curve, the delay
+// Rest. reset(input) sets a state of rest: the input rose from 0 to `input` once and was then held for a long
+// time. In this state, lags and creep have settled, hysteresis is on its first loading curve, and the delay
 // line is filled.
 //
-// A block with a memory over the whole campaign, such as the largest load so far, also has rest(input). This
-// function does the same as reset(input) but keeps that memory.
+// A block with a memory over the whole measurement campaign, such as the largest load so far, also has
+// rest(input). This function does the same as reset(input) but keeps that memory.
 //
 // A block with repeated parts also declares `repeated` (the parameters of one part, in order) and
 // `max_parts`. If the smallest number of parts is not 1, it also declares `min_parts`. A block whose
@@ -47,14 +47,14 @@
 // `static std::string_view objection(std::span<const double> values)`. This function returns an empty text
 // for valid values.
 //
-// A displacement block declares `static constexpr bool at_samples = true` if its output at the end of a
-// sample depends only on its input and surroundings at that time. This is the default for reading blocks.
-// Reading blocks with random numbers declare `at_samples = false`.
+// For some displacement blocks, the output at the end of a sample depends only on the input and the
+// surroundings at that time. Such a block declares `static constexpr bool at_samples = true`. For reading
+// blocks, this is the default. Reading blocks with random numbers declare `at_samples = false`.
 //
 // A block that modifies the chain's Bouc-Wen element also declares `void shape(BoucWen<T>&) const`. The
 // constructor of the chain calls this function once.
 //
-// Blocks are copyable values. Stepping allocates no memory if the block was prepared for a sample time.
+// Blocks are copyable values. If a block was prepared for a sample time, its steps allocate no memory.
 
 #include <array>
 #include <concepts>
@@ -68,45 +68,49 @@
 
 namespace softgrip::model {
 
-/// The station of a block in the chain. The blocks of a chain are ordered by station and, within a station,
-/// by kind: pressure blocks, elements, displacement blocks, reading blocks. Blocks of one kind keep the order
-/// of the model file.
+/// The station of a block in the chain. The blocks of a chain are ordered by station. Within a station, they
+/// are ordered by kind: pressure blocks, elements, displacement blocks, reading blocks. Blocks of one kind
+/// are in the order of the model file.
 enum class Station : std::uint8_t { valve, actuator, load, sensor };
 
 /// The effect of a block on the signal in the chain.
 enum class Kind : std::uint8_t {
-  pressure,      ///< kPa in, kPa out, in series
-  element,       ///< kPa in, mm out; all elements of a chain see the same pressure and their outputs add
-  displacement,  ///< mm in, mm out, in series
-  reading,       ///< mm in, mm out, evaluated once at the end of a step; an effect of the sensor
+  pressure,      ///< pressure in, pressure out [kPa]; the blocks are in series
+  element,       ///< pressure in [kPa], displacement out [mm]; all elements have the same input, and their
+                 ///< outputs are added
+  displacement,  ///< displacement in, displacement out [mm]; the blocks are in series
+  reading,       ///< displacement in, reading out [mm]; an effect of the sensor that is computed once at the
+                 ///< end of a step
 };
 
-/// The method by which the control side inverts a block.
+/// The method by which the feedforward inverts a block.
 enum class Inverse : std::uint8_t {
-  implicit,  ///< solved together with the actuator; the output is monotone in the newest pressure
-  lead,      ///< uses the derivative of the planned signal
-  preview,   ///< uses the future value of the reference
-  play,      ///< adds half the band in the direction of motion
-  bound,     ///< no inverse; the block limits the reference
-  ignored,   ///< not inverted (noise, quantisation)
+  implicit,  ///< inverted together with the actuator; the output increases with the newest pressure
+  lead,      ///< inverted with the derivative of the planned signal
+  preview,   ///< inverted with the future value of the reference
+  play,      ///< inverted by adding half the band in the direction of motion
+  bound,     ///< not inverted; the block limits the reference
+  ignored,   ///< not inverted, because the effect is random or small (noise, quantisation)
 };
 
 /// Description of a block type.
 struct BlockInfo {
-  std::string_view id;  ///< YAML key, cause id
+  std::string_view id;  ///< key in model files, and id of the cause
   Station station;
   Kind kind;
   Inverse inverse;
   std::string_view title;     ///< "Transport delay"
-  std::string_view meaning;   ///< one line for the reference page
+  std::string_view meaning;   ///< description in one line for the reference page
   std::string_view equation;  ///< the equation as plain text
-  bool repeatable = false;    ///< may occur in a chain more than once (two stops, two disturbances)
+  bool repeatable = false;    ///< true: a chain may contain the block more than once (two stops, two
+                              ///< disturbances)
 };
 
-/// Argument of block_info() for a block that may occur in a chain more than once.
+/// Argument of block_info() for a block that a chain may contain more than once.
 struct Repeatable {};
 
-/// Returns the description of a block, in the order of the members above. The meaning is a sentence.
+/// Returns the description of a block. The arguments are in the order of the members above. `meaning` is a
+/// sentence.
 consteval BlockInfo block_info(std::string_view id, Station station, Kind kind, Inverse inverse,
                                std::string_view title, std::string_view meaning, std::string_view equation) {
   if (id.empty() || title.empty() || !meaning.ends_with('.'))
@@ -121,27 +125,30 @@ consteval BlockInfo block_info(std::string_view id, Station station, Kind kind, 
   return info;
 }
 
-/// Inputs for the preparation of a block in addition to its parameters.
+/// Data for the preparation of a block, in addition to its parameters.
 struct Preparation {
-  double sample_time_s = 0;  ///< nominal sample time [s]; 0 if samples are irregular
-  std::uint64_t seed = 0;    ///< seed of this block's random numbers, distinct per block and channel
+  double sample_time_s = 0;  ///< nominal sample time [s]; 0: the sample time is irregular
+  std::uint64_t seed = 0;    ///< seed of this block's random numbers; each block of each channel has another
+                             ///< seed
 };
 
-/// Requires a description and a list of parameters.
+/// Requires that the block has a description and a list of parameters.
 template <class Block>
 concept SaysWhatItIs = requires {
   { Block::info } -> std::same_as<const BlockInfo&>;
   std::span<const ParameterSpec>(Block::parameters);
 };
 
-/// A block with repeated parts: requires the parameters of one part and the limits of their number.
+/// Requires that a block with repeated parts declares the parameters of one part and the limits of the number
+/// of parts.
 template <class Block>
 concept SaysItsParts = requires {
   std::span<const ParameterSpec>(Block::repeated);
   std::size_t{Block::max_parts};
 };
 
-/// Requires a copyable value that is made from its parameters, has a rest state and returns its output.
+/// Requires that the block is a copyable value, is made from its parameters, has a state of rest, and returns
+/// its output.
 template <class Block, class T>
 concept StandsSomewhere = std::copyable<Block> &&
     requires(Block block, const Block& still, const T& input, std::span<const T> values,
@@ -151,33 +158,33 @@ concept StandsSomewhere = std::copyable<Block> &&
   { still.output() } -> std::convertible_to<T>;
 };
 
-/// Pressure and displacement blocks: step() passes segments on.
+/// Requires of pressure and displacement blocks that step() passes segments on.
 template <class Block, class T>
 concept PassesOn = requires(Block block, const Segment<T>& in, const Surroundings& around,
                             void (&next)(const Segment<T>&)) {
   { block.step(in, around, next) } -> std::same_as<void>;
 };
 
-/// Elements: step() converts pressure to displacement.
+/// Requires of elements that step() converts a pressure to a displacement.
 template <class Block, class T>
 concept TurnsIntoDisplacement = requires(Block block, const Segment<T>& in, const Surroundings& around) {
   { block.step(in, around) } -> std::same_as<Segment<T>>;
 };
 
-/// Blocks that model the sensor: sample() converts a displacement to a reading.
+/// Requires of blocks of the sensor that sample() converts a displacement to a reading.
 template <class Block, class T>
 concept Samples = requires(Block block, const T& value, const Surroundings& around) {
   { block.sample(value, value, around) } -> std::same_as<T>;
 };
 
-/// Blocks that are inverted implicitly: peek() predicts the output.
+/// Requires of blocks that are inverted implicitly that peek() predicts the output.
 template <class Block, class T, class U>
 concept Foretells = requires(const Block block, const T& duration_s, const U& end,
                              const Surroundings& around) {
   { block.peek(duration_s, end, around) } -> std::same_as<U>;
 };
 
-/// The complete contract of each kind.
+/// All requirements for a block of each kind.
 template <class Block, class T>
 concept SeriesBlock = SaysWhatItIs<Block> && StandsSomewhere<Block, T> && PassesOn<Block, T>;
 template <class Block, class T>
@@ -185,8 +192,8 @@ concept ElementBlock = SaysWhatItIs<Block> && StandsSomewhere<Block, T> && Turns
 template <class Block, class T>
 concept ReadingBlock = SaysWhatItIs<Block> && StandsSomewhere<Block, T> && Samples<Block, T>;
 
-/// Compiles only for a block that fulfils its contract. Otherwise the compiler's message names the missing
-/// part.
+/// Compiles only for a block that meets all requirements of its kind. For any other block, the message of the
+/// compiler names the missing part.
 template <template <class> class Block, class T>
 consteval bool keeps_contract() {
   using B = Block<T>;

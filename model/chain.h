@@ -1,5 +1,5 @@
 #pragma once
-// Simulates a model. Each step passes the signal through the blocks of a Model, from the command to the
+// Simulates a model. In each step, the signal passes through the blocks of the model, from the command to the
 // reading.
 
 #include <array>
@@ -18,51 +18,55 @@
 
 namespace softgrip::model {
 
-/// A chain of blocks over the number type T. Construction allocates memory; reset(), step() and peek() do
-/// not. Exceptions are a chain with sample_time_s = 0 (for irregular logs) and a chain whose steps are much
-/// shorter than sample_time_s, because the delay line of such a chain may grow.
+/// A chain of blocks over the number type T. The constructor allocates memory; reset(), step() and peek() do
+/// not. There are two exceptions, because their delay line may grow: a chain with sample_time_s = 0 (for
+/// irregular logs), and a chain whose steps are much shorter than sample_time_s.
 ///
-/// The command is piecewise linear: step(dt, u) moves it linearly from its last value to `u` over `dt`. An
-/// output that a board holds is step(0, u) followed by step(dt, u). For such commands, Bouc-Wen (exponent 1),
-/// Kelvin-Voigt, delay and lag are exact for any dt. After a lag, Bouc-Wen receives the exact turning points
-/// and Kelvin-Voigt receives a parabola with the exact mean. The error is below 1e-6 mm if dt is at most the
-/// time constant of the lag and the command does not jump, and below 1e-8 mm for a tenth of that dt. After
-/// the elements, inertia and sensor lag receive parabolas for at most 5 kPa each. The error of these two
-/// blocks is 1e-4 mm after a step of 44 kPa within a sample.
+/// The command is piecewise linear: step(dt, u) moves the command linearly from its last value to `u` over
+/// `dt`. If a board holds its output, this is step(0, u) followed by step(dt, u). For such commands, Bouc-Wen
+/// (exponent 1), Kelvin-Voigt, delay and lag are exact for any dt. After a lag, Bouc-Wen receives the exact
+/// turning points, and Kelvin-Voigt receives a parabola with the exact mean. The error is below 1e-6 mm if dt
+/// is at most the time constant of the lag and the command does not jump. It is below 1e-8 mm for a tenth of
+/// that dt. After the elements, inertia and sensor lag receive parabolas, each for a pressure change of at
+/// most 5 kPa. The error of inertia and sensor lag is 1e-4 mm after a step of 44 kPa within a sample.
 template <class T>
 class Chain {
  public:
-  /// @param model  must be valid: validate(model) is empty.
-  /// @param values  all parameters of all blocks, in the order of flat_values(model). Empty: the values of
-  /// the model.
-  /// @param sample_time_s  nominal sample time for precomputed coefficients [s]; 0 if it is irregular. A
-  /// duration that differs from the sample time by a relative 1e-9 or less is replaced by the sample time.
+  /// @param model  a valid model, for which validate(model) is empty.
+  /// @param values  all parameters of all blocks, in the order of flat_values(model). Empty: the values in
+  /// `model` are used.
+  /// @param sample_time_s  nominal sample time for precomputed coefficients [s]; 0 if the sample time is
+  /// irregular. If the relative difference between a duration and the sample time is 1e-9 or less, the sample
+  /// time is used.
   /// @param seed  seed of the random numbers of the sensor blocks. Equal seeds give equal noise.
   explicit Chain(const Model& model, std::span<const T> values = {}, double sample_time_s = 0,
                  std::uint64_t seed = 0);
 
-  /// Sets the state of rest that follows after the command rose from 0 to `command` once and was then held
+  /// Sets the state of rest after the command rose from 0 to `command` once and was then held for a long time
   /// (see block.h).
   void reset(const T& command);
 
-  /// Sets the state of rest as reset() does, but blocks with a memory over the campaign, such as the largest
-  /// load so far, keep this memory. Use it for a new log of the same rig after a rest.
+  /// Sets the state of rest as reset() does. However, blocks with a memory over the measurement campaign,
+  /// such as the largest load so far, keep this memory. Use this function for a new log of the same rig after
+  /// a rest.
   void rest(const T& command);
 
-  /// Advances by `duration_s` >= 0 while the command changes linearly to `command`. Returns the reading [mm].
+  /// Advances by `duration_s` >= 0, in which the command changes linearly to `command`. Returns the reading
+  /// [mm].
   T step(const T& duration_s, const T& command, Surroundings surroundings = {});
 
-  /// Predicts the displacement before the sensor for a pressure that changes linearly to `end_kpa` over
-  /// `duration_s`. The signal passes only through the blocks with Inverse::implicit. The state does not
-  /// change. The result is exact unless the pressure has a corner within the sample (at a threshold). To
-  /// invert a model, construct a chain of only the implicit blocks, and step it with the pressure that solves
-  /// peek() = reference. U is T, or Dual<T> for the derivative with respect to the pressure.
+  /// Predicts the displacement before the sensor, for a pressure that changes linearly to `end_kpa` over
+  /// `duration_s`. The signal passes only through the blocks with Inverse::implicit, and the state does not
+  /// change. If the pressure has a corner within the sample (at a threshold), the result is approximate,
+  /// otherwise exact. To invert a model, create a chain that contains only the implicit blocks. Step this
+  /// chain with the pressure that solves peek() = reference. U is T, or Dual<T> for the derivative with
+  /// respect to the pressure.
   template <class U>
   [[nodiscard]] U peek(const T& duration_s, const U& end_kpa, Surroundings surroundings = {}) const;
 
-  /// Returns the output of the given station at the end of the last step: for Station::valve the pressure at
-  /// the actuator [kPa], for the other stations a displacement [mm]. The output of a station without blocks
-  /// is its input.
+  /// Returns the output of a station at the end of the last step. For Station::valve, this is the pressure at
+  /// the actuator [kPa]; for the other stations, it is a displacement [mm]. If a station has no blocks, its
+  /// output is its input.
   [[nodiscard]] const T& after(Station station) const { return after_[static_cast<std::size_t>(station)]; }
   [[nodiscard]] const T& reading_mm() const { return after(Station::sensor); }
   [[nodiscard]] const T& pressure_kpa() const { return after(Station::valve); }
@@ -70,11 +74,12 @@ class Chain {
   [[nodiscard]] const T& command_kpa() const { return command_kpa_; }
 
   [[nodiscard]] std::size_t size() const noexcept { return blocks_.size(); }
-  /// Returns a block, for the feedforward, which inverts each block separately.
+  /// Returns a block. The feedforward needs this function, because it inverts each block separately.
   [[nodiscard]] const AnyBlock<T>& block(std::size_t index) const { return blocks_[index]; }
-  /// Returns a block, for a simulation that changes a block while it runs, for example a contact.
+  /// Returns a block that the caller may change, for a simulation in which a block changes, for example a
+  /// contact.
   [[nodiscard]] AnyBlock<T>& block(std::size_t index) { return blocks_[index]; }
-  /// Returns the first block of type Block (BoucWen<T>, ...), or nullptr.
+  /// Returns the first block of the type Block (BoucWen<T>, ...); nullptr if there is none.
   template <class Block>
   [[nodiscard]] const Block* find() const noexcept {
     for (const AnyBlock<T>& block : blocks_) {
@@ -93,7 +98,7 @@ class Chain {
   void add_elements(const Segment<T>& segment, const Surroundings& surroundings);
   void walk_displacement(Index i, const Segment<T>& segment, const Surroundings& surroundings);
   void walk_readings(const T& duration_s, const Surroundings& surroundings);
-  // Stores the signal before block i as the output of each station whose last block precedes block i.
+  // Stores the signal before block i as the output of each station whose last block comes before block i.
   void note_displacement(Index i, const T& value) {
     if (i == end_[1]) after_[1] = value;
     if (i == end_[2]) after_[2] = value;
@@ -103,11 +108,11 @@ class Chain {
   std::vector<AnyBlock<T>> blocks_;
   std::array<Index, 4> end_{};  // for each station: index after its last block
   Index first_element_ = 0, first_displacement_ = 0, first_reading_ = 0;
-  bool leaps_in_parts_ = false;  // divide large pressure changes, see longest_way_kpa
+  bool leaps_in_parts_ = false;  // true: large pressure changes are divided, see longest_way_kpa
   double sample_time_s_;
-  double clock_s_ = 0;  // sum of the durations since reset()
+  double clock_s_ = 0;  // sum of the step durations since reset()
   T command_kpa_{0.0};
-  T at_sensor_{0.0};  // input of the reading blocks
+  T at_sensor_{0.0};  // input of the reading blocks (blocks of the sensor)
   std::array<T, 4> after_{T(0.0), T(0.0), T(0.0), T(0.0)};
 };
 

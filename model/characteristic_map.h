@@ -1,5 +1,5 @@
 #pragma once
-// A nonlinear, monotone map through (0, 0) and (span, span).
+// Computes a nonlinear, monotone map through the points (0, 0) and (span, span).
 
 #include <cmath>
 
@@ -8,12 +8,12 @@
 
 namespace softgrip::model {
 
-/// g(z) = span expm1(a z/span) / expm1(a) on [0, span], continued as straight lines outside. The map is
-/// smooth in a through 0, where g(z) = z.
+/// g(z) = span expm1(a z/span) / expm1(a) on [0, span], where a is the curvature. Outside this range, the map
+/// continues as straight lines. The map is smooth in a at a = 0, where g(z) = z.
 template <class T>
 class CharacteristicMap {
  public:
-  /// @param curvature  a.  @param span_mm  > 0.
+  /// @param curvature  the curvature a.  @param span_mm  the span, > 0.
   CharacteristicMap(const T& curvature, const T& span_mm)
       : curvature_(curvature),
         span_mm_(span_mm),
@@ -23,7 +23,7 @@ class CharacteristicMap {
         last_slope_(exponential(curvature) / phi1_) {}
 
   [[nodiscard]] const T& curvature() const { return curvature_; }
-  /// Slopes g'(0) and g'(span).
+  /// first_slope() returns g'(0), and last_slope() returns g'(span).
   [[nodiscard]] const T& first_slope() const { return first_slope_; }
   [[nodiscard]] const T& last_slope() const { return last_slope_; }
 
@@ -43,7 +43,7 @@ class CharacteristicMap {
     if (value_of(y) <= 0.0) return y * phi1_;
     if (value_of(y) >= value_of(span_mm_)) return span_mm_ + (y - span_mm_) / last_slope_;
     const T share = y / span_mm_;
-    // For |a| below this limit, the quotient below becomes 0/0, and the map is linear except for rounding.
+    // For |a| below this limit, the quotient below becomes 0/0. Apart from rounding, the map is linear there.
     if (std::abs(value_of(curvature_)) < 1e-9) return y;
     return span_mm_ * (log1p(share * (curvature_ * phi1_)) / curvature_);
   }

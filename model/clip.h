@@ -1,23 +1,24 @@
 #pragma once
-// Limits a monotone segment to a level and divides the segment at the point where it crosses the level.
+// Limits a monotone segment to a level. If the segment crosses the level, it is divided at this point.
 
 #include "model/segment.h"
 
 namespace softgrip::model {
 
-/// Returns the smaller of two numbers by their values, without derivatives.
+/// Returns the number with the smaller value. Derivatives have no influence on the choice.
 template <class T>
 [[nodiscard]] T lesser(const T& x, const T& y) {
   return value_of(y) < value_of(x) ? y : x;
 }
 
-/// Returns the larger of two numbers by their values, without derivatives.
+/// Returns the number with the larger value. Derivatives have no influence on the choice.
 template <class T>
 [[nodiscard]] T greater(const T& x, const T& y) {
   return value_of(y) > value_of(x) ? y : x;
 }
 
-/// Passes on min(in, level). If `in` crosses the level within the segment, two segments are passed on.
+/// Passes on the smaller of `in` and `level`. If `in` crosses the level within the segment, two segments are
+/// passed on.
 template <class T, class Next>
 void clip_above(const Segment<T>& in, const T& level, Next&& next) {
   const double top = value_of(level);

@@ -1,11 +1,12 @@
 #pragma once
-// A number with one derivative (forward mode), for the Newton steps of an implicit solution.
+// A number with one derivative (forward-mode automatic differentiation). Newton steps of an implicit solution
+// use it.
 
 #include <cmath>
 
 namespace softgrip::model {
 
-/// Value `a` and derivative `v` with respect to the variable that was initialised with v = 1.
+/// A value `a` and its derivative `v` with respect to one variable. For this variable itself, v is 1.
 template <class S>
 struct Dual {
   S a{};
@@ -37,7 +38,7 @@ struct Dual {
   friend constexpr Dual operator-(const S& x, const Dual& y) { return {x - y.a, -y.v}; }
   friend constexpr Dual operator/(const Dual& x, const S& y) { return {x.a / y, x.v / y}; }
 
-  // Comparisons use only the value and ignore the derivative.
+  // Comparisons use the value only. They ignore the derivative.
   friend constexpr bool operator<(const Dual& x, const Dual& y) { return x.a < y.a; }
   friend constexpr bool operator>(const Dual& x, const Dual& y) { return x.a > y.a; }
   friend constexpr bool operator<=(const Dual& x, const Dual& y) { return x.a <= y.a; }

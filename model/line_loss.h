@@ -1,23 +1,24 @@
 #pragma once
-// Computes the pressure drop between a regulator and a finger with a leak.
+// Computes the pressure drop between a regulator and a finger that has a leak.
 
 #include "model/number.h"
 
 namespace softgrip::model {
 
-/// A steady flow passes through the line and then through a leak to the atmosphere. Both restrictions follow
+/// A steady flow passes through the line, and then through a leak to the atmosphere. Both restrictions follow
 /// ISO 6358-1 with a critical pressure ratio of 0.5. The flow through the line is approximately C sqrt(p dp).
-/// At small pressures, the line loses `share` times the pressure at the finger (the squared ratio of the
-/// conductances). The flow through the leak is choked above a gauge pressure of one atmosphere. Pressures are
-/// gauge [kPa]. Both functions increase with their argument and are linear for negative arguments.
+/// At small pressures, the pressure drop of the line is `share` times the pressure at the finger, where
+/// `share` is the squared ratio of the two conductances. The flow through the leak is choked above a gauge
+/// pressure of one atmosphere. All pressures are gauge pressures [kPa]. before() and behind() increase with
+/// their argument and are linear for negative arguments.
 template <class T>
 struct LineLoss {
-  T share;  ///< >= 0
+  T share;  ///< pressure drop of the line divided by the pressure at the finger, at small pressures; >= 0
 
   static constexpr double atmosphere_kpa = 101.325;
 
-  /// Returns the pressure before the line from the pressure p at the finger. For p up to the atmospheric
-  /// pressure a, it is p + share p a / (p + a).
+  /// Returns the pressure before the line that belongs to the pressure p at the finger. For p up to the
+  /// atmospheric pressure a, it is p + share p a / (p + a).
   template <class U>
   [[nodiscard]] U before(const U& p) const {
     if (value_of(p) <= 0.0) return p * (1.0 + share);
@@ -25,8 +26,8 @@ struct LineLoss {
     return p + share * atmosphere_kpa * p / (p + atmosphere_kpa);
   }
 
-  /// Returns the pressure at the finger from the pressure before the line: the positive root of the equation
-  /// above.
+  /// Returns the pressure at the finger that belongs to the pressure before the line. It is the positive root
+  /// of the equation of before().
   template <class U>
   [[nodiscard]] U behind(const U& u) const {
     using std::sqrt;

@@ -6,8 +6,8 @@
 
 namespace softgrip::model {
 
-/// Multiplies segments by a gain that changes linearly over a sample, from its last value to the value for
-/// the surroundings at the end of the sample. If a sample has several segments, the gain changes during the
+/// Multiplies segments by a gain that changes linearly over a sample. At the end of the sample, the gain has
+/// the value for the surroundings at this time. If a sample has several segments, the gain changes during the
 /// first segment.
 template <class T>
 class MovingGain {
@@ -26,13 +26,13 @@ class MovingGain {
   T gain_{1.0};
 };
 
-/// A displacement block whose gain depends only on its surroundings. `Block` declares `T law(const
-/// Surroundings&) const`; y is multiplied by positive_gain(law).
+/// A displacement block whose gain depends only on the surroundings. `Block` declares `T law(const
+/// Surroundings&) const`. The displacement y is multiplied by positive_gain(law).
 template <class Block, class T>
 class SurroundingsGain {
  public:
   static constexpr bool at_samples = true;
-  /// Sets the gain to 1. The next step sets it according to the surroundings.
+  /// Sets the gain to 1. The next step sets the gain to the value for the surroundings.
   void reset(const T& input) {
     gain_.reset(T(1.0));
     output_ = input;

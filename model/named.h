@@ -1,6 +1,6 @@
 #pragma once
-// Access to blocks of a model by their C++ type and to their values by name. The compiler checks both: a
-// block that is not registered, or a name that the block does not have, is a compile error.
+// Gives access to blocks of a model by their C++ type, and to their values by name. The compiler checks type
+// and name: a block that is not registered, or a name that the block does not have, is a compile error.
 //
 //   model::BlockSpec lag = model::block_of<model::ValveLag>({{"time_constant_s", 0.1}});
 //   if (const auto* spring = model::find_block<model::KelvinVoigt>(model))
@@ -18,8 +18,8 @@
 
 namespace softgrip::model {
 
-/// Returns the index of a value in BlockSpec::values. Names in repeated parts contain the number of the part:
-/// "k2_kpa_per_mm".
+/// Returns the index of a value in BlockSpec::values. The name of a value in a repeated part contains the
+/// number of the part: "k2_kpa_per_mm".
 template <template <class> class Block>
 consteval std::size_t parameter_index(std::string_view name) {
   using B = Block<double>;
@@ -39,7 +39,7 @@ consteval std::size_t parameter_index(std::string_view name) {
   throw "the block has no parameter of this name";
 }
 
-/// The name of a value of a block, stored as its index.
+/// The name of a value of a block. It is stored as the index of the value.
 template <template <class> class Block>
 struct ParameterName {
   std::size_t index;
@@ -47,14 +47,14 @@ struct ParameterName {
       : index(parameter_index<Block>(name)) {}
 };
 
-/// A value of a block and its name.
+/// A value of a block, together with its name.
 template <template <class> class Block>
 struct NamedValue {
   ParameterName<Block> name;
   double value;
 };
 
-/// Returns a block with these values. All other values are those of neutral_block().
+/// Returns a block with these values. All values that are not given are those of neutral_block().
 template <template <class> class Block>
 [[nodiscard]] BlockSpec block_of(std::initializer_list<NamedValue<Block>> values, std::size_t parts = 1) {
   BlockSpec block = neutral_block(block_type<Block>(), parts);
@@ -62,7 +62,7 @@ template <template <class> class Block>
   return block;
 }
 
-/// Returns true if a block has one of these types: is<BoucWen, KelvinVoigt>(block).
+/// Returns true if the type of a block is one of these types: is<BoucWen, KelvinVoigt>(block).
 template <template <class> class... Block>
 [[nodiscard]] constexpr bool is(const BlockSpec& block) {
   return ((block.type == block_type<Block>()) || ...);
@@ -72,7 +72,8 @@ template <template <class> class... Block>
   return ((info.id == Block<double>::info.id) || ...);
 }
 
-/// Returns a value of a block of this type. Throws std::out_of_range if the block does not have this part.
+/// Returns a value of a block of this type. Throws std::out_of_range if the block does not have the repeated
+/// part.
 template <template <class> class Block>
 [[nodiscard]] double value(const BlockSpec& block, ParameterName<Block> name) {
   return block.values.at(name.index);
@@ -82,7 +83,7 @@ template <template <class> class Block>
   return block.values.at(name.index);
 }
 
-/// Returns the position of the first block of this type in the model, or nullopt.
+/// Returns the index of the first block of this type in the model, or nullopt.
 template <template <class> class Block>
 [[nodiscard]] std::optional<std::size_t> position_of(const Model& model) {
   return position_of(model, block_type<Block>());
@@ -100,7 +101,7 @@ template <template <class> class Block>
   return position ? &model.blocks[*position] : nullptr;
 }
 
-/// Returns a value of the first block of this type, or nullopt.
+/// Returns a value of the first block of this type; nullopt if the model has no such block.
 template <template <class> class Block>
 [[nodiscard]] std::optional<double> value_in(const Model& model, ParameterName<Block> name) {
   const BlockSpec* const block = find_block<Block>(model);
@@ -118,7 +119,7 @@ template <template <class> class Block>
   return without_block(std::move(model), block_type<Block>());
 }
 
-/// Returns the model with only the blocks of these types.
+/// Returns the model that contains only the blocks of these types.
 template <template <class> class... Block>
 [[nodiscard]] Model only(Model model) {
   std::erase_if(model.blocks, [](const BlockSpec& block) { return !is<Block...>(block); });

@@ -1,12 +1,13 @@
 #pragma once
-// Functions that blocks need for their number type: double, Dual, or an automatic differentiation type with
-// the members `a` (value) and `v` (derivatives). Functions of <cmath> are found by argument-dependent lookup.
+// Functions of the number type that the blocks need. The number type is double, Dual, or an automatic
+// differentiation type with the members `a` (value) and `v` (derivatives). Functions of <cmath> are found by
+// argument-dependent lookup.
 
 #include <type_traits>
 
 namespace softgrip::model {
 
-/// Returns the plain value, without derivatives. Decisions use this value.
+/// Returns the value of a number without its derivatives. The code uses this value for decisions.
 template <class T>
 [[nodiscard]] constexpr double value_of(const T& x) noexcept {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -16,7 +17,8 @@ template <class T>
   }
 }
 
-/// Returns true if value and all derivatives are equal. Such numbers are interchangeable in any formula.
+/// Returns true if the value and all derivatives of the two numbers are equal. Such numbers give the same
+/// result in any formula.
 template <class T>
 [[nodiscard]] constexpr bool same(const T& x, const T& y) noexcept {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -26,7 +28,8 @@ template <class T>
   }
 }
 
-/// Returns true if value and all derivatives are zero. A duration of 0 s can still depend on a fitted delay.
+/// Returns true if the value and all derivatives are zero. A duration with the value 0 s can still have a
+/// derivative with respect to a fitted delay.
 template <class T>
 [[nodiscard]] constexpr bool is_zero(const T& x) noexcept {
   return same(x, T(0.0));

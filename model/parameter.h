@@ -1,6 +1,6 @@
 #pragma once
-// Declaration of a parameter of a block: YAML key, limits, bounds and scale of a fit, text of the reference
-// page.
+// Declares a parameter of a block: its key in model files, its limits, its scale for a fit, and its text on
+// the reference page.
 
 #include <cstddef>
 #include <limits>
@@ -8,28 +8,29 @@
 
 namespace softgrip::model {
 
-/// One parameter of a block. `name` ends with the unit, if it has one, and is the YAML key, the JSON key and
-/// the name in reports. In a block with repeated parts (Kelvin-Voigt branches), `#` in the name represents
-/// the number of the part, counted from 1.
+/// One parameter of a block. `name` is the YAML key, the JSON key and the name in reports. If the parameter
+/// has a unit, `name` ends with the unit. In a block with repeated parts (Kelvin-Voigt branches), `#` in the
+/// name stands for the number of the part, from 1.
 struct ParameterSpec {
   std::string_view name;
-  std::string_view unit;     ///< "" for a pure number
-  std::string_view meaning;  ///< one line
-  double default_value = 0;  ///< a value with a typical effect of the block
-  double lower = 0;          ///< smallest permitted value, inclusive
-  double upper = 0;          ///< largest permitted value, inclusive
-  double scale = 1;          ///< a typical change, for the scaling of a fit
-  bool whole = false;        ///< only integers (an exponent)
-  bool placed = false;       ///< remains fixed while a fit changes the values that depend on it (a threshold)
-  /// If all parameters with a neutral value have that value, the block has no effect. NaN: the parameter has
-  /// no neutral value, because it has no influence while the others are neutral.
+  std::string_view unit;     ///< unit; "" for a number without a unit
+  std::string_view meaning;  ///< description in one line
+  double default_value = 0;  ///< value for which the block has a typical effect
+  double lower = 0;          ///< smallest permitted value; the value itself is permitted
+  double upper = 0;          ///< largest permitted value; the value itself is permitted
+  double scale = 1;          ///< size of a typical change, by which a fit scales the parameter
+  bool whole = false;        ///< true: only integers are permitted (an exponent)
+  bool placed = false;       ///< true: the parameter stays fixed while a fit changes the values that depend
+                             ///< on it (a threshold)
+  /// Neutral value: if all parameters that have a neutral value are set to it, the block has no effect. NaN:
+  /// the parameter has no neutral value, because it has no influence while the others are neutral.
   double neutral = std::numeric_limits<double>::quiet_NaN();
-  /// Value of the parameter if a model file omits it; NaN: the parameter is required. Files that are older
-  /// than the parameter therefore keep their meaning.
+  /// Value of the parameter if a model file omits it; NaN: the file must contain the parameter. With this
+  /// value, files that are older than the parameter keep their meaning.
   double if_left_out = std::numeric_limits<double>::quiet_NaN();
 };
 
-// Named arguments of a declaration. Each sets the member of the same meaning above.
+// Named arguments of a declaration. Each of them sets one member of ParameterSpec.
 struct Typical {
   double value;
 };
@@ -66,7 +67,7 @@ constexpr void add(ParameterSpec& spec, Placed) {
 /// Declares one parameter:
 ///   parameter("rate_mm_per_h", "mm/h", "steady drift", Typical{0.5}, Within{-1e5, 1e5}, Scale{1.0},
 ///   Neutral{0.0})
-/// Values outside the bounds of the parameter are compile errors.
+/// A typical or neutral value outside the limits of the parameter is a compile error.
 template <class... More>
 consteval ParameterSpec parameter(std::string_view name, std::string_view unit, std::string_view meaning,
                                   Typical typical, Within within, Scale scale, More... more) {
@@ -82,7 +83,7 @@ consteval ParameterSpec parameter(std::string_view name, std::string_view unit, 
   return spec;
 }
 
-/// Returns true if `name` is `declared` with the number `part` in place of `#`.
+/// Returns true if `name` is equal to `declared` with the number `part` in place of `#`.
 constexpr bool is_name_of_part(std::string_view declared, std::size_t part, std::string_view name) {
   const std::size_t mark = declared.find('#');
   const std::string_view behind = declared.substr(mark + 1);

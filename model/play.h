@@ -1,5 +1,6 @@
 #pragma once
-// The play operator: its output follows the input with a gap of half the play on either side.
+// The play operator. Its output follows the input, but moves only when the gap, half the play on either side,
+// is closed.
 
 #include <type_traits>
 
@@ -8,30 +9,32 @@
 
 namespace softgrip::model {
 
-/// The output o satisfies |input - o| <= reach and moves only if necessary. Rate independent.
+/// The output o always satisfies |input - o| <= reach, and moves only if this requires it. The operator is
+/// rate independent.
 template <class T>
 class Play {
  public:
   explicit Play(const T& reach) : reach_(reach) {}
 
-  /// Sets the state after a change of the input from 0 to `input`.
+  /// Sets the state that results if the input changes from 0 to `input`.
   void reset(const T& input) {
     output_ = T(0.0);
     settle(input);
   }
-  /// Moves the input directly to `input`. The duration has no effect.
+  /// Moves the input directly to `input`. The result does not depend on the duration of this change.
   void settle(const T& input) {
     output_ = dragged(input, output_);
     dragging_ = false;
   }
   [[nodiscard]] const T& output() const { return output_; }
-  /// Returns the output for an input that changes directly to `input`.
+  /// Returns the output that would result if the input changed directly to `input`.
   template <class U>
   [[nodiscard]] U peek(const U& input) const {
     return dragged(input, U(output_));
   }
 
-  /// Passes the output on. If the output begins to move within the segment, two segments are passed on.
+  /// Passes the output on. If the output begins to move within the segment, the segment is divided at this
+  /// point.
   template <class Next>
   void step(const Segment<T>& in, Next&& next) {
     const T begin = output_;
@@ -47,10 +50,10 @@ class Play {
     dragging_ = true;
     upwards_ = upwards;
     const T side = upwards ? T(-reach_) : reach_;
-    const T start = begin - side;  // the input at which the output begins to move
+    const T start = begin - side;  // input at which the output begins to move
     const double share = (value_of(start) - value_of(in.begin)) / (value_of(in.end) - value_of(in.begin));
-    // If the motion begins at the start of the segment, the segment is divided only for number types with
-    // derivatives.
+    // If the motion begins exactly at the start of the segment, the segment is divided only for number types
+    // with derivatives.
     const double least = std::is_arithmetic_v<T> ? 1e-12 : -1e-12;
     if (went_on || !(share > least && share < 1.0)) {
       next(Segment<T>{in.duration_s, begin, end, in.mean + side});
@@ -70,7 +73,7 @@ class Play {
   }
 
   T reach_;
-  bool dragging_ = false;  // the last change of the input also moved the output
+  bool dragging_ = false;  // true: the last change of the input also moved the output
   bool upwards_ = false;
   T output_{0.0};
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Defines the reading of a channel. The drivers produce readings, and the controllers use them.
+// Defines the reading of a channel. The drivers produce readings, and the controller uses them.
 
 #include <cstdint>
 #include <limits>
@@ -8,12 +8,12 @@
 
 namespace softgrip::model {
 
-/// Validity of a reading: the reason why the reading cannot be used, or `valid`.
+/// The validity of a reading: `valid`, or the reason why the reading cannot be used.
 enum class Validity : std::uint8_t {
   valid,
-  none_yet,      ///< no reply so far
+  none_yet,      ///< there has been no reply yet
   out_of_range,  ///< outside the electrical range of the sensor
-  sensor_error,  ///< an error code of the sensor or the board
+  sensor_error,  ///< the sensor or the board reported an error code
   jumped,        ///< the reading changed faster than a finger can move
   frozen,        ///< the reading did not change while the command changed
   stale,         ///< older than the allowed age
@@ -22,11 +22,11 @@ enum class Validity : std::uint8_t {
 /// The measured values of a channel.
 struct Reading {
   double displacement_mm = 0;
-  /// measured pressure if the channel has a pressure monitor, else NaN
+  /// Measured pressure [kPa]; NaN if the channel has no pressure monitor.
   double pressure_kpa = std::numeric_limits<double>::quiet_NaN();
-  /// ambient temperature of the finger if the channel has a temperature sensor, else NaN
+  /// Ambient temperature of the finger [degC]; NaN if the channel has no temperature sensor.
   double temperature_c = std::numeric_limits<double>::quiet_NaN();
-  /// output that the board reports [kPa]; NaN if the board cannot report it
+  /// Output that the board reports [kPa]; NaN if the board does not report it.
   double command_readback_kpa = std::numeric_limits<double>::quiet_NaN();
   Nanoseconds sampled_at = 0;  ///< time of the request to the board; 0 before the first reply
   std::uint32_t sequence = 0;  ///< number of replies so far

@@ -58,7 +58,7 @@
 
 namespace softgrip::model {
 
-/// The registered blocks. Each fulfils the contract of block.h.
+/// The registered blocks. Each block meets the requirements of block.h.
 template <template <class> class... Block>
 struct BlockList {
   template <class T>
@@ -67,8 +67,8 @@ struct BlockList {
   static_assert((keeps_contract<Block, double>() && ...));
   static_assert((keeps_contract<Block, Dual<double>>() && ...));
 
-  /// Returns the index of B, a block over double, in the list, or the length of the list if B is not
-  /// registered.
+  /// Returns the index of B in the list, where B is a block over double. If B is not registered, returns the
+  /// length of the list.
   template <class B>
   static consteval std::size_t index_of() {
     std::size_t index = 0;
@@ -77,7 +77,7 @@ struct BlockList {
   }
 };
 
-/// All blocks, in the order in which the signal passes them. with_block() uses this order.
+/// All blocks, in the order in which the signal passes through them. with_block() uses this order.
 using Blocks = BlockList<TransportDelay,          //
                          ValveDeadband,           //
                          ValveStiction,           //
@@ -127,11 +127,12 @@ using Blocks = BlockList<TransportDelay,          //
                          Sampling,                //
                          Quantisation>;
 
-/// One block of any type. The index of a type equals BlockSpec::type and its index in catalogue().
+/// One block of any registered type. The index of a type is equal to BlockSpec::type and to its index in
+/// catalogue().
 template <class T>
 using AnyBlock = Blocks::Any<T>;
 
-/// Returns BlockSpec::type of a block: block_type<ValveLag>() or, with a number type,
+/// Returns BlockSpec::type of a block. There are two forms: block_type<ValveLag>() and, with a number type,
 /// block_type<ValveLag<double>>().
 template <template <class> class Block>
 [[nodiscard]] consteval std::size_t block_type() {

@@ -1,7 +1,7 @@
 #pragma once
-// Model of a pressure regulator. The error and its integral move a spool, which opens a port to the supply or
-// to the atmosphere. Within its overlap the spool opens neither port (Beater, Pneumatic Drives, 2007,
-// chapters 5 and 8).
+// Models a pressure regulator. The control error and its integral move a spool, which opens a port to the
+// supply or to the atmosphere. While the spool is within its overlap, both ports are closed (Beater,
+// Pneumatic Drives, 2007, chapters 5 and 8).
 
 #include <algorithm>
 #include <cmath>
@@ -12,25 +12,27 @@
 
 namespace softgrip::model {
 
-/// Parameters of a regulator. A parameter of 0 has no effect. Without time constants, the pressure equals the
-/// command.
+/// Parameters of a regulator. A parameter with the value 0 has no effect. If both time constants are 0, the
+/// pressure equals the command.
 template <class T>
 struct RegulatorNumbers {
   T filling_s{0.0};      ///< time constant while the port to the supply is open
-  T venting_s{0.0};      ///< time constant while the port to the atmosphere is open, at 50 kPa
+  T venting_s{0.0};      ///< time constant while the port to the atmosphere is open, at a gauge pressure of
+                         ///< 50 kPa
   T overlap_kpa{0.0};    ///< largest error at which both ports are closed
-  T integral_s{0.0};     ///< integral time: a constant error doubles the spool position in this time
+  T integral_s{0.0};     ///< integral time: with a constant error, the spool position doubles in this time
   T full_open_kpa{0.0};  ///< error at which a port is fully open
 };
 
-/// The equations, with e = u - p and v = e + integral of e / integral_s, clamped to +-full_open_kpa, are:
+/// The equations use e = u - p and v = e + integral of e / integral_s, limited to +-full_open_kpa. Here u is
+/// the command and p the pressure:
 ///   filling_s p' = v - overlap if v > overlap;
 ///   venting_s p' / outflow(p) = v + overlap if v < -overlap;
 ///   otherwise p' = 0.
-/// The integral stops if v is clamped and would grow. If only the time constants are above 0, the regulator
-/// is a TwoWayLag, except that venting depends on outflow(p). A segment is divided into steps of at most
-/// `longest_step_s`. In each step the integral is linear in time, and the outflow has its value at the middle
-/// of the step. Apart from these approximations, the solution is exact for straight input.
+/// The integral stops if v is at its limit and would grow further. If only the time constants are above 0,
+/// the regulator is a TwoWayLag whose venting depends on outflow(p). A segment is divided into steps of at
+/// most `longest_step_s`. In each step, the integral is assumed to be linear in time, and the outflow is that
+/// at the middle of the step. Apart from these two approximations, the solution is exact for straight input.
 template <class T>
 class RegulatedPressure {
  public:
@@ -41,11 +43,11 @@ class RegulatedPressure {
     integral_kpa_ = T(0.0);
   }
   [[nodiscard]] const T& output() const { return pressure_kpa_; }
-  /// Returns the contribution of the integral to v [kPa].
+  /// Returns the part of v that comes from the integral [kPa].
   [[nodiscard]] const T& integral_kpa() const { return integral_kpa_; }
   [[nodiscard]] const RegulatorNumbers<T>& numbers() const { return n_; }
 
-  /// Passes on one segment for each direction of the pressure change.
+  /// Passes on one segment for each direction in which the pressure changes.
   template <class Next>
   void step(const Segment<T>& in, Next&& next) {
     if (value_of(n_.filling_s) <= 0 && value_of(n_.venting_s) <= 0) {
@@ -63,7 +65,7 @@ class RegulatedPressure {
       const T from = in.at(T(static_cast<double>(i) / steps)), to = in.at(T((i + 1.0) / steps));
       const T before = pressure_kpa_;
       if (rests(from, to)) {
-        // The regulator is at rest for the remaining steps.
+        // For the remaining steps, the regulator is at rest.
         const T rest_s = step_s * static_cast<double>(steps - i);
         out.duration_s += rest_s;
         area += before * rest_s;
@@ -87,18 +89,19 @@ class RegulatedPressure {
 
  private:
   static constexpr double longest_step_s = 0.005;
-  /// Largest number of steps of a segment. With the longest step, they take more than an hour. In this time
-  /// the pressure comes to rest.
+  /// Largest number of steps of a segment. With the longest step, this number covers more than an hour, in
+  /// which the pressure comes to rest.
   static constexpr double most_steps = 1e6;
   static constexpr double atmosphere_kpa = 101.325;
-  /// ISO 6358-1: critical pressure ratio of a common port, and the ratio above which its flow is linear.
+  /// Values of ISO 6358-1: critical pressure ratio of a common port, and the pressure ratio above which its
+  /// flow is linear.
   static constexpr double critical_ratio = 0.3, linear_above = 0.995;
-  /// Gauge pressure for which venting_s is defined.
+  /// Gauge pressure for which venting_s is defined [kPa].
   static constexpr double usual_kpa = 50;
   static constexpr double shortest_s = 1e-4;
 
-  /// Returns the flow to the atmosphere divided by the sonic conductance of the port [kPa], from the gauge
-  /// pressure [kPa].
+  /// Returns the flow to the atmosphere at a gauge pressure [kPa]. The result is the flow divided by the
+  /// sonic conductance of the port [kPa].
   static T outflow(const T& gauge_kpa) {
     using std::sqrt;
     if (value_of(gauge_kpa) <= 0) return T(0.0);
@@ -112,15 +115,15 @@ class RegulatedPressure {
     return from_kpa * subsonic(T(linear_above)) * ((1.0 - ratio) * (1 / (1 - linear_above)));
   }
 
-  /// Returns true if the pressure equals a constant command and the integral is within the overlap.
+  /// Returns true if the command is constant and equals the pressure, and the integral is within the overlap.
   [[nodiscard]] bool rests(const T& from, const T& to) const {
     constexpr double nothing_kpa = 1e-9;
     return value_of(from) == value_of(to) && std::abs(value_of(to) - value_of(pressure_kpa_)) < nothing_kpa &&
            std::abs(value_of(integral_kpa_)) <= value_of(n_.overlap_kpa);
   }
 
-  /// Makes one step while the input changes from `from` to `to`. Returns the mean of the pressure over the
-  /// step.
+  /// Computes one step in which the input changes from `from` to `to`. Returns the mean of the pressure over
+  /// the step.
   T go(const T& step_s, const T& from, const T& to) {
     if (!(value_of(n_.integral_s) > 0)) return follow(step_s, from, to);
     const T begins = from - pressure_kpa_;
@@ -129,8 +132,8 @@ class RegulatedPressure {
     const T mean = follow(step_s, from + integral_kpa_, to + integral_kpa_ + drift);
     const T ends = to - pressure_kpa_;
     const double stopped_after = stops_by(ends);
-    // Updates the integral with the error from the new pressure, over the part of the step in which the
-    // integral changes.
+    // Adds the error to the integral. The error is computed from the new pressure. Only the part of the step
+    // in which the integral changes is used.
     if (stopped_before > 0 && stopped_after > 0) return mean;
     T error = (from + to) * 0.5 - mean;
     double share = 1;
@@ -145,7 +148,7 @@ class RegulatedPressure {
     return mean;
   }
 
-  /// Returns the distance of v beyond the limit at which the integral stops [kPa]. If it is not above 0, the
+  /// Returns how far v is beyond the limit at which the integral stops [kPa]. If the result is 0 or less, the
   /// integral changes.
   [[nodiscard]] double stops_by(const T& error) const {
     const double full = value_of(n_.full_open_kpa), asked = value_of(error) + value_of(integral_kpa_);
@@ -153,8 +156,9 @@ class RegulatedPressure {
     return asked * value_of(error) > 0 ? std::abs(asked) - full : -1;
   }
 
-  /// Moves the band around the target linearly from `wanted` to `wanted_after`. If the pressure is outside
-  /// the band, it moves towards the nearer edge. Returns the mean of the pressure over the step.
+  /// Moves the target linearly from `wanted` to `wanted_after`, together with the band of the overlap around
+  /// it. If the pressure is outside the band, it moves towards the nearer edge of the band. Returns the mean
+  /// of the pressure over the step.
   T follow(const T& step_s, const T& wanted, const T& wanted_after) {
     const double p = value_of(pressure_kpa_), band = value_of(n_.overlap_kpa);
     const bool fills = p < value_of(wanted) - band;
@@ -170,8 +174,8 @@ class RegulatedPressure {
     return (mean * lasts_s + wait(rest_s, met, wanted_after) * rest_s) / step_s;
   }
 
-  /// Keeps the pressure within the band until an edge of the band reaches it. Returns the mean of the
-  /// pressure.
+  /// Keeps the pressure constant while it is within the band. When an edge of the band reaches the pressure,
+  /// the pressure moves towards this edge. Returns the mean of the pressure.
   T wait(const T& step_s, const T& wanted, const T& wanted_after) {
     const double p = value_of(pressure_kpa_), band = value_of(n_.overlap_kpa);
     const bool fills = p < value_of(wanted_after) - band;
@@ -186,19 +190,20 @@ class RegulatedPressure {
     return before * waits + mean * (1.0 - waits);
   }
 
-  /// Returns the time constant of venting at the middle of the step, at the pressure that venting towards
-  /// `target_kpa` has reached by then.
+  /// Returns the time constant of venting for the middle of the step. It is computed at the pressure that
+  /// venting towards `target_kpa` has reached at this time.
   T venting_s(const T& target_kpa, const T& step_s) const {
     static const double usual = value_of(outflow(T(usual_kpa)));
     const T begins = outflow(pressure_kpa_);
-    if (value_of(begins) <= 0) return T(1e9);  // a chamber without pressure has no outflow
+    if (value_of(begins) <= 0) return T(1e9);  // a chamber at atmospheric pressure has no outflow
     const T z = step_s * begins / (n_.venting_s * usual);
     const T halfway = outflow(pressure_kpa_ + (target_kpa - pressure_kpa_) * (z / (2.0 + z)));
     return n_.venting_s * (usual / (value_of(halfway) > 0 ? halfway : begins));
   }
 
-  /// Moves the pressure as a first-order lag towards a straight target until it meets the target. Returns the
-  /// duration of this motion and sets `mean` to its mean pressure.
+  /// Moves the pressure as a first-order lag towards a target that changes linearly, until the pressure
+  /// equals the target. Returns the duration of this motion, and sets `mean` to the mean pressure during the
+  /// motion.
   T towards(const T& step_s, const T& target, const T& target_after, const T& time_constant, T& mean) {
     using std::log1p;
     const T tau = value_of(time_constant) > shortest_s ? time_constant : T(shortest_s);
@@ -207,7 +212,7 @@ class RegulatedPressure {
     const double way = value_of(gap) != 0 ? value_of(gap) : value_of(slope);
     const double sign = way > 0 ? 1 : -1;
     if (value_of(n_.full_open_kpa) > 0 && std::abs(value_of(gap)) > value_of(most)) {
-      // The port is fully open.
+      // In this case, the port is fully open.
       const T rate = sign * most / tau;
       open_s = step_s;
       if (sign * (value_of(rate) - value_of(slope)) > 0) {

@@ -1,5 +1,5 @@
 #pragma once
-// The test signals: pressure commands that start and end at 0 kPa and do not exceed 60 kPa.
+// Provides the test signals. They are pressure commands that start and end at 0 kPa and do not exceed 60 kPa.
 
 #include <optional>
 #include <string_view>

@@ -1,12 +1,13 @@
 #pragma once
-// Applies a function without memory to a segment.
+// Applies a memoryless function to a segment.
 
 #include "model/segment.h"
 
 namespace softgrip::model {
 
-/// Maps both ends and computes the mean by Simpson's rule over the parabola through the segment.
-/// @param begin  last output (the map of in.begin, unless the map changes with time).
+/// Maps both ends of a segment. Computes the mean of the result by Simpson's rule over the parabola through
+/// the segment.
+/// @param begin  last output, which is the map of in.begin if the map does not change with time.
 template <class T, class Map>
 [[nodiscard]] Segment<T> mapped(const Segment<T>& in, Map&& map, const T& begin) {
   const T end = map(in.end);

@@ -1,6 +1,6 @@
 #pragma once
-// A first-order lag with different time constants for rising and falling input. It models air through a port,
-// which fills a volume from a high pressure and vents it into a low one.
+// A first-order lag with different time constants for rising and falling input. It models air that fills a
+// volume through a port from a high pressure, and vents from it into a low pressure.
 
 #include <cmath>
 
@@ -11,9 +11,10 @@
 
 namespace softgrip::model {
 
-/// tau p' = u - p, where tau is the filling time constant if u > p and the venting time constant if u < p.
-/// Exact for straight input: where the output meets the input, two segments are passed on. With a time
-/// constant of 0, the output follows immediately in that direction.
+/// tau p' = u - p. tau is the filling time constant if u > p, and the venting time constant if u < p. The
+/// solution is exact for straight input. If the output becomes equal to the input within a segment, two
+/// segments are passed on. If a time constant is 0, the output follows the input immediately in that
+/// direction.
 template <class T>
 class TwoWayLag {
  public:
@@ -45,8 +46,8 @@ class TwoWayLag {
     const T rest_s = in.duration_s - turn_s;
     const double least_s = 1e-6 * value_of(in.duration_s);
     if (!(value_of(turn_s) > least_s && value_of(rest_s) > least_s)) {
-      // If output and input meet within a millionth of the duration from either end, one segment is passed
-      // on.
+      // If output and input become equal within a millionth of the duration from either end of the segment,
+      // one segment is passed on.
       go(value_of(turn_s) <= least_s ? then : now, in, next);
       return;
     }
@@ -78,9 +79,9 @@ class TwoWayLag {
     next(Segment<T>::straight(in.duration_s, begin, output_));
   }
 
-  // Returns the time at which the output meets the input. On a straight input, the gap d = input - output
-  // follows d' = slope - d / tau. It closes after tau log(1 - d(0) / (slope tau)) if input and output move
-  // towards each other. Otherwise the result is the whole duration.
+  // Returns the time after which the output equals the input. For a straight input, the gap d = input -
+  // output follows d' = slope - d / tau. The gap is zero after tau log(1 - d(0) / (slope tau)) if input and
+  // output move towards each other. If they do not, returns the whole duration.
   T meeting(const Segment<T>& in, const T& gap, const Direction& now) const {
     using std::log1p;
     const T slope = (in.end - in.begin) / in.duration_s;

@@ -1,6 +1,6 @@
 #pragma once
-// Keeps response weights for recurring durations: the nominal sample time and the pieces into which a delay
-// divides it.
+// Stores response weights for durations that occur repeatedly: the nominal sample time, and the pieces into
+// which a delay divides it.
 
 #include <array>
 #include <cstddef>
@@ -12,15 +12,15 @@
 
 namespace softgrip::model {
 
-/// The weights of `branches` responses for each of the most recent durations. A new duration replaces the
-/// oldest entry.
+/// Stores the weights of `branches` responses for each of the most recent durations. A new duration replaces
+/// the oldest one.
 template <class T>
 class WeightCache {
  public:
   explicit WeightCache(std::size_t branches) : branches_(branches), weights_(branches * slots) {}
 
-  /// Returns the weights for a duration. If the duration is new, `fill(span)` computes the weights of all
-  /// branches.
+  /// Returns the weights for a duration. If the duration is not stored, `fill(span)` computes the weights of
+  /// all branches.
   template <class Fill>
   const ExponentialWeights<T>* at(const T& duration_s, Fill&& fill) {
     for (std::size_t slot = 0; slot < used_; ++slot) {
@@ -34,7 +34,8 @@ class WeightCache {
     return &weights_[slot * branches_];
   }
 
-  /// Returns the stored weights for a duration, or nullptr if it is not stored. It stores nothing.
+  /// Returns the stored weights for a duration; nullptr if the duration is not stored. Does not store
+  /// anything.
   [[nodiscard]] const ExponentialWeights<T>* find(const T& duration_s) const {
     for (std::size_t slot = 0; slot < used_; ++slot) {
       if (same(durations_[slot], duration_s)) return &weights_[slot * branches_];

@@ -1,11 +1,12 @@
 #pragma once
-// No motion below a threshold pressure, for example until the bladder is filled or a fold opens.
+// Models an actuator that does not move below a threshold pressure, for example until the bladder is filled
+// or a fold opens.
 
 #include "model/block.h"
 
 namespace softgrip::model {
 
-/// q = p - p0 above p0, q = 0 between 0 and p0, and q = p below 0.
+/// For the threshold p0: q = p - p0 above p0, q = 0 between 0 and p0, and q = p below 0.
 template <class T>
 class ActuatorThreshold {
  public:
@@ -24,8 +25,8 @@ class ActuatorThreshold {
   template <class Next>
   void step(const Segment<T>& in, const Surroundings&, Next&& next) {
     const auto pass = [&](const Segment<T>& piece) {
-      // In each of the three zones of the map, the output is a shifted pressure, zero, or the pressure
-      // itself.
+      // The map has three zones. In each zone, the output is either a shifted pressure, zero, or the
+      // unchanged pressure.
       const double middle = 0.5 * (value_of(piece.begin) + value_of(piece.end));
       const T begin = output_;
       output_ = map(piece.end);

@@ -1,12 +1,13 @@
 #pragma once
-// The gain of the actuator drifts linearly over a campaign.
+// Models a gain of the actuator that drifts linearly over a measurement campaign.
 
 #include "model/block.h"
 #include "model/moving_gain.h"
 
 namespace softgrip::model {
 
-/// Multiplies y by 1 + a t, limited to positive values. t is the time since the start of the campaign.
+/// Multiplies y by 1 + a t, limited to positive values. t is the time since the start of the measurement
+/// campaign.
 template <class T>
 class Ageing : public SurroundingsGain<Ageing<T>, T> {
  public:

@@ -1,13 +1,13 @@
 #pragma once
-// Makes the parameters of the chain's Bouc-Wen element differ between loading and unloading.
+// Gives the chain's Bouc-Wen element different parameters for loading and for unloading.
 
 #include "model/block.h"
 #include "model/blocks/bouc_wen.h"
 
 namespace softgrip::model {
 
-/// Makes the chain's Bouc-Wen element saturate faster, or follow the pressure more closely, in one direction
-/// than in the other. bouc_wen.h names the source of the equation.
+/// Makes the chain's Bouc-Wen element asymmetric: in one direction, it saturates faster or follows the
+/// pressure more closely than in the other direction. bouc_wen.h names the source of the equation.
 template <class T>
 class AsymmetricBoucWen : public BoucWenPart<T> {
  public:

@@ -1,12 +1,13 @@
 #pragma once
-// First-order lag of the regulator and the tube that differs between filling and venting.
+// Models the lag of the regulator and the tube as first order, with different time constants for filling and
+// venting.
 
 #include "model/block.h"
 #include "model/two_way_lag.h"
 
 namespace softgrip::model {
 
-/// The equation is that of TwoWayLag.
+/// TwoWayLag describes the equation.
 template <class T>
 class AsymmetricValveLag {
  public:

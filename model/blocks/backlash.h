@@ -1,12 +1,13 @@
 #pragma once
-// Play between the actuator and the measured point.
+// Models the play between the actuator and the measured point.
 
 #include "model/block.h"
 #include "model/play.h"
 
 namespace softgrip::model {
 
-/// The measured point follows the actuator with a gap of half the backlash on either side.
+/// The measured point follows the actuator. It moves when the gap, half the backlash on either side, is
+/// closed.
 template <class T>
 class Backlash {
  public:

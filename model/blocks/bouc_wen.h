@@ -1,18 +1,18 @@
 #pragma once
-// Bouc-Wen hysteresis, stepped in pressure. Zhang et al., Actuators 2025, 14(4), 193, equation 1,
-// with the signs and absolute values of the standard form:
+// Models Bouc-Wen hysteresis as a function of the pressure (Zhang et al., Actuators 2025, 14(4), 193,
+// equation 1, with the signs and absolute values of the standard form):
 //   B(t) = alpha p - h,   h' = beta p' - gamma p' |h|^n - eta |p'| |h|^(n-1) h
 // The model is rate independent: dh/dp = beta - (gamma + eta s) |h|^n with s = sgn(p' h).
 // An AsymmetricBoucWen in the chain adds a term that differs between loading and unloading,
 //   dh/dp = beta (1 + b sgn(p')) - (gamma + eta s + delta sgn(p') + epsilon sgn(p') s) |h|^n
-// (the term in the sign of the velocity alone is that of the generalised Bouc-Wen models: Wang and Wen,
-// Journal of Engineering Mechanics 126, 2000; Song and Der Kiureghian, Journal of Engineering Mechanics 132,
-// 2006. With b and epsilon, loading and unloading have independent parameters).
-// A RateDependentWidth in the chain makes the loop wider at high pressure rates,
+// (The term in the sign of the velocity is that of the generalised Bouc-Wen models: Wang and Wen, Journal of
+// Engineering Mechanics 126, 2000; Song and Der Kiureghian, Journal of Engineering Mechanics 132, 2006. With
+// b and epsilon, loading and unloading have independent parameters.) A RateDependentWidth in the chain makes
+// the loop wider at high pressure rates,
 //   B = alpha p - h (1 + growth r/(r + rate)), settling r' = |p'| - r
-// (loop heights that grow with the rate: Ang, Khosla and Riviere, IEEE/ASME Transactions on Mechatronics 12,
-// 2007; here the growth saturates). A RateDependentLevelling makes the hysteretic state saturate earlier at
-// high rates, because it replaces eta by
+// (Loop heights that grow with the rate: Ang, Khosla and Riviere, IEEE/ASME Transactions on Mechatronics 12,
+// 2007. In this block, the growth saturates.) A RateDependentLevelling makes the hysteretic state saturate
+// earlier at high rates, because it replaces eta by
 //   eta (1 + saturation r/(r + rate)).
 
 #include <array>
@@ -24,8 +24,8 @@
 
 namespace softgrip::model {
 
-/// Deviations of the parameters of bouc_wen. They are added for loading and subtracted for unloading. Values
-/// of 0 have no effect.
+/// Deviations of the parameters of bouc_wen. They are added for loading and subtracted for unloading. A value
+/// of 0 has no effect.
 template <class T>
 struct BoucWenSkew {
   T delta_per_kpa{0.0};    ///< deviation of gamma
@@ -33,15 +33,16 @@ struct BoucWenSkew {
   T beta_share{0.0};       ///< deviation of beta, as a share of beta
 };
 
-/// Change of the loop at high pressure rates.
+/// Parameters by which the loop changes at high pressure rates.
 template <class T>
 struct BoucWenRate {
-  T share{0.0};           ///< largest relative change of the width or of eta
-  T half_kpa_per_s{1.0};  ///< rate at which half the change is reached
-  T settling_s{1.0};      ///< time constant of the average of the rate
+  T share{0.0};           ///< largest relative change of the loop width or of eta
+  T half_kpa_per_s{1.0};  ///< pressure rate at which half of the largest change is reached
+  T settling_s{1.0};      ///< time constant by which the pressure rate is averaged
 };
 
-/// The averaged pressure rate r, which follows settling r' = |p'| - r, and the change of a parameter by r.
+/// The averaged pressure rate r, with settling r' = |p'| - r. Also the change of a parameter that depends on
+/// r.
 template <class T>
 class AveragedRate {
  public:
@@ -51,8 +52,8 @@ class AveragedRate {
   void reset() { kpa_per_s_ = T(0.0); }
   void step(const T& change_kpa, const T& duration_s) { kpa_per_s_ = after(change_kpa, duration_s); }
 
-  /// Returns r after `duration_s`. r relaxes towards |p'|. A jump of the pressure increases r by the jump
-  /// divided by the settling time.
+  /// Returns r after `duration_s`. r relaxes towards |p'|. A jump of the pressure increases r by the size of
+  /// the jump divided by the settling time.
   template <class U>
   [[nodiscard]] U after(const U& change_kpa, const T& duration_s) const {
     const T z = duration_s * settling_per_s_;
@@ -60,8 +61,8 @@ class AveragedRate {
     return kpa_per_s_ + (size * settling_per_s_ - z * kpa_per_s_) * phi1(T(-z));
   }
 
-  /// Returns the change of `base` at a rate: 0 at rest, and `base` times BoucWenRate::share if the rate is
-  /// far above half_kpa_per_s.
+  /// Returns the change of the parameter `base` at a pressure rate. It is 0 at rest. If the rate is far above
+  /// half_kpa_per_s, it is `base` times BoucWenRate::share.
   template <class U>
   [[nodiscard]] U share_of(const T& base, const U& kpa_per_s) const {
     return base * rate_.share * (kpa_per_s / (kpa_per_s + rate_.half_kpa_per_s));
@@ -74,15 +75,15 @@ class AveragedRate {
   T kpa_per_s_{0.0};
 };
 
-/// For exponent 1, dh/dp is linear in h between sign changes of h. The equation is integrated in closed form,
-/// which is exact for any step size. A monotone step has at most one sign change. Other exponents use the
-/// classical Runge-Kutta method in sub-steps of the pressure. The relative change of the slope in a sub-step
-/// is below 1/100 (local error about 1e-11 of h). Sub-steps end at the sign change, whose position is an
-/// integral over h computed by Gauss-Legendre quadrature. The error of the mean of a segment is of the fourth
-/// order in its pressure change (1e-7 mm at 0.5 kPa).
+/// Between the zeros of h, dh/dp is linear in h for exponent 1. The equation is integrated in closed form,
+/// which is exact for any step size. In a monotone step, h changes its sign at most once. For other
+/// exponents, the classical Runge-Kutta method is used in sub-steps of the pressure. The relative change of
+/// the slope in a sub-step is below 1/100 (local error about 1e-11 of h). Sub-steps end where h is zero. This
+/// pressure is an integral over h, computed by Gauss-Legendre quadrature. The error of the mean of a segment
+/// is of the fourth order in the pressure change of the segment (1e-7 mm at 0.5 kPa).
 ///
-/// gamma and eta have the unit 1/(kPa mm^(exponent-1)). The parameter names state the unit for exponent 1,
-/// which is 1/kPa.
+/// gamma and eta have the unit 1/(kPa mm^(exponent-1)). The names of the parameters contain the unit for
+/// exponent 1, which is 1/kPa.
 template <class T>
 class BoucWen {
  public:
@@ -120,10 +121,10 @@ class BoucWen {
                                      : std::string_view{};
   }
 
-  /// Makes loading and unloading differ. `skew` is added for loading and subtracted for unloading.
-  /// `delta_per_kpa` is limited to +-eta and +-(gamma + eta), and the saturation rates are limited to values
-  /// that keep h bounded. Beyond these limits, h would grow while the pressure returns. Call skew() once per
-  /// block.
+  /// Gives loading and unloading different parameters. `skew` is added for loading and subtracted for
+  /// unloading. `delta_per_kpa` is limited to +-eta and +-(gamma + eta), and the saturation rates are limited
+  /// to values that keep h bounded. Beyond these limits, h would grow while the pressure returns. Call skew()
+  /// once for each AsymmetricBoucWen block.
   void skew(const BoucWenSkew<T>& skew) {
     const T eta = (growing_[0] - shrinking_[0]) * 0.5;
     const T most = value_of(eta) < value_of(growing_[0]) ? eta : growing_[0];
@@ -137,22 +138,22 @@ class BoucWen {
     growing_ = {not_below(growing_[0] - skew.epsilon_per_kpa, 0.0),
                 not_below(growing_[1] + skew.epsilon_per_kpa, 0.0)};
     shrinking_ = {shrinking_[0] + skew.epsilon_per_kpa, shrinking_[1] - skew.epsilon_per_kpa};
-    // If h has saturated in one direction, it must decrease in the other.
+    // If h has saturated in one direction of the pressure, it must decrease in the other direction.
     for (const std::size_t way : {0U, 1U}) {
       const T bound = growing_[1 - way] * beta_[way] / beta_[1 - way];
       if (value_of(shrinking_[way]) > value_of(bound)) shrinking_[way] = bound;
     }
   }
 
-  /// Makes the loop wider by up to `rate.share` of its width at pressure rates far above
+  /// Makes the loop wider by up to `rate.share` of its width, at pressure rates far above
   /// `rate.half_kpa_per_s`. The result is exact at the end of a straight segment.
   void widen(const BoucWenRate<T>& rate) {
     follows_rate_ = true;
     widening_ = AveragedRate<T>(rate);
   }
 
-  /// Increases eta by up to `rate.share` of its value at pressure rates far above `rate.half_kpa_per_s`.
-  /// During a segment, eta keeps the value that it has at the beginning of the segment.
+  /// Increases eta by up to `rate.share` of its value, at pressure rates far above `rate.half_kpa_per_s`.
+  /// During a segment, eta is constant and has its value at the beginning of the segment.
   void level_off(const BoucWenRate<T>& rate) {
     follows_rate_ = true;
     levelling_ = AveragedRate<T>(rate);
@@ -177,7 +178,7 @@ class BoucWen {
   /// Returns dh/dp at the present state, for a rising or falling pressure [mm/kPa].
   [[nodiscard]] T slope(bool rising) const { return slope_at(hysteresis_, rising ? 1.0 : -1.0); }
   [[nodiscard]] const T& alpha_mm_per_kpa() const { return alpha_; }
-  /// Returns the larger of the two values of beta for loading and unloading.
+  /// Returns beta for loading or for unloading, whichever is larger.
   [[nodiscard]] const T& beta_mm_per_kpa() const {
     return value_of(beta_[0]) > value_of(beta_[1]) ? beta_[0] : beta_[1];
   }
@@ -191,8 +192,8 @@ class BoucWen {
     hysteresis_ = moved(change, direction);
     pressure_ = in.end;
     direction_ = direction;
-    // The mean of h over the segment is that of the cubic with the values and slopes of h at both ends,
-    // corrected for the curvature of p.
+    // The mean of h over the segment is the mean of the cubic with the values and slopes of h at both ends. A
+    // correction for the curvature of p is added.
     const T slope_before = slope_at(before, direction);
     const T slope_after = slope_at(hysteresis_, direction);
     const T off_middle = in.mean - (in.begin + in.end) * 0.5;
@@ -223,7 +224,7 @@ class BoucWen {
   }
 
  private:
-  // Returns +1 while the pressure rises and -1 while it falls. For a change of value zero, returns the last
+  // Returns +1 if the pressure rises and -1 if it falls. If the value of the change is zero, returns the last
   // direction, because such a change can still have derivatives.
   template <class U>
   [[nodiscard]] double direction_of(const U& change) const {
@@ -235,8 +236,8 @@ class BoucWen {
 
   static T not_below(const T& value, double bound) { return value_of(value) < bound ? T(bound) : value; }
 
-  // Returns gamma + eta s + (delta + epsilon s) sgn(p') for the state h and the direction of the pressure. At
-  // h = 0, s is +1.
+  // Returns gamma + eta s + (delta + epsilon s) sgn(p') for the state h and the direction of the pressure.
+  // For h = 0, s is +1.
   [[nodiscard]] T rate(double h, double direction) const {
     const std::size_t way = direction > 0.0 ? 1 : 0;
     const bool grows = h * direction >= 0.0;
@@ -270,7 +271,7 @@ class BoucWen {
     return exponent_ == 1 ? moved_linear(change, direction) : moved_in_steps(change, direction);
   }
 
-  // Solves dh/dp = beta - k h, where k = sgn(h) (gamma + eta s) is constant on either side of h = 0.
+  // Solves dh/dp = beta - k h, where k = sgn(h) (gamma + eta s) is constant for h above 0 and for h below 0.
   template <class U>
   [[nodiscard]] U moved_linear(const U& change, double direction) const {
     const double h0 = value_of(hysteresis_);
@@ -278,8 +279,8 @@ class BoucWen {
     const T k = rate(h0, direction) * (h0 * direction >= 0.0 ? direction : -direction);
     const U end = hysteresis_ + change * (gain - k * hysteresis_) * phi1(U(-k * change));
     if (h0 * value_of(end) >= 0.0) return end;
-    // h passes zero after a pressure change of -h0/beta * log(1 + x)/x, where x = -k h0 / beta. The
-    // integration continues from h = 0.
+    // h passes zero after a pressure change of -h0/beta * log(1 + x)/x, where x = -k h0 / beta and h0 is the
+    // present h. After this change, the integration continues from h = 0.
     using std::log1p;
     const T x = -k * hysteresis_ / gain;
     const T stretch = std::abs(value_of(x)) < 1e-5 ? T(1.0 - x * 0.5 + x * x * (1.0 / 3.0)) : T(log1p(x) / x);
@@ -350,7 +351,7 @@ class BoucWen {
   }
 
   T alpha_;
-  std::array<T, 2> beta_;       // for falling and for rising pressure
+  std::array<T, 2> beta_;       // beta for falling and for rising pressure
   std::array<T, 2> growing_;    // gamma + eta, for falling and for rising pressure
   std::array<T, 2> shrinking_;  // gamma - eta, for falling and for rising pressure
   int exponent_;
@@ -365,9 +366,9 @@ class BoucWen {
   T output_{0.0};
 };
 
-/// Base class of the blocks that modify the chain's Bouc-Wen element. Each of these blocks declares
-/// `void shape(BoucWen<T>&) const`. The chain calls this function once after all blocks are constructed. The
-/// blocks themselves add nothing to the displacement. In a chain without bouc_wen they have no effect.
+/// Base class of the blocks that modify the chain's Bouc-Wen element. Each of these blocks declares `void
+/// shape(BoucWen<T>&) const`. The chain calls this function once after all blocks are constructed. These
+/// blocks do not add to the displacement themselves. If the chain has no bouc_wen, they have no effect.
 template <class T>
 class BoucWenPart {
  public:

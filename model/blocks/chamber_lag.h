@@ -1,12 +1,12 @@
 #pragma once
-// First-order lag between the pressure sensor and the chamber of the finger.
+// Models the lag between the pressure sensor and the chamber of the finger as first order.
 
 #include "model/block.h"
 #include "model/two_way_lag.h"
 
 namespace softgrip::model {
 
-/// The equation is that of TwoWayLag.
+/// TwoWayLag describes the equation.
 template <class T>
 class ChamberLag {
  public:

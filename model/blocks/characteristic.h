@@ -1,5 +1,5 @@
 #pragma once
-// A nonlinear map from the sum of the elements to the displacement.
+// Models a nonlinear relation between the sum of the elements and the displacement.
 
 #include "model/block.h"
 #include "model/characteristic_map.h"
@@ -7,7 +7,7 @@
 
 namespace softgrip::model {
 
-/// The equation is that of CharacteristicMap. The map is monotone for every curvature.
+/// CharacteristicMap describes the equation. The map is monotone for every value of the curvature.
 template <class T>
 class Characteristic {
  public:

@@ -1,12 +1,12 @@
 #pragma once
-// The clock of the reading is ahead, so that the reading leads its command.
+// Models a clock of the sensor that is ahead of the clock of the command, so that readings seem to be early.
 
 #include "model/block.h"
 
 namespace softgrip::model {
 
-/// z = y + lead dy/dt, with the slope of the last sample. This extrapolates a straight motion by `lead` and
-/// is exact between corners of the motion. A corner appears `lead` too late.
+/// z = y + lead dy/dt, with the slope of y in the last sample. A straight motion is extrapolated by `lead`,
+/// which is exact between two corners of the motion. A corner appears `lead` too late.
 template <class T>
 class ClockOffset {
  public:

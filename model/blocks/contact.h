@@ -1,12 +1,12 @@
 #pragma once
-// The stiffness increases beyond a position: contact with an object or an end stop.
+// Models a stiffness that increases beyond a position: contact with an object or an end stop.
 
 #include "model/block.h"
 #include "model/static_map.h"
 
 namespace softgrip::model {
 
-/// z = y up to the position. Beyond it, the motion is divided by 1 + stiffening.
+/// z = y up to the position. Beyond the position, the further motion is divided by 1 + stiffening.
 template <class T>
 class Contact {
  public:

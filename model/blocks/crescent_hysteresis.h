@@ -1,16 +1,16 @@
 #pragma once
-// A hysteresis loop that is wide at medium pressure and closes at both ends.
+// Models a hysteresis loop that is wide at medium pressure and closes at both ends.
 
 #include "model/block.h"
 #include "model/clip.h"
 
 namespace softgrip::model {
 
-/// A generalised play (Krasnosel'skii and Pokrovskii, Systems with Hysteresis, 1989, chapter 2). c is
-/// constant between two envelopes. The lower envelope moves c upwards, and the upper envelope moves c
-/// downwards. With x = p/range, the upper envelope is the line x and the lower one is x/(1 + bend (1 - x)).
-/// For x outside [0, 1] both envelopes coincide and the block adds nothing. The mean of both envelopes is
-/// subtracted, so that the gain of the model does not change. Rate independent.
+/// A generalised play (Krasnosel'skii and Pokrovskii, Systems with Hysteresis, 1989, chapter 2). The state c
+/// is constant between two envelopes. The lower envelope moves c upwards, and the upper envelope moves c
+/// downwards. With x = p/range, the upper envelope is the line x, and the lower envelope is x/(1 + bend (1 -
+/// x)). For x outside [0, 1], the envelopes are equal and the block adds nothing. The mean of the envelopes
+/// is subtracted, so that the gain of the model does not change. The block is rate independent.
 template <class T>
 class CrescentHysteresis {
  public:
@@ -35,7 +35,7 @@ class CrescentHysteresis {
   }
   [[nodiscard]] T output() const { return output_; }
 
-  // The mean is computed by Simpson's rule for a straight p.
+  // Computes the mean by Simpson's rule, for a pressure p that changes linearly.
   Segment<T> step(const Segment<T>& in, const Surroundings&) {
     const T begin = output_;
     const T half = (in.begin + in.end) * 0.5 / range_kpa_, end = in.end / range_kpa_;
@@ -69,7 +69,7 @@ class CrescentHysteresis {
   T gain_;
   T bend_;
   T range_kpa_;
-  T at_{0.0};  // c
+  T at_{0.0};  // state c
   T output_{0.0};
 };
 

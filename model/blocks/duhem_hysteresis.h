@@ -1,16 +1,16 @@
 #pragma once
-// Hysteresis whose loading and unloading curves differ in shape. Each direction has its own characteristic
-// pressure.
+// Models hysteresis whose loading and unloading curves differ in shape. Each of the two directions has its
+// own characteristic pressure.
 
 #include "model/block.h"
 #include "model/exponential.h"
 
 namespace softgrip::model {
 
-/// A Duhem operator. While the pressure falls, z approaches the unloading length. While the pressure rises, z
-/// decays over the loading length. z is rate independent and zero on the first loading. With equal lengths,
-/// the settled loop is point symmetric, as the loop of Bouc-Wen is. With different lengths, the loop is not
-/// symmetric. The solution is exact for any step size.
+/// A Duhem operator with the state z. While the pressure falls, z approaches the unloading length. While the
+/// pressure rises, z decays over the loading length. z is rate independent, and zero on the first loading. If
+/// the two lengths are equal, the settled loop is point symmetric, as the loop of Bouc-Wen is. If the lengths
+/// differ, the loop is not symmetric. The solution is exact for any step size.
 template <class T>
 class DuhemHysteresis {
  public:
@@ -46,7 +46,7 @@ class DuhemHysteresis {
     wound_kpa_ = moved(change, falling_);
     pressure_ = in.end;
     output_ = gain_ * wound_kpa_;
-    // The mean is that of the cubic with the values and slopes of z at both ends.
+    // Computes the mean of the cubic with the values and slopes of z at both ends.
     const T size = falling_ ? T(-change) : change;
     const T bow =
         size * (falling_ ? unloading_per_kpa_ : loading_per_kpa_) * (wound_kpa_ - before) * (1.0 / 12.0);
@@ -79,7 +79,7 @@ class DuhemHysteresis {
   T unloading_per_kpa_;  // 1/unloading
   T loading_per_kpa_;
   bool falling_ = false;
-  T wound_kpa_{0.0};  // z
+  T wound_kpa_{0.0};  // state z
   T pressure_{0.0};
   T output_{0.0};
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Oscillation of the mass of finger and load on the stiffness of the actuator.
+// Models the oscillation of the mass of finger and load on the stiffness of the actuator.
 
 #include <cmath>
 #include <numbers>
@@ -8,8 +8,8 @@
 
 namespace softgrip::model {
 
-/// z'' + 2 d w z' + w^2 z = w^2 y with w = 2 pi / period. Exact if the displacement is a parabola over each
-/// segment. With period 0 the displacement is passed on unchanged.
+/// z'' + 2 d w z' + w^2 z = w^2 y with w = 2 pi / period. The solution is exact if the displacement y is a
+/// parabola over each segment. With period 0, the displacement is passed on unchanged.
 template <class T>
 class Inertia {
  public:
@@ -45,13 +45,14 @@ class Inertia {
     const T begin = output_;
     const T speed = speed_;
     advance(in);
-    // Integrating the equation over the segment gives the mean.
+    // The mean of z is obtained by integrating the equation over the segment.
     const T left = (speed_ - speed) + 2.0 * damping_ * omega_ * (output_ - begin);
     next(Segment<T>{in.duration_s, begin, output_, in.mean - left / (omega_ * omega_ * in.duration_s)});
   }
 
  private:
-  // Computes the particular solution, a parabola a + b t + c t^2, plus the decaying homogeneous solution.
+  // Computes the solution as the sum of a parabola a + b t + c t^2 (particular solution) and a decaying
+  // homogeneous solution.
   void advance(const Segment<T>& in) {
     using std::cos;
     using std::exp;
@@ -60,7 +61,7 @@ class Inertia {
     const T& dt = in.duration_s;
     const T bend = value_of(omega_) * value_of(dt) < 1e-6
                        ? T(0.0)
-                       : in.bend();  // bend of short segments: rounding error
+                       : in.bend();  // in short segments, the bend is only rounding error
     const T c = -bend / (dt * dt);
     const T b = (in.end - in.begin + bend) / dt - 4.0 * damping_ * c / omega_;
     const T a = in.begin - 2.0 * damping_ * b / omega_ - 2.0 * c / (omega_ * omega_);

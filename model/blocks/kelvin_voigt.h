@@ -1,5 +1,5 @@
 #pragma once
-// Kelvin-Voigt creep with any number of branches in series with a spring:
+// Models Kelvin-Voigt creep with any number of branches in series with a spring:
 //   VE(s)/p(s) = 1/k0 + sum_i 1/(c_i s + k_i)
 
 #include <cstddef>
@@ -11,7 +11,8 @@
 
 namespace softgrip::model {
 
-/// Exact for piecewise-parabolic pressure and any duration. k_i = 0 is a pure dashpot (no static gain).
+/// The solution is exact for a piecewise parabolic pressure and any duration. A branch with k_i = 0 is a pure
+/// dashpot, so it has no static gain.
 template <class T>
 class KelvinVoigt {
  public:
@@ -45,7 +46,7 @@ class KelvinVoigt {
   }
 
   [[nodiscard]] T output() const { return output_; }
-  /// Returns 1/k0, the compliance without delay [mm/kPa].
+  /// Returns 1/k0, the compliance of the spring, which responds without delay [mm/kPa].
   [[nodiscard]] const T& instantaneous_mm_per_kpa() const { return compliance_; }
   /// Returns the number of branches.
   [[nodiscard]] std::size_t branches() const { return branches_.size(); }

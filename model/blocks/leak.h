@@ -1,13 +1,13 @@
 #pragma once
-// Pressure drop between valve and finger, caused by the flow through a leak at the finger. It also exists
-// while the pressure is constant.
+// Models the pressure drop between valve and finger that the flow through a leak at the finger causes. The
+// drop also exists while the pressure is constant.
 
 #include "model/block.h"
 #include "model/line_loss.h"
 
 namespace softgrip::model {
 
-/// The equation is that of LineLoss.
+/// LineLoss describes the equation.
 template <class T>
 class Leak {
  public:
@@ -28,8 +28,8 @@ class Leak {
   void step(const Segment<T>& in, const Surroundings&, Next&& next) {
     const T begin = output_;
     output_ = loss_.behind(in.end);
-    // Replaces the map by its chord between both ends, because only the preceding lag curves the pressure
-    // within a sample.
+    // The map is replaced by the straight line between its values at both ends. This is sufficient, because
+    // only the preceding lag makes the pressure curved within a sample.
     const T middle = (begin + output_) * 0.5;
     const double way = value_of(in.end) - value_of(in.begin);
     const T slope = way != 0.0 ? T((output_ - begin) / (in.end - in.begin)) : T(1.0);

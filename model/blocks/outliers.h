@@ -1,5 +1,6 @@
 #pragma once
-// Isolated wrong readings, for example from a reflection, a dust particle in the beam or a corrupted message.
+// Models isolated wrong readings, for example from a reflection, a dust particle in the beam or a corrupted
+// message.
 
 #include <cstdint>
 
@@ -8,8 +9,8 @@
 
 namespace softgrip::model {
 
-/// Shifts a random share of the readings by `size`, up or down at random. A step of zero duration draws no
-/// random number.
+/// Shifts a random share of the readings by +`size` or -`size`; the sign is random. For a step of zero
+/// duration, no random number is used.
 template <class T>
 class Outliers {
  public:

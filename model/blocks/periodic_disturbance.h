@@ -1,5 +1,5 @@
 #pragma once
-// A steady oscillation that does not depend on the command: mains hum, a pump, a vibrating table.
+// Models a steady oscillation that does not depend on the command: mains hum, a pump, a vibrating table.
 
 #include <cmath>
 #include <numbers>
@@ -8,8 +8,8 @@
 
 namespace softgrip::model {
 
-/// z = y + s sin(2 pi f t) + c cos(2 pi f t), where t is the time since the start of the campaign. The
-/// amplitude is sqrt(s^2 + c^2).
+/// z = y + s sin(2 pi f t) + c cos(2 pi f t), where t is the time since the start of the measurement
+/// campaign. The amplitude is sqrt(s^2 + c^2).
 template <class T>
 class PeriodicDisturbance {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// Hysteresis as a sum of play operators (Kuhnen, European Journal of Control 9, 2003, section 2).
+// Models hysteresis as a sum of play operators (Kuhnen, European Journal of Control 9, 2003, section 2).
 
 #include <cstddef>
 #include <string_view>
@@ -13,11 +13,12 @@
 
 namespace softgrip::model {
 
-/// y += w1 play_r1(p) + w2 play_r2(p) + ... A play with threshold 0 is the elastic gain. Rate independent.
-/// With nonnegative weights, y rises with the pressure and has an inverse. If the finger was loaded before,
-/// the operators start in the positions to which the earlier load moved them. The first loading is then no
-/// steeper than later ones, and y is 0 in this initial state. With nonlinear envelopes (see EnvelopeMap) the
-/// plays are generalised, and the loops are wider at pressures where the envelopes are steeper.
+/// y += w1 play_r1(p) + w2 play_r2(p) + ... A play with threshold 0 is the elastic gain. The block is rate
+/// independent. If no weight is negative, y rises with the pressure and has an inverse. If the finger was
+/// loaded before, the operators start in the positions to which the earlier load moved them. In this case,
+/// the first loading is not steeper than later loadings, and y is 0 in the initial state. If the envelopes
+/// are nonlinear (see EnvelopeMap), the plays are generalised plays. The loops are then wider at pressures
+/// where the envelopes are steeper.
 template <class T>
 class PrandtlIshlinskii {
  public:
@@ -111,7 +112,7 @@ class PrandtlIshlinskii {
   T trained_kpa_;
   EnvelopeMap<T> envelopes_;
   std::vector<Operator> operators_;
-  T untouched_{0.0};  ///< sum of the operators at zero pressure after the earlier load
+  T untouched_{0.0};  ///< sum of the operators at zero pressure after the earlier load of the finger
   T output_{0.0};
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Creep that starts above a threshold pressure.
+// Models creep that starts above a threshold pressure.
 
 #include <algorithm>
 #include <cstddef>
@@ -11,9 +11,9 @@
 
 namespace softgrip::model {
 
-/// Kelvin-Voigt branches, each above its own threshold pressure (hinge): tau x' = c max(p - hinge, 0) - x.
-/// Exact for straight pressure that does not pass a hinge within the segment. Otherwise the pressure above
-/// the hinge is approximated by a parabola with the exact mean.
+/// Kelvin-Voigt branches that creep only above their threshold pressure (hinge): tau x' = c max(p - hinge, 0)
+/// - x. The solution is exact if the pressure is straight and does not pass a hinge within the segment. In
+/// all other cases, the pressure above the hinge is approximated by a parabola with the exact mean.
 template <class T>
 class PressureDependentCreep {
  public:
@@ -105,8 +105,8 @@ class PressureDependentCreep {
     const U first(above(begin, hinge)), last = above(end, hinge);
     const bool begins = value_of(begin) >= value_of(hinge), ends = value_of(end) >= value_of(hinge);
     if (begins == ends) return (first + last) * 0.5;
-    // The part above the hinge is a triangle. Its height is the pressure above the hinge at the end that lies
-    // above the hinge.
+    // The part of the pressure above the hinge is a triangle. The height of the triangle is the pressure
+    // above the hinge at one end of the segment; at the other end, the pressure is below the hinge.
     const U height = begins ? first : last;
     return height * height * 0.5 / (begins ? U(begin - end) : U(end - begin));
   }

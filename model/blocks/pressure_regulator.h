@@ -1,5 +1,5 @@
 #pragma once
-// A pressure regulator with spool overlap and integral control.
+// Models a pressure regulator with spool overlap and integral control.
 
 #include <string_view>
 
@@ -8,7 +8,7 @@
 
 namespace softgrip::model {
 
-/// The equation is that of RegulatedPressure.
+/// RegulatedPressure describes the equations.
 template <class T>
 class PressureRegulator {
  public:

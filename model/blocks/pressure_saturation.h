@@ -1,5 +1,5 @@
 #pragma once
-// The pressure does not reach the command, because the regulator or the supply limits the pressure.
+// Models a pressure that cannot reach the command, because the regulator or the supply limits the pressure.
 
 #include "model/block.h"
 #include "model/clip.h"

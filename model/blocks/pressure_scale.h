@@ -1,11 +1,11 @@
 #pragma once
-// The valve delivers a constant multiple of the commanded pressure.
+// Models a valve whose pressure is a constant multiple of the command.
 
 #include "model/block.h"
 
 namespace softgrip::model {
 
-/// p = scale u.
+/// p = scale u, where u is the command.
 template <class T>
 class PressureScale {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// The material is softer the further the pressure lies below its largest value so far (Mullins effect).
+// Models a material that is softer at pressures below the largest pressure so far (Mullins effect).
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +10,11 @@
 namespace softgrip::model {
 
 /// Pseudo-elasticity (Ogden and Roxburgh, Proc. R. Soc. A 455, 1999; with the hyperbolic tangent of Dorfmann
-/// and Ogden, Int. J. Solids Struct. 41, 2004). The driving pressure q replaces the stored energy. Above the
-/// largest load, q = p. Below it, p = q/(1 + s m tanh((m - q)/range)), where m is the largest pressure so
-/// far. All later unloading and loading follows one curve, which joins the first loading at m. q rises with p
-/// for all parameter values. The block remembers m over the whole campaign: rest() keeps m, and only reset()
-/// clears m.
+/// and Ogden, Int. J. Solids Struct. 41, 2004). The driving pressure q replaces the stored energy. While the
+/// pressure p is the largest so far, q = p. Otherwise p = q/(1 + s m tanh((m - q)/range)), where m is the
+/// largest pressure so far. All later unloading and loading follows one curve, which joins the first loading
+/// at m. q rises with p for all parameter values. The block stores m over the whole measurement campaign:
+/// rest() keeps m, and only reset() clears m.
 template <class T>
 class PseudoElasticSoftening {
  public:
@@ -63,8 +63,8 @@ class PseudoElasticSoftening {
   }
 
  private:
-  /// Returns q at the pressure `p` for a constant largest load. The last Newton step uses the type U, so that
-  /// the result has the derivatives.
+  /// Returns q at the pressure `p` for a constant m. The last Newton step uses the type U, so that the result
+  /// has derivatives.
   template <class U>
   [[nodiscard]] U map(const U& p) const {
     const double pressure = value_of(p), largest = value_of(largest_kpa_);
@@ -77,8 +77,8 @@ class PseudoElasticSoftening {
   }
 
   /// Returns q by Newton's method in the interval from p to m, which contains the root. The iteration starts
-  /// at the present output. Bisection replaces a step that leaves the interval. The result has half of the
-  /// digits, and the last Newton step in map() provides the rest.
+  /// at the present output. If a step leaves the interval, bisection replaces the step. The result has half
+  /// of the digits of a double. The last Newton step in map() gives the other digits.
   [[nodiscard]] double solved(double pressure, double largest) const {
     double low = pressure, high = largest, q = std::clamp(value_of(output_), low, high);
     const double strength = value_of(softening_per_kpa_) * largest, range = value_of(range_kpa_);
@@ -100,7 +100,7 @@ class PseudoElasticSoftening {
     return 1 + pressure * value_of(softening_per_kpa_) * largest * (1 - t * t) / range;
   }
 
-  /// Returns tanh(x) for x >= 0.
+  /// Returns tanh(x). x must be >= 0.
   template <class U>
   [[nodiscard]] static U hyperbolic_tangent(const U& x) {
     using std::expm1;
@@ -108,7 +108,7 @@ class PseudoElasticSoftening {
     return -e / (2.0 + e);
   }
 
-  // The mean of the softening is computed by Simpson's rule for a straight p.
+  // Computes the mean of the softening by Simpson's rule, for a pressure p that changes linearly.
   template <class Next>
   void below(const Segment<T>& in, Next&& next) {
     const T begin = output_, halfway = (in.begin + in.end) * 0.5;

@@ -1,5 +1,5 @@
 #pragma once
-// The reading has the finite resolution of the converter.
+// Models the finite resolution of the converter that digitises the reading.
 
 #include <cmath>
 
@@ -7,8 +7,8 @@
 
 namespace softgrip::model {
 
-/// Rounds to the nearest multiple of the step. The derivatives of the displacement are kept, because the
-/// derivative of the rounding is 0 almost everywhere and useless for a fit.
+/// Rounds to the nearest multiple of the step. The derivatives of the displacement do not change. The
+/// derivative of the rounding itself is 0 almost everywhere, so a fit could not use it.
 template <class T>
 class Quantisation {
  public:

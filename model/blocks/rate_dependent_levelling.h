@@ -1,12 +1,13 @@
 #pragma once
-// Earlier saturation of the chain's Bouc-Wen element at high pressure rates.
+// Models an earlier saturation of the chain's Bouc-Wen element at high pressure rates.
 
 #include "model/block.h"
 #include "model/blocks/bouc_wen.h"
 
 namespace softgrip::model {
 
-/// Increases eta of the chain's Bouc-Wen element with the rate, so that h saturates earlier (see bouc_wen.h).
+/// Increases eta of the chain's Bouc-Wen element with the pressure rate, so that h saturates earlier (see
+/// bouc_wen.h).
 template <class T>
 class RateDependentLevelling : public BoucWenPart<T> {
  public:

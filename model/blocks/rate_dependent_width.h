@@ -1,13 +1,13 @@
 #pragma once
-// Loop width of the chain's Bouc-Wen element that grows with the rate.
+// Models a loop width of the chain's Bouc-Wen element that grows with the pressure rate.
 
 #include "model/block.h"
 #include "model/blocks/bouc_wen.h"
 
 namespace softgrip::model {
 
-/// Widens the loop of the chain's Bouc-Wen element with the rate. bouc_wen.h states the equation and its
-/// source.
+/// Makes the loop of the chain's Bouc-Wen element wider as the pressure rate increases. bouc_wen.h gives the
+/// equation and its source.
 template <class T>
 class RateDependentWidth : public BoucWenPart<T> {
  public:

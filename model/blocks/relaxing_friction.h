@@ -1,5 +1,5 @@
 #pragma once
-// Loop width that grows with the rate: a friction force that relaxes.
+// Models a loop width that grows with the pressure rate, by a friction force that relaxes.
 
 #include "model/block.h"
 #include "model/exponential.h"
@@ -8,7 +8,8 @@ namespace softgrip::model {
 
 /// Dahl's friction with relaxation: z' = p' - z (|p'|/width + 1/tau), y -= gain z. At pressure rates far
 /// above width/tau, the block is a hysteresis with this width. At rates far below width/tau, it is a viscous
-/// branch whose loop shrinks with the rate. Exact for straight pressure and any step size.
+/// branch, whose loop becomes smaller at lower rates. The solution is exact for straight pressure and any
+/// step size.
 template <class T>
 class RelaxingFriction {
  public:
@@ -28,7 +29,7 @@ class RelaxingFriction {
       : gain_(values[0]), per_kpa_(1.0 / values[1]), per_s_(1.0 / values[2]) {}
 
   void reset(const T& input) {
-    held_kpa_ = T(0.0);  // relaxed
+    held_kpa_ = T(0.0);  // the friction has relaxed completely
     pressure_ = input;
     output_ = T(0.0);
   }
@@ -58,7 +59,7 @@ class RelaxingFriction {
     return value_of(change) < 0.0 ? U(-change) : change;
   }
 
-  // Returns z(1) of dz/ds = change - decay z, where s runs from 0 to 1 over the segment.
+  // Returns z(1) for the equation dz/ds = change - decay z, where s goes from 0 to 1 over the segment.
   template <class U>
   [[nodiscard]] U moved(const U& change, const U& decay) const {
     return held_kpa_ + (change - decay * held_kpa_) * phi1(U(-decay));
@@ -67,7 +68,7 @@ class RelaxingFriction {
   T gain_;
   T per_kpa_;        // 1/width
   T per_s_;          // 1/tau
-  T held_kpa_{0.0};  // z
+  T held_kpa_{0.0};  // state z
   T pressure_{0.0};
   T output_{0.0};
 };

@@ -1,5 +1,5 @@
 #pragma once
-// The gain of the actuator drifts during the running-in period.
+// Models a gain of the actuator that drifts during the running-in period.
 
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace softgrip::model {
 
 /// Multiplies y by 1 + r (1 - exp(-t/tau)), limited to positive values. t is the time since the start of the
-/// campaign.
+/// measurement campaign.
 template <class T>
 class RunningIn : public SurroundingsGain<RunningIn<T>, T> {
  public:

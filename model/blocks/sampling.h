@@ -1,5 +1,5 @@
 #pragma once
-// The sensor is sampled more slowly than the log.
+// Models a sensor with a lower sampling rate than the log.
 
 #include <cmath>
 
@@ -7,8 +7,8 @@
 
 namespace softgrip::model {
 
-/// Sample and hold: the output is the reading at the last multiple of the interval. The output has the
-/// derivatives of the sampled reading.
+/// Sample and hold: the output is the reading at the last multiple of the sampling interval. It has the
+/// derivatives of this reading.
 template <class T>
 class Sampling {
  public:

@@ -1,11 +1,11 @@
 #pragma once
-// Linear drift of the sensor zero.
+// Models a linear drift of the sensor zero.
 
 #include "model/block.h"
 
 namespace softgrip::model {
 
-/// z = y + rate t, where t is the time since the start of the campaign.
+/// z = y + rate t, where t is the time since the start of the measurement campaign.
 template <class T>
 class SensorDrift {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// Piecewise linear drift of the sensor zero.
+// Models a piecewise linear drift of the sensor zero.
 
 #include <cstddef>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace softgrip::model {
 
-/// Adds straight lines between knots, one knot per interval after the start of the campaign. The drift is
-/// zero at the start and constant after the last knot.
+/// Adds straight lines between knots, one knot per interval after the start of the measurement campaign. The
+/// drift is zero at the start and constant after the last knot.
 template <class T>
 class SensorFreeDrift {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// Lag of the reading behind the displacement, from the filter of the sensor or its amplifier.
+// Models the lag of the reading behind the displacement, caused by a filter of the sensor or its amplifier.
 
 #include "model/block.h"
 #include "model/exponential.h"
@@ -7,7 +7,7 @@
 
 namespace softgrip::model {
 
-/// tau z' = y - z. Exact if the displacement is a parabola over each segment.
+/// tau z' = y - z. The solution is exact if the displacement y is a parabola over each segment.
 template <class T>
 class SensorLag {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// Random error of the reading, white or correlated.
+// Models the random error of the reading, as white or correlated noise.
 
 #include <cmath>
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace softgrip::model {
 
-/// Gaussian noise of the given root mean square. With a correlation time, the correlation of consecutive
-/// readings is exp(-dt/tau) (Ornstein-Uhlenbeck process, exact for any dt). A step of zero duration draws no
-/// random number.
+/// Adds Gaussian noise with a given root mean square. If there is a correlation time tau, the correlation of
+/// two readings at the distance dt is exp(-dt/tau) (Ornstein-Uhlenbeck process, exact for any dt). For a step
+/// of zero duration, no random number is used.
 template <class T>
 class SensorNoise {
  public:
@@ -55,7 +55,7 @@ class SensorNoise {
   double correlation_time_s_;
   std::uint64_t seed_;
   std::uint64_t drawn_ = 0;
-  double noise_ = 0.0;  // scaled to a root mean square of 1
+  double noise_ = 0.0;  // noise with a root mean square of 1
   T output_{0.0};
 };
 

@@ -1,13 +1,14 @@
 #pragma once
-// Nonlinearity of the sensor between its calibration points.
+// Models the nonlinearity of the sensor between its calibration points.
 
 #include "model/block.h"
 
 namespace softgrip::model {
 
-/// With x = y/range: z = y + 4 bow x (1 - x) + 6 sqrt(3) wave x (1 - x) (1 - 2x) within the range, continued
-/// as straight lines outside. The error is zero at both ends of the range and `bow` in the middle. The second
-/// term is between 0 and `wave` below the middle, and between -`wave` and 0 above the middle.
+/// With x = y/range: z = y + 4 bow x (1 - x) + 6 sqrt(3) wave x (1 - x) (1 - 2x) within the range. Outside
+/// the range, the curve continues as straight lines. The error is zero at both ends of the range, and `bow`
+/// in the middle. The second term is between 0 and `wave` below the middle, and between -`wave` and 0 above
+/// the middle.
 template <class T>
 class SensorNonlinearity {
  public:
@@ -39,8 +40,8 @@ class SensorNonlinearity {
     return y + x * (1.0 - x) * (bow_mm_ + wave_mm_ * (1.0 - 2.0 * x));
   }
 
-  T bow_mm_;   // 4 bow
-  T wave_mm_;  // 6 sqrt(3) wave
+  T bow_mm_;   // 4 times bow
+  T wave_mm_;  // 6 sqrt(3) times wave
   T range_mm_;
   T output_{0.0};
 };

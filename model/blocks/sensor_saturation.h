@@ -1,12 +1,12 @@
 #pragma once
-// The reading saturates at the ends of the measuring range.
+// Models readings that saturate at the ends of the measuring range.
 
 #include "model/block.h"
 #include "model/clip.h"
 
 namespace softgrip::model {
 
-/// z = y between the limits, and the nearer limit outside.
+/// z = y between the limits of the range. Outside the range, z is the nearer limit.
 template <class T>
 class SensorSaturation {
  public:

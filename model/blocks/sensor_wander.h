@@ -8,9 +8,9 @@
 
 namespace softgrip::model {
 
-/// z = y + a sin(w t) + b (cos(w t) - 1), w = 2 pi / period, where t is the time since the start of the
-/// campaign. The block models a slow drift, for example with the room temperature. PeriodicDisturbance models
-/// faster oscillations.
+/// z = y + a sin(w t) + b (cos(w t) - 1) with w = 2 pi / period, where t is the time since the start of the
+/// measurement campaign. The block models a slow drift, for example with the room temperature.
+/// PeriodicDisturbance models faster oscillations.
 template <class T>
 class SensorWander {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// Drift of the sensor zero during warm-up.
+// Models the drift of the sensor zero while the sensor warms up.
 
 #include <cmath>
 
@@ -7,7 +7,7 @@
 
 namespace softgrip::model {
 
-/// z = y + warm_up (1 - exp(-t/tau)), where t is the time since the start of the campaign.
+/// z = y + warm_up (1 - exp(-t/tau)), where t is the time since the start of the measurement campaign.
 template <class T>
 class SensorWarmUp {
  public:

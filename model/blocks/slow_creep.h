@@ -1,5 +1,5 @@
 #pragma once
-// Creep that is slower than the slowest branch of the given model: an additional Kelvin-Voigt branch.
+// Models creep that is slower than all branches of the given model, by an additional Kelvin-Voigt branch.
 
 #include "model/block.h"
 #include "model/exponential.h"
@@ -7,9 +7,9 @@
 
 namespace softgrip::model {
 
-/// Models tau x' = gain p - x. The block is equivalent to a Kelvin-Voigt branch of stiffness 1/gain and
-/// damping tau/gain. Unlike such a branch, it is also defined at gain 0, and its parameters are separate from
-/// those of kelvin_voigt.
+/// Solves tau x' = gain p - x. The block is equivalent to a Kelvin-Voigt branch with the stiffness 1/gain and
+/// the damping tau/gain. There are two differences: the block is also defined for gain 0, and its parameters
+/// are separate from those of kelvin_voigt.
 template <class T>
 class SlowCreep {
  public:
@@ -65,7 +65,7 @@ class SlowCreep {
   T gain_;
   T rate_;  // 1/tau
   T pressure_{0.0};
-  T creep_kpa_{0.0};  // filtered pressure that drives the creep
+  T creep_kpa_{0.0};  // low-pass filtered pressure that drives the creep
   T output_{0.0};
   WeightCache<T> weights_;
 };

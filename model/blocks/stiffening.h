@@ -1,13 +1,13 @@
 #pragma once
-// A gain that changes with the displacement, equally in both directions.
+// Models a gain that changes with the displacement, in the same way for both signs of the displacement.
 
 #include "model/block.h"
 #include "model/static_map.h"
 
 namespace softgrip::model {
 
-/// z = y / (1 + s |y|) for s >= 0 and y (1 - s |y|) for s < 0. The map is odd, monotone for every s, and
-/// smooth in s through 0.
+/// z = y / (1 + s |y|) for s >= 0, and z = y (1 - s |y|) for s < 0. The map is odd, monotone for every s, and
+/// smooth in s at s = 0.
 template <class T>
 class Stiffening {
  public:

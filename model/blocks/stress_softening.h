@@ -1,5 +1,5 @@
 #pragma once
-// The material is softer after the largest load so far (Mullins effect of filled rubbers).
+// Models a material that becomes softer with the largest load so far (Mullins effect of filled rubbers).
 
 #include "model/block.h"
 #include "model/clip.h"
@@ -8,7 +8,8 @@ namespace softgrip::model {
 
 /// q = p (1 + s m/(1 + b m)), where m is the largest pressure so far. The first loading curve is convex.
 /// Every later curve up to m is straight and lies above the first loading curve. b makes the softening
-/// saturate. The block remembers m over the whole campaign: rest() keeps m, and only reset() clears m.
+/// saturate. The block stores m over the whole measurement campaign: rest() keeps m, and only reset() clears
+/// m.
 template <class T>
 class StressSoftening {
  public:
@@ -61,7 +62,7 @@ class StressSoftening {
     return p * (1.0 + softening_per_kpa_ * largest / (1.0 + levelling_per_kpa_ * largest));
   }
 
-  // Below the largest load, the map is a straight line.
+  // At pressures below the largest pressure so far, the map is a straight line.
   template <class Next>
   void again(const Segment<T>& in, Next&& next) {
     const T begin = output_;
@@ -69,8 +70,9 @@ class StressSoftening {
     next(Segment<T>{in.duration_s, begin, output_, map(in.mean, largest_kpa_)});
   }
 
-  // Above the previous largest load, the current load is the largest so far. Simpson's rule for a straight p
-  // gives the mean of the added pressure. This mean is exact if b is zero.
+  // At pressures above the previous largest pressure, the present pressure is the largest so far. Simpson's
+  // rule gives the mean of the added pressure, for a pressure p that changes linearly. This mean is exact if
+  // b is zero.
   template <class Next>
   void anew(const Segment<T>& in, Next&& next) {
     const T begin = output_;

@@ -1,5 +1,5 @@
 #pragma once
-// The pressure decreases with the supply pressure.
+// Models an output pressure that decreases when the supply pressure decreases.
 
 #include "model/block.h"
 #include "model/gain.h"
@@ -7,8 +7,8 @@
 
 namespace softgrip::model {
 
-/// p = u (1 - coupling * loss), loss = max(0, 1 - supply/nominal). The supply pressure is a part of the
-/// surroundings. A log for this block needs the column supply_kpa.
+/// p = u (1 - coupling * loss) with loss = max(0, 1 - supply/nominal), where u is the command. The supply
+/// pressure is a member of Surroundings. A log for this block needs the column supply_kpa.
 template <class T>
 class SupplySag {
  public:

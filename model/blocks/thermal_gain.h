@@ -1,13 +1,13 @@
 #pragma once
-// The gain of the actuator depends on its temperature.
+// Models a gain of the actuator that depends on its temperature.
 
 #include "model/block.h"
 #include "model/moving_gain.h"
 
 namespace softgrip::model {
 
-/// Multiplies y by 1 + a (temperature - 20 degC), limited to positive values. The temperature is a part of
-/// the surroundings. A log for this block needs the column temperature_c.
+/// Multiplies y by 1 + a (temperature - 20 degC), limited to positive values. The temperature is a member of
+/// Surroundings. A log for this block needs the column temperature_c.
 template <class T>
 class ThermalGain : public SurroundingsGain<ThermalGain<T>, T> {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// Dead time between command and pressure. A delay line holds the last `delay_s` of the signal.
+// Models the dead time between command and pressure. A delay line stores the last `delay_s` of the signal.
 
 #include <algorithm>
 #include <cstddef>
@@ -10,9 +10,10 @@
 
 namespace softgrip::model {
 
-/// Exact for piecewise parabolic signals and any delay. If the delayed signal has a kink within a sample, two
-/// segments are passed on, divided at the kink. A jump is passed on as a jump, at the start of the first step
-/// that ends after it. The output is differentiable in the delay.
+/// The solution is exact for piecewise parabolic signals and any delay. If the delayed signal has a kink
+/// within a sample, the sample is divided at the kink, and two segments are passed on. A jump is passed on as
+/// a jump, at the start of the first step that ends after the jump. The output is differentiable with respect
+/// to the delay.
 template <class T>
 class TransportDelay {
  public:
@@ -76,8 +77,8 @@ class TransportDelay {
     T mean;
   };
 
-  // Returns space for two pieces per sample (a jump and a ramp), doubled for samples that are shorter than
-  // the nominal sample time.
+  // Returns the initial number of pieces: two pieces per sample (a jump and a ramp). This number is doubled,
+  // because samples may be shorter than the nominal sample time.
   static std::size_t initial_size(double delay_s, double sample_time_s) {
     if (sample_time_s <= 0) return 64;
     const std::size_t needed = 16 + static_cast<std::size_t>(4.0 * delay_s / sample_time_s);
@@ -86,9 +87,9 @@ class TransportDelay {
     return size;
   }
 
-  // Rounding must not decide if a kink or a jump falls before or after a sample. Durations that differ by a
-  // relative 1e-9 or less are therefore treated as equal. For number types with derivatives the tolerance is
-  // zero, because a tolerance would remove the derivatives.
+  // Rounding errors must not decide if a kink or a jump lies before or after the end of a sample. Therefore,
+  // durations with a relative difference of up to 1e-9 are treated as equal. For number types with
+  // derivatives, the tolerance is zero, because a tolerance would remove the derivatives.
   static constexpr double snap = std::is_arithmetic_v<T> ? 1e-9 : 0.0;
   static bool ends_in(const T& piece_s, const T& remaining_s) {
     const double piece = value_of(piece_s);
@@ -100,7 +101,7 @@ class TransportDelay {
     return same(piece_s, remaining_s);
   }
 
-  /// Returns the index of the i-th piece, counted from the oldest.
+  /// Returns the index in line_ of the i-th oldest piece.
   [[nodiscard]] std::size_t place(std::size_t i) const { return (head_ + i) & (line_.size() - 1); }
 
   void push(const Segment<T>& s) {
@@ -120,7 +121,7 @@ class TransportDelay {
   }
 
   T delay_s_;
-  T front_begin_{0.0};  // beginning of the oldest piece: the output
+  T front_begin_{0.0};  // beginning of the oldest piece, which is the output of the block
   std::size_t head_ = 0;
   std::size_t count_ = 0;
   std::vector<Piece> line_;  // a ring buffer; its size is a power of two

@@ -1,5 +1,5 @@
 #pragma once
-// First-order lag of the regulator and the tube: tau p' = command - p.
+// Models the lag of the regulator and the tube as first order: tau p' = command - p.
 
 #include <cmath>
 
@@ -9,8 +9,8 @@
 
 namespace softgrip::model {
 
-/// Exact for straight input, including the reversal of the output. If the output meets the input within a
-/// segment, the output has an extremum at this point, and two segments are passed on.
+/// The solution is exact for straight input, also if the output reverses. If the output becomes equal to the
+/// input within a segment, the output has an extremum there. In this case, two segments are passed on.
 template <class T>
 class ValveLag {
  public:
@@ -36,7 +36,7 @@ class ValveLag {
       next(in);
       return;
     }
-    if (is_zero(in.duration_s)) return;  // a jump of the input does not move the output immediately
+    if (is_zero(in.duration_s)) return;  // a jump of the input does not change the output immediately
     const ExponentialWeights<T>& w = weights(in.duration_s);
     const T bend = in.bend();
     const T begin = output_;
@@ -58,9 +58,9 @@ class ValveLag {
     })[0];
   }
 
-  // The gap d = input - output follows d' = r - d / tau on a straight input of slope r. It closes after t =
-  // tau log(1 - d(0) / (r tau)), when output = input. A reversal within a millionth of the duration from
-  // either end is ignored, because its effect on Bouc-Wen is of second order in that time.
+  // For a straight input of slope r, the gap d = input - output follows d' = r - d / tau. The gap is zero
+  // after t = tau log(1 - d(0) / (r tau)). A reversal within a millionth of the duration from either end of
+  // the segment is ignored. Its effect on Bouc-Wen is of second order in that time.
   template <class Next>
   bool turns(const Segment<T>& in, const T& begin, const T& gap_begin, const T& end, Next&& next) const {
     using std::log1p;

@@ -1,5 +1,5 @@
 #pragma once
-// Stick-slip motion of the valve: stiction of its spool, or the dead band of a digital regulator.
+// Models stick-slip motion of the valve: stiction of its spool, or the dead band of a digital regulator.
 
 #include <cmath>
 
@@ -7,12 +7,12 @@
 
 namespace softgrip::model {
 
-/// Keeps the pressure until the command differs from it by more than the band. Then the pressure jumps to the
-/// command and sticks again, so that a ramp becomes a series of steps. The block models the stiction of
-/// positioners (stick band equal to slip jump: Choudhury, Thornhill and Shah, Control Engineering Practice
-/// 13, 2005) and the dead band of digital regulators. All jumps of a segment are passed on at their times. If
-/// the command of a segment crosses one band in less than `rest_s`, the valve follows the command to the end
-/// of the segment, because the spool does not come to rest between the jumps.
+/// Keeps the pressure until the command differs from the pressure by more than the band. Then the pressure
+/// jumps to the command and sticks again, so a ramp of the command becomes a series of steps. The block
+/// models the stiction of positioners (stick band equal to slip jump: Choudhury, Thornhill and Shah, Control
+/// Engineering Practice 13, 2005) and the dead band of digital regulators. All jumps of a segment are passed
+/// on at their times. If the command crosses one band in less than `rest_s`, the spool does not come to rest
+/// between the jumps. In this case, the valve follows the command to the end of the segment.
 template <class T>
 class ValveStiction {
  public:
@@ -51,7 +51,7 @@ class ValveStiction {
     return change * rest_s > value_of(band_) * value_of(in.duration_s);
   }
 
-  /// Returns the command at which the spool breaks loose.
+  /// Returns the command at which the spool starts to move upwards or downwards.
   [[nodiscard]] T level(bool up) const { return up ? T(held_ + band_) : T(held_ - band_); }
   [[nodiscard]] static bool is_beyond(const T& command, const T& level, bool up) {
     return up ? value_of(command) > value_of(level) : value_of(command) < value_of(level);
@@ -68,7 +68,7 @@ class ValveStiction {
     next(Segment<T>{duration_s, held_, held_, held_});
   }
 
-  // The command is too fast for the spool to stick again: follow it.
+  // The command is so fast that the spool does not stick again. Therefore, the valve follows the command.
   template <class Next>
   void follow(const Segment<T>& in, Next& next) {
     const bool up = rises(in);
@@ -91,7 +91,7 @@ class ValveStiction {
     next(rest);
   }
 
-  // Pass on a series of jumps, one per band.
+  // Passes on a series of jumps: the pressure jumps each time the command has moved by one band.
   template <class Next>
   void climb(const Segment<T>& in, Next& next) {
     moving_ = false;
@@ -111,8 +111,8 @@ class ValveStiction {
   }
 
   T band_;
-  bool moving_ = false;   // follows a fast command
-  bool upwards_ = false;  // direction of that motion
+  bool moving_ = false;   // true: the valve follows a fast command
+  bool upwards_ = false;  // direction in which the valve follows; true: upwards
   T held_{0.0};
 };
 

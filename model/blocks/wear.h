@@ -1,5 +1,5 @@
 #pragma once
-// The gain of the actuator drifts with use.
+// Models a gain of the actuator that drifts with use.
 
 #include "model/block.h"
 #include "model/gain.h"
@@ -7,9 +7,9 @@
 
 namespace softgrip::model {
 
-/// Multiplies y by 1 + c l, limited to positive values. l is the total travel of the actuator in the
-/// campaign, up and down. The block remembers l over the whole campaign: rest() keeps l, and only reset()
-/// clears l.
+/// Multiplies y by 1 + c l, limited to positive values. l is the total travel of the actuator in both
+/// directions during the measurement campaign. The block stores l over the whole campaign: rest() keeps l,
+/// and only reset() clears l.
 template <class T>
 class Wear {
  public:
@@ -60,7 +60,7 @@ class Wear {
   }
 
   T gain_per_m_;
-  T way_mm_{0.0};  // l, in mm
+  T way_mm_{0.0};  // total travel l [mm]
   T input_mm_{0.0};
   MovingGain<T> gain_;
   T output_{0.0};

@@ -1,5 +1,5 @@
 #pragma once
-// Converts model files (YAML) to Model and back without loss.
+// Converts model files (YAML) to Model and back. No information is lost.
 //
 //   name: bench_twin
 //   source: where the numbers come from, one line
@@ -10,8 +10,8 @@
 //     - bouc_wen: {alpha_mm_per_kpa: 0.21105, ..., exponent: 1}
 //     - kelvin_voigt: {k0_kpa_per_mm: 325.9, k1_kpa_per_mm: 18.16, c1_kpa_s_per_mm: 299.8, ...}
 //
-// A station without blocks may be omitted or be an empty list. With `output_unit: deg`, the output of the
-// model is a bending angle; `mm` in parameter names then means deg.
+// A station without blocks may be omitted, or it may be an empty list. With `output_unit: deg`, the output of
+// the model is a bending angle, and `mm` in the names of parameters means deg.
 
 #include <cstdint>
 #include <optional>
@@ -22,26 +22,27 @@
 
 namespace softgrip::model {
 
-/// Reads a model from a parsed document. All errors are added to `problems`; the result is then nullopt.
+/// Reads a model from a parsed document. Adds all errors to `problems`; if there are errors, returns nullopt.
 [[nodiscard]] std::optional<Model> read_model(const document::Document& document,
                                               document::Problems& problems);
 
-/// Reads a model for a rig, as read_model() does. A rig measures in mm, so a model with another output unit
+/// Reads a model for a rig, as read_model() does. A rig measures in mm, so a model with any other output unit
 /// is an error.
 [[nodiscard]] std::optional<Model> read_rig_model(const document::Document& document,
                                                   document::Problems& problems);
 
-/// Calls parse_file() and read_model().
+/// Reads a file with parse_file() and read_model().
 [[nodiscard]] std::optional<Model> load_model(const std::string& path, document::Problems& problems);
-/// Calls parse_file() and read_rig_model().
+/// Reads a file with parse_file() and read_rig_model().
 [[nodiscard]] std::optional<Model> load_rig_model(const std::string& path, document::Problems& problems);
 
-/// Returns the YAML text of a model. Each number has the fewest digits that read back to the same double:
-/// read_model(parse(to_yaml(m))) == m for every valid m.
+/// Returns the YAML text of a model. Each number has the smallest number of digits from which the same double
+/// can be read. Therefore, read_model(parse(to_yaml(m))) == m for every valid m.
 [[nodiscard]] std::string to_yaml(const Model& model);
 
-/// Returns 16 hexadecimal digits that identify the blocks and numbers of a model in provenance records:
-/// FNV-1a (64 bit) of to_yaml(). The hash is equal on every machine and changes with any digit.
+/// Returns 16 hexadecimal digits that identify the blocks and numbers of a model in provenance records. They
+/// are the FNV-1a hash (64 bit) of to_yaml(). The hash is the same on every machine, and changes if any digit
+/// of a number changes.
 [[nodiscard]] std::string model_hash(const Model& model);
 
 }  // namespace softgrip::model
