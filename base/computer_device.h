@@ -11,31 +11,33 @@
 
 namespace softgrip {
 
-/// A word with which a file can name a device.
+/// A word by which a configuration file can name a device.
 struct DeviceWord {
-  std::string kind;  ///< "label", "name", "serial number", "address"
+  std::string kind;  ///< kind of the word: "label", "name", "serial number" or "address"
   std::string text;
 };
 
 struct ComputerDevice {
-  std::string node;               ///< name in the kernel, which may change at every start: iio:device0
+  std::string node;               ///< name in the kernel, such as iio:device0, which may change at every
+                                  ///< start of the computer
   std::filesystem::path folder;   ///< folder in sysfs, without symbolic links; empty: unknown
   std::vector<DeviceWord> words;  ///< words that stay the same when the name in the kernel changes
 
   /// Adds a word if `text` is not empty.
   void add(std::string_view kind, std::string text);
   [[nodiscard]] bool has(std::string_view kind, std::string_view text) const;
-  /// Returns the first word of a kind; empty if there is none.
+  /// Returns the first word of the device that has this kind; empty if there is none.
   [[nodiscard]] std::string word(std::string_view kind) const;
 };
-/// Returns, for example, "iio:device0 (name `mcp4725`, address `1-0060`)".
+/// Returns a description of the device, for example "iio:device0 (name `mcp4725`, address `1-0060`)".
 [[nodiscard]] std::string text_of(const ComputerDevice& device);
 
 /// Returns the device for an entry of a bus folder in sysfs (/sys/bus/iio/devices/iio:device0). The words of
 /// the device are its address on the bus (1-0060, spi0.1) and the serial number of its USB device. The result
 /// has no words if the entry is not a symbolic link.
 [[nodiscard]] ComputerDevice device_at(const std::filesystem::path& entry);
-/// Returns the devices of all entries whose name begins with `prefix`, in alphabetical order.
+/// Returns the devices for all entries of a bus folder whose names begin with `prefix`, in alphabetical
+/// order.
 [[nodiscard]] std::vector<ComputerDevice> devices_in(const std::filesystem::path& bus,
                                                      std::string_view prefix);
 /// Returns the first line of a file without trailing white space; empty if there is none.
@@ -44,8 +46,8 @@ struct ComputerDevice {
 /// The reason why a word in a file does not identify exactly one device.
 struct UnclearDevice {
   bool several = false;  ///< true: the word matches several devices; false: it matches none
-  std::string message;   ///< lists all devices that match
-  std::string hint;      ///< a word that the user can write instead
+  std::string message;   ///< message that lists all devices that match the word
+  std::string hint;      ///< a word that the user can write in place of the unclear word
 };
 
 /// Returns the device that `word` matches if no other device matches it. A word matches the node of a device,
@@ -53,7 +55,8 @@ struct UnclearDevice {
 /// type in messages: "converter", "GPIO chip", "serial device".
 [[nodiscard]] tl::expected<ComputerDevice, UnclearDevice> only_device(
     const std::vector<ComputerDevice>& devices, const std::string& word, std::string_view kind);
-/// Returns the error for a word that matches all devices in `found`. `devices` contains all devices.
+/// Returns the error for a word that several devices match. `found` contains these devices, and `devices`
+/// contains all devices.
 [[nodiscard]] UnclearDevice several_devices(const std::vector<ComputerDevice>& devices,
                                             const std::vector<ComputerDevice>& found, const std::string& word,
                                             std::string_view kind);

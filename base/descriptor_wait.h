@@ -8,7 +8,8 @@
 namespace softgrip {
 
 enum class Waited : std::uint8_t {
-  ready,      ///< the descriptor is ready or has an error or a hang-up, which the next call on it reports
+  ready,      ///< the descriptor is ready, or has an error or a hang-up; the next call on the descriptor
+              ///< reports the error
   timed_out,  ///< the deadline has passed
   failed,     ///< errno contains the reason
 };

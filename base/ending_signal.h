@@ -8,14 +8,15 @@
 
 namespace softgrip {
 
-/// Stores the signal by which the process must end. Only the first signal is stored. May be called in any
-/// thread.
+/// Stores the signal by which the process must end. If a signal is already stored, does nothing. Any thread
+/// may call this function.
 void note_ending_signal(int signal) noexcept;
 
-/// Returns the stored signal, or 0.
+/// Returns the stored signal; 0 if no signal is stored.
 [[nodiscard]] int ending_signal() noexcept;
 
-/// Returns "SIGINT", or for example "signal 35" if the signal has no name.
+/// Returns the name of a signal, such as "SIGINT". If the signal has no name, returns its number: "signal
+/// 35".
 [[nodiscard]] std::string name_of_signal(int signal);
 
 /// Flushes the standard streams and ends the process by `signal` with its default disposition. Call this

@@ -24,7 +24,7 @@ template <typename Items, typename TextOf = std::identity>
   return text;
 }
 
-/// Returns "a, b, c".
+/// Returns the texts of `items`, separated by commas: "a, b, c".
 template <typename Items, typename TextOf = std::identity>
 [[nodiscard]] std::string with_commas(const Items& items, TextOf text_of = {}) {
   return enumerated(items, ", ", text_of);

@@ -1,5 +1,5 @@
 #pragma once
-// Returns texts of errno values without allocating memory.
+// Describes errno values without allocating memory.
 
 #include <cstring>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Exit codes of all programs of the project.
+// Defines the exit codes of all programs of the project.
 
 namespace softgrip {
 
@@ -8,7 +8,7 @@ enum class ExitCode : int {
   failed = 1,
   usage = 2,
   input_refused = 3,   ///< a configuration, model, log or sequence was refused
-  io = 4,              ///< an error of a file, of the daemon's socket or of a network address
+  io = 4,              ///< a file, the socket of the daemon or a network address caused an error
   state_refused = 5,   ///< the state of the daemon does not permit the command
   not_acceptable = 6,  ///< finished, but the result does not meet the requirement of the user
 };

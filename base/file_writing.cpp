@@ -20,10 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// 0, or the errno of the failed call
+/// Result of a function: 0, or the errno of the system call that failed.
 using Error = int;
 
-constexpr mode_t new_file_mode = 0666;  // the umask removes permissions
+constexpr mode_t new_file_mode = 0666;  // permissions of a new file, before the umask removes some of them
 constexpr mode_t private_mode = 0600;
 constexpr mode_t permissions = 0777;
 
@@ -102,7 +102,7 @@ Error put(int folder, const fs::path& target, std::string_view contents, Existin
   return error;
 }
 
-/// Calls put() for a path. A replaced file keeps its owner and permissions.
+/// Writes a file at a path with put(). A replaced file keeps its owner and permissions.
 Error put_at_path(const fs::path& target, std::string_view contents, Existing existing, Sync sync) {
   struct ::stat old {};
   std::optional<Rights> rights;

@@ -1,5 +1,6 @@
 #pragma once
-// Reads regular files up to a bound, and writes files so that a reader never sees an incomplete file.
+// Reads regular files up to a maximum size. Writes files in such a way that a reader never sees an incomplete
+// file.
 
 #include <cstddef>
 #include <string>
@@ -24,7 +25,8 @@ struct RegularFile {
 /// return.
 [[nodiscard]] tl::expected<RegularFile, std::string> open_regular(const std::string& path);
 
-/// Opens the regular file `name` of an open folder as open_regular() does. A symbolic link is an error.
+/// Opens the regular file `name` in an open folder. Differs from open_regular() in one point: a symbolic link
+/// is an error.
 [[nodiscard]] tl::expected<RegularFile, std::string> open_regular_in(const Descriptor& folder,
                                                                      const std::string& name);
 
@@ -58,12 +60,12 @@ enum class Sync {
 [[nodiscard]] tl::expected<void, std::string> write_file(const std::string& path, std::string_view contents,
                                                          Sync sync = Sync::disk);
 
-/// Replaces the contents of a file that must exist. If `path` is a symbolic link, the link remains and its
-/// target is replaced.
+/// Replaces the contents of a file that exists. If `path` is a symbolic link, the link remains, and the file
+/// to which it leads is replaced.
 [[nodiscard]] tl::expected<void, std::string> replace_file(const std::string& path,
                                                            std::string_view contents);
 
-/// Writes a new file. An existing file is an error.
+/// Writes a new file. If the file already exists, returns an error.
 [[nodiscard]] tl::expected<void, std::string> create_file(const std::string& path, std::string_view contents);
 
 /// Writes the file `name` of an open folder with mode 0600. The function does not wait until the file is on
@@ -72,7 +74,7 @@ enum class Sync {
                                                                  const std::string& name,
                                                                  std::string_view contents);
 
-/// Writes all bytes to an open descriptor. Returns 0, or the errno of the call that failed.
+/// Writes all bytes to an open descriptor. Returns 0, or the errno of the system call that failed.
 [[nodiscard]] int write_all(int descriptor, std::string_view bytes) noexcept;
 
 }  // namespace softgrip

@@ -1,5 +1,5 @@
 #pragma once
-// Parses JSON text that other users and programs have written.
+// Parses JSON text that comes from other users and programs.
 
 #include <string_view>
 

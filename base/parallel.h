@@ -62,8 +62,8 @@ void parallel_for(std::size_t count, unsigned threads, Work&& work) {
   if (failure) std::rethrow_exception(failure);
 }
 
-/// Calls work(i) as parallel_for() does, on the idle threads of the current budget. If the thread has no
-/// budget, all calls run on the calling thread.
+/// Calls work(i) for each i, as parallel_for() does. The calls run on the calling thread and on the idle
+/// threads of its budget. If the calling thread has no budget, all calls run on this thread.
 template <class Work>
 void parallel_for_idle(std::size_t count, Work&& work) {
   parallel_for(count, ThreadBudget::current() != nullptr ? 0 : 1, std::forward<Work>(work));

@@ -16,11 +16,11 @@ class PeriodicSchedule {
   PeriodicSchedule(Nanoseconds start, Nanoseconds period) noexcept : period_(period), due_(start) {}
 
   [[nodiscard]] Nanoseconds period() const noexcept { return period_; }
-  /// Returns the due time of the current tick.
+  /// Returns the time at which the current tick is due.
   [[nodiscard]] Nanoseconds due() const noexcept { return due_; }
 
-  /// Advances by one period, and then to the first tick that is due at or after `now`. Returns the number of
-  /// ticks that were skipped.
+  /// Advances to the next tick. If this tick was due before `now`, advances to the first tick that is due at
+  /// or after `now`. Returns the number of skipped ticks.
   std::uint64_t advance(Nanoseconds now) noexcept {
     due_ += period_;
     if (now <= due_) return 0;

@@ -22,7 +22,7 @@ namespace softgrip {
   return scattered(scattered(seed) ^ (part * 0xd1342543de82ef95ULL + 1));
 }
 
-/// Returns the n-th uniform random number of a seed, in (0, 1).
+/// Returns the n-th uniform random number of a seed; it is between 0 and 1 (both excluded).
 [[nodiscard]] constexpr double uniform_at(std::uint64_t seed, std::uint64_t n) noexcept {
   return (static_cast<double>(scattered(seed ^ scattered(n)) >> 11) + 0.5) * 0x1.0p-53;
 }

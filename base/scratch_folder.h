@@ -1,11 +1,12 @@
 #pragma once
-// A temporary folder.
+// Creates a temporary folder.
 
 #include <string>
 
 namespace softgrip {
 
-/// A new folder for temporary files. The destructor removes it. Its path is empty if it could not be created.
+/// A new folder for temporary files. The destructor removes the folder. The path is empty if the folder could
+/// not be created.
 class ScratchFolder {
  public:
   ScratchFolder();

@@ -1,5 +1,5 @@
 #pragma once
-// SHA-256 (FIPS 180-4): hash of a configuration, a model or a log, for provenance.
+// Computes the SHA-256 hash (FIPS 180-4) of configurations, models and logs, for their provenance.
 
 #include <string>
 #include <string_view>

@@ -1,5 +1,5 @@
 #pragma once
-// Checks that the results have reached the standard output.
+// Checks that a program could write its results to the standard output.
 
 #include "base/exit_code.h"
 

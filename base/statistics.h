@@ -1,5 +1,5 @@
 #pragma once
-// Statistical functions that several folders use.
+// Provides statistical functions.
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@ namespace softgrip {
   return x * x;
 }
 
-/// Returns the median. For an even number of values, this is the larger of the two middle values; without
-/// values it is 0. Changes the order of `values`.
+/// Returns the median of the values. For an even number of values, this is the larger of the two middle
+/// values. If there are no values, returns 0. The function changes the order of `values`.
 template <class T>
 [[nodiscard]] T median_of(std::span<T> values) {
   if (values.empty()) return T{};

@@ -1,12 +1,12 @@
 #pragma once
-// Defines the time type of the project: whole nanoseconds of one clock.
+// Defines the time type of the project: whole nanoseconds.
 
 #include <cmath>
 #include <cstdint>
 
 namespace softgrip {
 
-/// Nanoseconds of CLOCK_BOOTTIME, or of the virtual clock.
+/// A time or a duration in nanoseconds. Times are on CLOCK_BOOTTIME, or on the virtual clock of a test.
 using Nanoseconds = std::int64_t;
 
 inline constexpr Nanoseconds ns_per_s = 1'000'000'000;

@@ -5,8 +5,8 @@
 
 namespace softgrip {
 
-/// Returns, for example, "0.2.0+1a2b3c4": the project's version and the result of `git describe`, with
-/// "-dirty" if the sources have changes that are not committed.
+/// Returns, for example, "0.2.0+1a2b3c4". The text consists of the project's version and the result of `git
+/// describe`. It ends with "-dirty" if the sources have changes that are not committed.
 [[nodiscard]] std::string_view software_version() noexcept;
 
 }  // namespace softgrip
