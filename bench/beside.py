@@ -48,7 +48,7 @@ def repeated(runs, words, folder):
 
 
 def lines_of(*files):
-    """Returns the number of lines that are neither empty nor a comment."""
+    """Returns the number of lines that contain code. Empty lines and comments are not counted."""
     comment = ("#", "%", "/*", "*", "//", '"""')
     return sum(bool(line.strip()) and not line.strip().startswith(comment)
                for file in files for line in file.read_text().splitlines())

@@ -24,7 +24,7 @@ NUMBER_OF = {"transport_delay": "delay_s", "valve_lag": "time_constant_s"}
 
 
 def demo_logs():
-    """Returns the names of the demo's signals, and its options of `softgrip simulate`."""
+    """Returns the names of the demo's signals, and the options with which the demo calls `softgrip simulate`."""
     text = (ROOT / "scripts/demo.sh").read_text()
     signals = re.search(r"for signal in ([a-z0-9 ]+); do", text)[1].split()
     options = re.search(r"--noise-mm [0-9.]+ --seed \d+ --rate-hz \d+", text)[0].split()
@@ -32,7 +32,7 @@ def demo_logs():
 
 
 def truth():
-    """Returns the delay and the lag of the simulated finger [s], by cause."""
+    """Returns the true delay and the true lag of the simulated finger [s], by cause."""
     text = (ROOT / "config/models/bench_twin.yaml").read_text()
     return {cause: float(re.search(rf"{cause}:\s+{number}: ([0-9.]+)", text)[1]) for cause, number in NUMBER_OF.items()}
 

@@ -41,7 +41,7 @@ Value or_exit(std::optional<Value> value, const document::Problems& problems) {
   return std::move(*value);
 }
 
-/// Returns the example rig with the given control rate.
+/// Returns the example rig (config/rig.yaml) with the given control rate.
 rig::RigFile rig_at(double rate_hz) {
   document::Problems problems;
   document::Document document = document::parse_file(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems);

@@ -55,7 +55,7 @@ struct Trial {
   std::map<std::string, bool> inside;
   double rmse_over_noise = 0;
   double expected_over_noise = 0;   ///< expected RMSE of a correct fit divided by the added noise
-  double estimated_over_noise = 0;  ///< estimated noise divided by the added noise
+  double estimated_over_noise = 0;  ///< noise that the fit estimated, divided by the added noise
   bool failed = true;
 };
 

@@ -32,7 +32,8 @@ struct Options {
   int search_draws = 6;  ///< further random models, for the search of the controller gains
   std::uint64_t seed = 1;
   double latency_ms = 0;
-  bool quantised = false;  ///< readings with 16 bits over 100 mm, commands with 12 bits over 100 kPa
+  bool quantised = false;  ///< true: readings have 16 bits over 100 mm, and commands have 12 bits over 100
+                           ///< kPa
   double max_sensitivity = 2;
 };
 

@@ -83,7 +83,7 @@ def filled(values):
 
 
 def inserted(log, effect):
-    """Returns the columns of a log with an effect inserted."""
+    """Returns the columns of a log into which an effect was inserted."""
     readings = filled(log.columns["displacement"])
     low, stroke = readings.min(), np.ptp(readings)
     columns = {**log.columns, "displacement": EFFECTS[effect][2](log.time_s, readings, low, stroke)}

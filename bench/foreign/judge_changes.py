@@ -54,7 +54,7 @@ def judged_label(pair, names, exceeds):
 
 
 def judge_pair(runner, data_set, pair, judge):
-    """Diagnoses one pair and returns its case, without the times."""
+    """Diagnoses one pair of logs and returns its case, without the computing times."""
     if pair.problems:
         raise Failed("\n".join(pair.problems))
     healthy = [runner.log(data_set, name) for name in pair.baseline]

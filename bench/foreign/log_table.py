@@ -39,7 +39,7 @@ class Column:
     quantity: str
     names: list = dataclasses.field(default_factory=list)  # names of columns, or column numbers from 1
     unit: str = ""
-    scale: float = math.nan  # units of the log format per unit of the column
+    scale: float = math.nan  # factor from the unit of the column to the unit of the log format
     zero: object = None  # value that is subtracted before scaling: a number, or "first" for the first value
     span_mm: float = math.nan  # range of the readings after scaling
     rate_hz: float = math.nan  # sampling rate if the file has no column for the time

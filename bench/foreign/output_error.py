@@ -26,7 +26,7 @@ from held_out import beginning, first_share, read, rmse
 
 # starting points: grids over the range that the sampling can resolve
 TIMES, FREQUENCIES, DAMPINGS = 7, 8, (0.05, 0.3, 0.9)
-NEARLY_CANCELS = 1e-4  # singular value, relative to the largest
+NEARLY_CANCELS = 1e-4  # limit of the singular values, relative to the largest singular value
 REFINED = 4  # number of the best starting points from which the search continues
 MOST_SAMPLES = 200000  # largest number of points of the grid on which a log is simulated
 

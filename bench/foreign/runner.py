@@ -37,12 +37,12 @@ class PreparedLog:
 
     @property
     def key(self):
-        """The name of this log in the results of softgrip."""
+        """Returns the name of this log in the results of softgrip."""
         return self.path.stem
 
     def in_original(self, text):
-        """Replaces file and line numbers of the prepared log in `text` by those of the original log."""
-        lines = [0, *self.lines]  # the header, then one line per sample
+        """Replaces the name and the line numbers of the prepared log in `text` by those of the original log."""
+        lines = [0, *self.lines]  # line numbers of the original log; the first entry is for the header
 
         def original(found):
             return f"{self.file}:{lines[min(int(found[1]), len(lines)) - 1] or 1}"

@@ -1,4 +1,4 @@
-"""The usual units, and their conversion to the units of the log format."""
+"""Defines the usual units, and converts values to the units of the log format."""
 import re
 
 TIME_POINT = "datetime"  # dates with times of day, ISO 8601
