@@ -38,9 +38,9 @@ enum class FaultCode : std::uint16_t {
 /// Description of a fault in the manual and in events.
 struct FaultInfo {
   FaultCode code;
-  std::string_view id;       ///< "F101"
-  std::string_view name;     ///< "bus_down"
-  std::string_view meaning;  ///< one sentence
+  std::string_view id;       ///< id, such as "F101"
+  std::string_view name;     ///< name, such as "bus_down"
+  std::string_view meaning;  ///< meaning of the fault in one sentence
   std::string_view cause;    ///< usual cause
   std::string_view remedy;   ///< action that the user must take before the reset (`acknowledge`)
   std::string_view bound;    ///< keys of the rig file that give the number of cycles until the fault latches
@@ -69,11 +69,13 @@ enum class RefusalCode : std::uint16_t {
   no_valid_reading = 6,  ///< a channel that the sequence uses has no valid reading
   nothing_to_stop = 7,
   nothing_to_acknowledge = 8,
-  cause_persists = 9,            ///< reset requested while the cause of a latched fault is still present
+  cause_persists = 9,            ///< a reset was requested while the cause of a latched fault was still
+                                 ///< present
   overtaken = 10,                ///< a stop or vent request arrived before the loop accepted the start, so
                                  ///< the start was dropped
   nothing_to_release = 11,       ///< no sequence runs, and every channel is at its rest pressure
-  named_start_not_running = 12,  ///< the request stops one given start, but no sequence of that start runs
+  named_start_not_running = 12,  ///< the request stops one particular start, but no sequence of this start
+                                 ///< runs
 };
 /// Returns the id of a refusal, for example "R01". The function name_of() returns the name of the refusal in
 /// snake_case.

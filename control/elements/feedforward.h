@@ -10,7 +10,7 @@
 namespace softgrip::control {
 
 enum class FeedforwardKind : std::uint8_t {
-  none,        ///< PID alone
+  none,        ///< no feedforward: only the PID controls the pressure
   bouc_wen,    ///< inverse of the Bouc-Wen element without the other elements (Zhang et al. 2025, section 5)
   full_model,  ///< inverse of the complete chain, with a lead for each lag and a preview for the dead time
   planned,     ///< command computed by least squares over the reference before the sequence starts; needs no

@@ -1,5 +1,5 @@
 #pragma once
-// Defines the result of a grip.
+// Defines the grip result: HOLDING, NO PART, PART LOST, RELEASED or ERROR.
 
 #include <cstdint>
 #include <string_view>
@@ -8,11 +8,11 @@ namespace softgrip::control {
 
 /// The grip result of one channel. It remains until a reset (`acknowledge`) or the next start.
 enum class GripResult : std::uint8_t {
-  none,       ///< no grip yet
+  none,       ///< there has been no grip since the last start or reset
   holding,    ///< HOLDING: an object was detected and verified
   no_part,    ///< NO PART: the finger moved as without an object
   part_lost,  ///< PART LOST: an object was held before, but is not held any more
-  released,   ///< RELEASED
+  released,   ///< RELEASED: a release step has released the object
   error,      ///< ERROR: a timeout, a fault or a stop occurred before there was a result
 };
 /// Returns the name that the user sees: "HOLDING", "NO PART", "PART LOST", "RELEASED" or "ERROR"; "-" for
@@ -27,7 +27,7 @@ enum class GripEvidence : std::uint8_t {
   displacement,  ///< the finger moved less than its free-motion model
   pressure,      ///< weaker evidence: the pressure alone, because the displacement is not available
 };
-/// Returns "none", "displacement" or "pressure (weaker)".
+/// Returns the name of the evidence: "none", "displacement" or "pressure (weaker)".
 [[nodiscard]] std::string_view name_of(GripEvidence evidence) noexcept;
 
 }  // namespace softgrip::control

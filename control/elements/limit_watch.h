@@ -11,13 +11,14 @@ namespace softgrip::control {
 /// every released finger is at the rest pressure.
 enum class BindingLimit : std::uint8_t {
   none,
-  rig_pressure,   ///< limits: pressure_max_kpa of the rig file
+  rig_pressure,   ///< pressure_max_kpa under `limits` in the rig file
   step_pressure,  ///< pressure_max_kpa of the sequence's step
   step_squeeze,   ///< squeeze_max_kpa of the sequence's step
-  rig_slew_up,    ///< limits: slew_up_kpa_per_s of the rig file
-  rig_slew_down,  ///< limits: slew_down_kpa_per_s of the rig file
+  rig_slew_up,    ///< slew_up_kpa_per_s under `limits` in the rig file
+  rig_slew_down,  ///< slew_down_kpa_per_s under `limits` in the rig file
 };
-/// Returns "none", "rig_pressure", "step_pressure", "step_squeeze", "rig_slew_up" or "rig_slew_down".
+/// Returns the name of a limit: "none", "rig_pressure", "step_pressure", "step_squeeze", "rig_slew_up" or
+/// "rig_slew_down".
 [[nodiscard]] std::string_view name_of(BindingLimit limit) noexcept;
 /// Returns the message for a limit, for example "pressure_max_kpa of the rig limits the pressure"; empty for
 /// `none`.

@@ -109,7 +109,7 @@ bool ModelHealth::skip() noexcept {
 
 bool ModelHealth::end_tick() noexcept {
   if (++ticks_ < ticks_per_interval_) return false;
-  // An interval is evaluated if at least half of its ticks have a reading.
+  // An interval is evaluated only if at least half of its ticks have a reading.
   const bool enough = 2 * observed_ >= ticks_per_interval_;
   const bool changed = enough && judge_interval();
   if (!enough) whitener_.reset();

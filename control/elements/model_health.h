@@ -35,14 +35,15 @@ enum class HealthState : std::uint8_t {
 struct ModelHealthSettings {
   double model_error_mm = 0.4;      ///< > 0; standard deviation of the slow error
   double correlation_time_s = 4.0;  ///< > 0; correlation time of the slow error
-  double noise_mm = 0.05;           ///< > 0; standard deviation of one reading
+  double noise_mm = 0.05;           ///< > 0; standard deviation of the noise of one reading
   double interval_s = 1.0;          ///< > 0; time over which the residual is averaged before a decision
   double allowance_sigma = 0.5;     ///< > 0; half of the shift of the innovations that must be detected, in
                                     ///< standard deviations
   /// > 0; mean time between false alarms of a healthy model. The decision threshold is computed from this
   /// time.
   double false_alarm_interval_s = 3.6e6;
-  double unfit_mm = 1.5;      ///< > 0; root mean square over unfit_window_s above which the model is unfit
+  double unfit_mm = 1.5;      ///< > 0; the model is unfit if the root mean square of the residual over
+                              ///< unfit_window_s is above this
   double unfit_window_s = 5;  ///< > 0; time over which the root mean square is taken
 };
 
@@ -50,7 +51,7 @@ struct ModelHealthSettings {
 /// which starts at zero, reaches `threshold`. The result is Siegmund's approximation. Its error is a few
 /// percent for run lengths of 50 and more.
 [[nodiscard]] double cusum_run_length(double allowance, double threshold) noexcept;
-/// Returns the threshold for which cusum_run_length() is `run_length` (at least 2).
+/// Returns the threshold for which cusum_run_length() returns `run_length`, which must be at least 2.
 [[nodiscard]] double cusum_threshold(double allowance, double run_length) noexcept;
 
 /// Turns averages of a residual over intervals into innovations. The innovations are independent and standard

@@ -25,7 +25,8 @@ struct PidSettings {
   double ki_kpa_per_mm_s = 0;
   double kd_kpa_s_per_mm = 0;
   double derivative_filter_s = 0.02;  ///< time constant of the first-order filter of the derivative; >= 0
-  double setpoint_weight = 1;         ///< b: share of the reference in the proportional part, 0 to 1
+  double setpoint_weight = 1;         ///< setpoint weight b: share of the reference in the proportional part,
+                                      ///< 0 to 1
   AntiWindup anti_windup = AntiWindup::back_calculation;
   double tracking_time_s = 0.5;  ///< > 0; time constant of back_calculation
 };

@@ -10,12 +10,12 @@
 
 namespace softgrip::control {
 
-/// Upper limit of PlausibilitySettings::unsteady_jumps.
+/// Largest permitted value of PlausibilitySettings::unsteady_jumps.
 inline constexpr std::size_t most_unsteady_jumps = 32;
 
 struct PlausibilitySettings {
   double max_age_s = 0.05;          ///< > 0; a reading that is older than this is stale
-  double max_speed_mm_per_s = 500;  ///< > 0; must be above the speed of any motion of the finger
+  double max_speed_mm_per_s = 500;  ///< > 0; no motion of the finger may be faster than this speed
   double jump_margin_mm = 0.5;      ///< >= 0; addition to the permitted change of the reading, because of the
                                     ///< sensor's noise
   /// > 0; time for which the reading may stay constant while the command changes. It must be longer than the
@@ -81,7 +81,7 @@ class Plausibility {
   Nanoseconds still_since_ = 0;
   Travel command_kpa_;
   Travel expected_mm_;
-  std::uint32_t changes_ = 0;    ///< number of changes of the reading; counted up to enough_changes
+  std::uint32_t changes_ = 0;    ///< number of changes of the reading, counted up to enough_changes
   Nanoseconds longest_run_ = 0;  ///< longest time between two changes of the reading
   bool stands_still_ = false;
 };

@@ -8,11 +8,11 @@
 
 namespace softgrip::control {
 
-/// A reference at one time, in mm for a displacement or kPa for a pressure.
+/// Value, rate and acceleration of a reference at one time, in mm for a displacement or kPa for a pressure.
 struct ReferencePoint {
   double value = 0;
-  double rate = 0;          ///< per s
-  double acceleration = 0;  ///< per s^2
+  double rate = 0;          ///< change of the value per second
+  double acceleration = 0;  ///< change of the rate per second
 };
 
 /// A sequence of segments. Before the first segment and after the last one, the reference is constant. In
@@ -25,7 +25,8 @@ class Reference {
 
   /// Creates a reference that holds 0 from time 0 on.
   Reference() noexcept = default;
-  /// Discards all segments and holds `value` from `time_s` on, for example the present reading of the finger.
+  /// Discards all segments. From `time_s` on, the reference is constant at `value`, for example at the
+  /// present reading of the finger.
   void start(double time_s, double value) noexcept;
   /// Starts with a moving reference: the first appended segment continues the rate and the acceleration of
   /// `point`.

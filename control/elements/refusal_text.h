@@ -8,7 +8,7 @@
 namespace softgrip::control {
 
 struct RefusalText {
-  std::string_view meaning;  ///< one sentence
+  std::string_view meaning;  ///< reason for the refusal in one sentence
   std::string_view next;     ///< the next action of the user, with its command
 };
 

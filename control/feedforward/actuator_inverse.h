@@ -1,5 +1,6 @@
 #pragma once
-// Finds the pressure for which the chain after the valve reaches a given displacement one tick from now.
+// Finds the pressure with which the chain of blocks after the valve reaches a given displacement after one
+// tick.
 
 #include <array>
 
@@ -32,8 +33,8 @@ class ActuatorInverse {
   /// Copies the state of `body`, a chain of the same model, at the pressure `pressure_kpa`.
   void take_over(const model::Chain<double>& body, double pressure_kpa) noexcept;
 
-  /// Returns the displacement at the output of the load one tick from now if the pressure changes linearly to
-  /// `pressure_kpa`.
+  /// Returns the displacement at the output of the load after one tick in which the pressure changes linearly
+  /// to `pressure_kpa`.
   [[nodiscard]] double displacement_at(double pressure_kpa) const noexcept;
   [[nodiscard]] double displacement_mm() const noexcept { return body_.after(model::Station::load); }
   [[nodiscard]] double pressure_kpa() const noexcept { return past_kpa_[0]; }

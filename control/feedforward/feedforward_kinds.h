@@ -28,7 +28,7 @@ struct FeedforwardQuery {
   const Reference* reference = nullptr;
   double time_s = 0;  ///< present time on the clock of the reference
   double offset_mm = 0;
-  const PressurePlan* plan = nullptr;  ///< plan for the kind `planned`
+  const PressurePlan* plan = nullptr;  ///< plan for the feedforward `planned`; nullptr if there is none
   double plan_origin_s = 0;            ///< time on the clock of the reference at which the clock of the plan
                                        ///< is 0
 };

@@ -8,7 +8,7 @@
 namespace softgrip::control {
 
 struct FreeMotion {
-  double rest_mm = 0;           ///< at rest under the rest pressure
+  double rest_mm = 0;           ///< displacement of the finger at rest under the rest pressure
   double lowest_mm = 0;         ///< three seconds after the command went to the lowest pressure
   double highest_mm = 0;        ///< three seconds after the command went to the highest pressure
   double fastest_mm_per_s = 0;  ///< largest speed in both directions within the slew limits

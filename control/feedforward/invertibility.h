@@ -13,7 +13,7 @@
 
 namespace softgrip::control {
 
-/// The reason for a refusal, as a text for the user.
+/// The reason why a feedforward is refused, as a text for the user.
 struct Refusal {
   std::string text;
   std::string_view advice = {};  ///< proposed action; empty if the text is sufficient

@@ -1,5 +1,5 @@
 #pragma once
-// Finds the invertible part of a model that has no inverse.
+// Finds the part of a model that can be inverted, if the whole model has no inverse.
 
 #include <optional>
 #include <string>
@@ -12,7 +12,7 @@ namespace softgrip::control {
 
 struct InvertiblePart {
   model::Model model;
-  std::vector<std::string> left_out;  ///< ids of the removed blocks
+  std::vector<std::string> left_out;  ///< ids of the blocks that were removed from the model
 };
 
 /// Returns the model without the blocks that prevent `full_model`. First, the blocks without an inverse are

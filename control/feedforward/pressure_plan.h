@@ -21,7 +21,7 @@ struct PressurePlan {
   Reference reference;                  ///< the reference that was planned
   double begin_s = 0;                   ///< time on the plan's clock at which the step with this reference
                                         ///< starts
-  double rmse_mm = 0;                   ///< root mean square difference between model and reference
+  double rmse_mm = 0;                   ///< root mean square of the difference between model and reference
   double worst_mm = 0;                  ///< largest difference between model and reference
 
   [[nodiscard]] bool empty() const noexcept { return pressure_kpa.empty(); }
@@ -38,7 +38,7 @@ struct PressurePlan {
 struct SettledLine {
   double lowest_kpa = 0;
   double at_lowest_mm = 0;
-  double gain_mm_per_kpa = 0;  ///< must be above 0 for planning
+  double gain_mm_per_kpa = 0;  ///< slope of the line; planning requires that it is above 0
   [[nodiscard]] double pressure_kpa(double displacement_mm) const noexcept {
     return lowest_kpa + (displacement_mm - at_lowest_mm) / gain_mm_per_kpa;
   }

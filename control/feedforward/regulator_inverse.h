@@ -1,5 +1,5 @@
 #pragma once
-// Finds the command for which a pressure regulator reaches a pressure one tick from now.
+// Finds the command for which a pressure regulator reaches a given pressure after one tick.
 
 #include "model/regulated_pressure.h"
 
@@ -25,7 +25,7 @@ class RegulatorInverse {
   /// Returns the command for which the pressure is `next_kpa` at the end of the tick. If no port can open far
   /// enough for this pressure, returns a command that opens the port fully. Does not change the state.
   [[nodiscard]] double command_for(double next_kpa) const noexcept;
-  /// Advances by one tick and returns the pressure at its end [kPa].
+  /// Advances by one tick and returns the pressure at the end of the tick [kPa].
   double advance(double command_kpa) noexcept;
 
  private:

@@ -35,7 +35,7 @@ class RunningModel {
   /// Returns the pressure at the actuator that belongs to reading_mm(age_s) [kPa].
   [[nodiscard]] double pressure_kpa(double age_s) const noexcept { return past(past_kpa_, age_s); }
 
-  /// Returns the time by which the chain is ahead of the finger: dead times and extra latency [s].
+  /// Returns how far the chain is ahead of the finger: the sum of the dead times and the extra latency [s].
   [[nodiscard]] double ahead_s() const noexcept { return ahead_s_; }
   /// Returns the pressure at the actuator at the time ahead_s() from now [kPa].
   [[nodiscard]] double pressure_kpa() const noexcept { return pressure_kpa_; }
@@ -54,7 +54,8 @@ class RunningModel {
   model::Chain<double> valve_;
   model::Chain<double> body_;
   double pressure_kpa_ = 0;
-  std::vector<double> past_mm_;   ///< ring with one entry per tick; the newest is at newest_
+  std::vector<double> past_mm_;   ///< ring buffer with one predicted reading per tick; the newest one is at
+                                  ///< newest_
   std::vector<double> past_kpa_;  ///< ring buffer of the pressures, with the indices of past_mm_
   std::size_t newest_ = 0;
 };

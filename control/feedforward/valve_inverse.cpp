@@ -18,7 +18,7 @@ bool lags(const model::BlockSpec& block) {
   return model::catalogue()[block.type].info.inverse == model::Inverse::lead;
 }
 
-/// Returns the sum of the time constants of the valve's lags in one direction [s].
+/// Returns the sum of the time constants of all lags of the valve, for filling or for venting [s].
 double time_constants_s(const model::Model& valve, std::string_view direction) {
   double sum = 0;
   for (const model::BlockSpec& block : valve.blocks) {

@@ -1,5 +1,5 @@
 #pragma once
-// Finds the command for which a valve reaches a pressure one tick from now.
+// Finds the command for which a valve reaches a given pressure after one tick.
 
 #include <optional>
 
@@ -27,7 +27,7 @@ class ValveInverse {
   /// @param tick_s  > 0.
   ValveInverse(const model::Model& model, double tick_s);
 
-  /// Copies the state of the chain valve_of() of the same model.
+  /// Copies the state of `valve`, a chain of the model that valve_of() returns for the same model.
   void take_over(const model::Chain<double>& valve) noexcept;
 
   /// Returns the command for which the pressure changes from `now_kpa` to `next_kpa` at the end of the tick.

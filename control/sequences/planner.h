@@ -58,7 +58,7 @@ class Planner {
   [[nodiscard]] model::Chain<double> finger() const;
   void add_point(double wanted_kpa, model::Chain<double>& chain, PressurePlan& plan);
 
-  model::Model model_;  ///< without dead time
+  model::Model model_;  ///< model from which the dead time was removed
   LimitSettings limits_;
   double step_s_;
   SettledLine settled_;

@@ -21,8 +21,8 @@ namespace softgrip::control {
 
 struct ChannelInput {
   Nanoseconds now = 0;     ///< scheduled time of the tick
-  model::Reading reading;  ///< reading that the driver returned
-  ChannelDemand demand;    ///< demand of the player or the supervisor
+  model::Reading reading;  ///< newest reading that the driver returned
+  ChannelDemand demand;    ///< demand of the sequence player or of the supervisor
   /// Sets the model's offset to the difference between reading and model. This is requested only at rest,
   /// before a motion starts; see ChannelOutput::synchronised.
   bool resynchronise = false;
@@ -54,12 +54,12 @@ class ChannelController {
   [[nodiscard]] double offset_mm() const noexcept { return offset_mm_; }
 
  private:
-  /// The source of the command.
+  /// Determines how the command is computed.
   enum class Loop : std::uint8_t {
-    stopped,  ///< no tick since start()
+    stopped,  ///< there has been no tick since start()
     open,     ///< the demand gives the command without feedback: hold, vent, pressure
-    closed,   ///< feedforward and feedback
-    held,     ///< feedforward and constant feedback
+    closed,   ///< the command is the sum of feedforward and feedback
+    held,     ///< the command is the sum of feedforward and a constant feedback
   };
   [[nodiscard]] bool tracking() const noexcept { return loop_ == Loop::closed || loop_ == Loop::held; }
 

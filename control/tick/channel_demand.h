@@ -18,8 +18,9 @@ struct ChannelDemand {
     displacement,  ///< feedforward and feedback follow `reference`
   };
   Mode mode = Mode::hold;
-  double pressure_kpa = 0;               ///< for mode pressure
-  const Reference* reference = nullptr;  ///< for mode displacement [mm]; on the clock of `time_s`
+  double pressure_kpa = 0;               ///< requested pressure in mode pressure
+  const Reference* reference = nullptr;  ///< reference in mode displacement [mm]; its times are on the clock
+                                         ///< of `time_s`
   double time_s = 0;                     ///< present time on the clock of the reference
   /// Plan for the reference in mode displacement, if the feedforward is `planned`; nullptr if there is no
   /// plan. The time in the plan is the time on the reference's clock minus plan_origin_s.

@@ -1,5 +1,5 @@
 #pragma once
-// Executes one step of a sequence for one channel.
+// Executes the steps of a sequence for one channel, one step at a time.
 
 #include <cstdint>
 #include <optional>
@@ -17,10 +17,10 @@ namespace softgrip::control {
 /// The progress of a channel in its present step.
 enum class Progress : std::uint8_t { pending, passed, failed };
 
-/// Constant properties of a channel.
+/// Properties of a channel that do not change.
 struct ChannelTraits {
   double margin_mm = 0;           ///< margin of grip detection
-  double rest_kpa = 0;            ///< the rest pressure
+  double rest_kpa = 0;            ///< rest pressure of the channel
   double preview_s = 0;           ///< how far ahead of now the feedforward reads the reference
   bool displacement_used = true;  ///< true: the displacement sensor of the channel is used
 };
@@ -43,7 +43,7 @@ class ChannelPlayer {
   /// Executes a tick of the step, or of the return after back_off(). During a return, `passed` means that the
   /// return is finished.
   Progress tick(double time_s, const ChannelOutput& seen) noexcept;
-  /// Executes a tick outside a sequence. Returns true once if a held part is lost.
+  /// Executes a tick while no sequence runs. If a held part is lost, returns true once.
   bool idle(double time_s, const ChannelOutput& seen) noexcept;
 
   /// Returns the demand of the last tick. Its `reference` points to a member of this object.
@@ -72,7 +72,7 @@ class ChannelPlayer {
   /// reading; NaN if it is unknown.
   [[nodiscard]] double shortfall_mm() const noexcept { return shortfall_mm_; }
 
-  /// Keeps the present command.
+  /// Keeps the present command from now on.
   void freeze() noexcept {
     mode_ = ChannelDemand::Mode::hold;
     plan_ = nullptr;

@@ -27,7 +27,7 @@ class FaultMonitor {
   /// Returns the most severe fault condition of this tick. The condition is a fault, or can become a fault if
   /// it lasts. If a fault were reset while its condition is present, the fault would latch again.
   [[nodiscard]] const Fault& cause() const noexcept { return cause_; }
-  /// Returns true if this tick has no bus fault.
+  /// Returns true if there is no bus fault in this tick.
   [[nodiscard]] bool bus_good() const noexcept { return bus_cycles_ == 0; }
 
  private:

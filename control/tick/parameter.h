@@ -19,7 +19,7 @@ struct Parameter {
   double value = 0;       ///< value of the parameter in this reading of the sequence
 };
 
-/// An argument of a start request: the name of a parameter and its value, in the parameter's unit.
+/// A value that a start request assigns: the name of a parameter, and its value in the unit of the parameter.
 struct Argument {
   std::string name;
   double value = 0;

@@ -27,7 +27,7 @@ class RigController {
   RigController(const RigController&) = delete;
   RigController& operator=(const RigController&) = delete;
 
-  /// Runs one period of 1/settings.rate_hz. Returns output().
+  /// Executes one tick; its duration is 1/settings.rate_hz. Returns output().
   const TickOutput& tick(const TickInput& input) noexcept;
 
   /// Returns the output of the last tick. Before the first tick, the commands are the rest pressures.

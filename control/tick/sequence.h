@@ -32,22 +32,22 @@ constexpr std::uint32_t channel_bit(std::size_t channel) noexcept {
 enum class StepKind : std::uint8_t {
   move,      ///< moves to a target along a ramp
   grip,      ///< moves to a target, then verifies the grip: HOLDING or NO PART
-  hold,      ///< keeps the command and verifies again: PART LOST when the object is lost
+  hold,      ///< keeps the command and verifies the grip repeatedly; result PART LOST if the object is lost
   release,   ///< moves towards the rest pressure, then purges: RELEASED
   track,     ///< follows a displacement over time with feedback, for studies
   pressure,  ///< follows a pressure over time without feedback, for experiments
 };
 [[nodiscard]] std::string_view name_of(StepKind kind) noexcept;
 
-/// The action if a step fails and no retries are left.
+/// The action if a step has failed and there are no more retries.
 enum class OnFail : std::uint8_t {
   vent,      ///< the sequence ends, and all channels go to the rest pressure
-  hold,      ///< the sequence ends, and the command does not change
+  hold,      ///< the sequence ends, and the commands do not change
   abort,     ///< the sequence ends with the safe_action of the rig file for the present phase
   release,   ///< the sequence continues with the next release step; without such a step, the action is vent
   carry_on,  ///< `continue` in the file: the sequence continues with its next step
 };
-/// Returns the name in the file: "vent", "hold", "abort", "release", "continue".
+/// Returns the name of an action in the file: "vent", "hold", "abort", "release" or "continue".
 [[nodiscard]] std::string_view name_of(OnFail action) noexcept;
 
 /// The action if a finger meets an object during the motion of its step.
@@ -56,11 +56,12 @@ enum class OnContact : std::uint8_t {
   grip,     ///< as hold; in addition, the sequence continues with its next grip step at once
   fail,     ///< the finger stays at the pressure of the first contact, and its step fails
   ignore,   ///< the motion continues as without a contact
-  squeeze,  ///< for a grip with squeeze_kpa: adds this gripping pressure (not a value in files)
+  squeeze,  ///< for a grip with squeeze_kpa: increases the gripping pressure to squeeze_kpa (not a value in
+            ///< files)
   close,    ///< for a grip without squeeze_kpa: continues to its target with constant feedback (not a value
             ///< in files)
 };
-/// Returns "hold", "grip", "fail", "ignore", "squeeze" or "close".
+/// Returns the name of an action: "hold", "grip", "fail", "ignore", "squeeze" or "close".
 [[nodiscard]] std::string_view name_of(OnContact action) noexcept;
 
 /// The criterion by which a grip is verified.
@@ -144,7 +145,8 @@ struct Squeeze {
   double by_kpa = 0;           ///< pressure above that of the free finger at the same displacement; 0: the
                                ///< grip has no gripping pressure of its own, and its target determines the
                                ///< pressure
-  double speed_kpa_per_s = 0;  ///< > 0 if by_kpa is above 0
+  double speed_kpa_per_s = 0;  ///< speed at which the gripping pressure increases; it must be above 0 if
+                               ///< by_kpa is above 0
 };
 
 /// One step of a sequence, as written in the file.
@@ -152,10 +154,11 @@ struct Step {
   StepKind kind = StepKind::move;
   std::string name;  ///< name of the step for messages; the default is the name of its kind
   document::Location at;
-  std::vector<std::string> channels;   ///< empty: all channels of the sequence
-  Target target;                       ///< for move, grip, release
-  Sine sine;                           ///< for track
-  Profile profile;                     ///< for pressure
+  std::vector<std::string> channels;   ///< channels that take part in the step; empty: all channels of the
+                                       ///< sequence
+  Target target;                       ///< target of the steps move, grip and release
+  Sine sine;                           ///< reference of a track step
+  Profile profile;                     ///< pressure of a pressure step
   double settle_s = 0;                 ///< waiting time after the end of the ramp
   std::optional<double> tolerance_mm;  ///< for move: the step fails if the displacement is not within this
                                        ///< tolerance of the target by timeout_s
@@ -163,8 +166,8 @@ struct Step {
                                        ///< bounds for the hold
   OnContact on_contact = OnContact::ignore;
   bool on_contact_stated = false;  ///< true: the file gives on_contact
-  Squeeze squeeze;                 ///< for grip
-  Verify verify;                   ///< for grip
+  Squeeze squeeze;                 ///< gripping pressure of a grip step
+  Verify verify;                   ///< verification of a grip step
   double hold_s = 0;               ///< infinite: the hold lasts until a release is requested
   double reverify_every_s = 0;     ///< for hold: time between two verifications
   double purge_s = 0;              ///< for release: time for which the channels stay at the rest pressure
@@ -175,16 +178,16 @@ struct Step {
 
 /// The time at which an open interlock input has an effect.
 enum class Interlock : std::uint8_t {
-  start,   ///< a start is refused
-  always,  ///< a start is refused, and a running sequence is stopped
+  start,   ///< while the interlock is open, a start is refused
+  always,  ///< while the interlock is open, a start is refused; when it opens, a running sequence is stopped
 };
 
 /// A sequence as written in the file.
 struct Sequence {
   std::string name;
-  std::string about;  ///< one line; may be empty
+  std::string about;  ///< description in one line; may be empty
   Interlock interlock = Interlock::start;
-  std::vector<std::string> channels;  ///< empty: all channels of the rig
+  std::vector<std::string> channels;  ///< channels that the sequence uses; empty: all channels of the rig
   std::vector<Parameter> parameters;  ///< the parameters with the values that the steps use
   std::vector<Step> steps;
   std::string file;  ///< name of the file as the user wrote it

@@ -21,7 +21,7 @@ class SequencePlayer {
   void start(const PreparedSequence& sequence, double time_s, std::span<const ChannelOutput> seen,
              EventList& events) noexcept;
 
-  /// State of the sequence after a tick.
+  /// State of the sequence at the end of a tick.
   struct Outcome {
     bool finished = false;
     SequenceEnd end = SequenceEnd::done;
@@ -63,7 +63,7 @@ class SequencePlayer {
   template <class Do>
   void for_each_of_step(Do&& act) noexcept;
   [[nodiscard]] const PreparedStep& now() const noexcept { return sequence_->steps[step_]; }
-  /// Returns true if a step of this kind is in progress.
+  /// Returns true if the present step is of this kind.
   [[nodiscard]] bool plays(StepKind kind) const noexcept {
     return play_ != Play::nothing && now().step.kind == kind;
   }

@@ -21,8 +21,8 @@ inline constexpr std::size_t max_channels = 16;
 enum class Phase : std::uint8_t {
   idle,       ///< no sequence runs, or a sequence is starting or resynchronising
   closing,    ///< approach, grip, settle and verify; also tracking and pressure steps of studies
-  holding,    ///< a hold step
-  releasing,  ///< a release step
+  holding,    ///< a hold step is in progress
+  releasing,  ///< a release step is in progress
 };
 inline constexpr std::size_t phase_count = 4;
 /// Returns "idle", "closing", "holding" or "releasing". These are the keys of `safe_action` in the rig file.
@@ -31,9 +31,9 @@ inline constexpr std::size_t phase_count = 4;
 /// The action of the outputs when motion must end.
 enum class SafeAction : std::uint8_t {
   vent,  ///< go to the rest pressure: at the slew limit while the loop runs, at once when the loop ends
-  hold,  ///< stay at the last command
+  hold,  ///< keep the last command
 };
-/// Returns "vent" or "hold".
+/// Returns the name of an action: "vent" or "hold".
 [[nodiscard]] std::string_view name_of(SafeAction action) noexcept;
 
 /// Settings of the grip detection, for all channels.
@@ -88,7 +88,7 @@ struct FaultSettings {
 /// All settings of a RigController.
 struct RigSettings {
   double rate_hz = 200;                   ///< rate at which tick() is called
-  std::vector<ChannelSettings> channels;  ///< 1 to max_channels, names unique
+  std::vector<ChannelSettings> channels;  ///< settings of 1 to max_channels channels; their names must differ
   SafetySettings safety;
   double rest_band_mm = 0.2;   ///< a finger is at rest if its readings stay within this band for rest_time_s
   double rest_time_s = 0.3;    ///< time for which the readings must stay within rest_band_mm; a sequence

@@ -27,7 +27,7 @@ struct SupervisorInputs {
   Fault cause;  ///< present condition that is a fault, or can become a fault if it lasts
   bool bus_good = false;
   std::uint32_t ready = 0;    ///< channels that have a valid reading, or that need no reading
-  std::uint32_t at_rest = 0;  ///< channels whose command is the rest pressure
+  std::uint32_t at_rest = 0;  ///< channels whose command is at the rest pressure
   Phase phase = Phase::idle;  ///< present phase of the sequence player
   bool answers = false;       ///< true: there are grip results that `acknowledge` can reset
   Rest rest = Rest::pending;
@@ -41,7 +41,7 @@ struct SupervisorOutputs {
                                                  ///< be reset
   bool release = false;                          ///< true: the running sequence must continue with its
                                                  ///< release step
-  std::uint32_t vented = 0;                      ///< channels that a stop has vented
+  std::uint32_t vented = 0;                      ///< channels that have been vented because of a stop
   std::uint32_t no_rest = 0;                     ///< channels that get ERROR, because they did not come to
                                                  ///< rest
   bool seek_rest = false;                        ///< true: a start was accepted, so the loop must wait until

@@ -17,13 +17,13 @@
 
 namespace softgrip::control {
 
-struct PreparedSequence;  // defined in control/tick/sequence.h
+struct PreparedSequence;  // control/tick/sequence.h defines it
 
 /// States of the supervisor. Status and recordings use the names of these states.
 enum class State : std::uint8_t {
   starting,         ///< not all channels have a valid reading yet; the commands are the rest pressures, or
                     ///< those after a fault
-  idle,             ///< ready; nothing moves
+  idle,             ///< the rig is ready, and nothing moves
   resynchronising,  ///< a start was accepted; waits until the fingers are at rest, and adjusts the models to
                     ///< the readings
   running,          ///< a sequence runs
@@ -71,7 +71,7 @@ struct Request {
                                                ///< start
 };
 
-/// State of the bus since the last tick.
+/// State of the bus in the time since the last tick.
 struct BusHealth {
   bool connected = false;             ///< a connection to the board is open
   FaultCode fault = FaultCode::none;  ///< cause of the last exchange if it failed; none if it was successful
@@ -84,7 +84,7 @@ struct BusHealth {
 
 struct TickInput {
   Nanoseconds now = 0;
-  std::span<const model::Reading> readings;  ///< one per channel
+  std::span<const model::Reading> readings;  ///< newest reading of each channel
   BusHealth bus;
   /// For each channel, the pressure at the board's output or a pressure that is nearer to rest. Empty:
   /// unknown.
@@ -105,8 +105,9 @@ struct ChannelOutput {
   double reference_mm = 0;     ///< limited reference at the time of this tick; NaN if no reference is
                                ///< followed
   double displacement_mm = 0;  ///< last valid reading; NaN before the first one
-  double pressure_kpa = 0;     ///< measured pressure, or NaN
-  double temperature_c = 0;    ///< measured temperature, or NaN; only recorded
+  double pressure_kpa = 0;     ///< measured pressure; NaN if it is not measured
+  double temperature_c = 0;    ///< measured temperature; NaN if it is not measured; it is recorded, but not
+                               ///< used
   double feedforward_kpa = 0;  ///< feedforward part of the request; 0 if no reference is followed
   double feedback_kpa = 0;     ///< feedback part of the request; 0 if no reference is followed
   double residual_mm = 0;      ///< reading minus (model output + offset) at the time of the reading; NaN
@@ -115,13 +116,13 @@ struct ChannelOutput {
   double free_kpa = 0;         ///< command under which the free finger rests at the last valid reading
   /// gripping pressure: the pressure above free_kpa; NaN without displacement feedback
   double squeeze_kpa = 0;
-  double age_s = 0;          ///< age of the reading
+  double age_s = 0;          ///< age of the reading in this tick
   double health_rms_mm = 0;  ///< root mean square of the residual; above a limit, the model is unfit
   std::uint16_t step = 0;    ///< index of the step in the sequence
   model::Validity validity = model::Validity::none_yet;
   GripResult result = GripResult::none;
   GripEvidence evidence = GripEvidence::none;  ///< evidence on which the grip result is based
-  HealthState health = HealthState::unknown;   ///< state of the model
+  HealthState health = HealthState::unknown;   ///< health of the channel's model
   bool health_changed = false;
   BindingLimit bound_by = BindingLimit::none;  ///< limit that changes the command noticeably compared with
                                                ///< the request
@@ -144,10 +145,10 @@ struct ChannelOutput {
   bool synchronised = false;         ///< true: resynchronisation was requested, and residual_mm has settled
 };
 
-/// `Event::channel` of events that concern the complete rig.
+/// Value of `Event::channel` for an event that concerns the complete rig.
 inline constexpr std::uint8_t whole_rig = 0xff;
 
-/// A fault and its channel.
+/// A fault, and the channel that it concerns.
 struct Fault {
   FaultCode code = FaultCode::none;
   std::uint8_t channel = whole_rig;
@@ -171,7 +172,7 @@ struct Event {
     reading_valid,
     contact,           ///< a finger has come into contact with an object during a motion
     limit_binds,       ///< a limit has restricted a command for longer than LimitWatch::moment_s
-    limit_free,        ///< the limit no longer restricts the command
+    limit_free,        ///< the limit that was reported no longer restricts the command
     release_asked,     ///< the sequence continues with its release step
     reading_unsteady,  ///< the reading jumps back and forth repeatedly
     reading_steady,    ///< the reading has not jumped for JumpWatch::calm_s

@@ -15,8 +15,9 @@ using GainPoint = std::array<double, 3>;
 
 /// Settings of the simplex method of Nelder and Mead (Computer Journal 7, 1965).
 struct Simplex {
-  GainPoint edges{0.4, 0.4, 0.02};  ///< distances from the start to the other corners
-  int iterations = 60;              ///< number of iterations; each needs one or two evaluations of the cost
+  GainPoint edges{0.4, 0.4, 0.02};  ///< distances from the start point of the search to the other corners of
+                                    ///< the simplex
+  int iterations = 60;              ///< number of iterations; each iteration computes the cost once or twice
   double done_share = 0;            ///< the search ends when the costs of the corners differ by less than
                                     ///< this share
 };
@@ -25,7 +26,7 @@ struct Simplex {
                                     const GainPoint& start, double cost_at_start, const Simplex& simplex);
 
 struct GainSearch {
-  int iterations = 60;  ///< iterations of the simplex after the grid search
+  int iterations = 60;  ///< number of iterations of the simplex search after the grid search
   /// Step through the points of the grid of 5 values of kp and 6 values of ki; 1 uses all points.
   int coarseness = 1;
 };

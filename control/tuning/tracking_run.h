@@ -1,5 +1,5 @@
 #pragma once
-// Simulates a finger that tracks a sine, for studies, tuning and tests.
+// Simulates the control of a finger that follows a sine, for studies, tuning and tests.
 
 #include <cstdint>
 #include <vector>
@@ -38,7 +38,7 @@ struct TrackingRun {
   /// Result of plan_for(), for the feedforward `planned`. If the pointer is null, the plan is computed for
   /// this simulation.
   const PressurePlan* plan = nullptr;
-  TrackingTrace* trace = nullptr;  ///< filled if it is not null
+  TrackingTrace* trace = nullptr;  ///< where the motion of the finger is stored; nullptr: it is not stored
 };
 
 /// Returns the plan for the reference of a simulation, computed with the model of the controller.
@@ -58,8 +58,8 @@ struct TrackingResult {
 };
 [[nodiscard]] TrackingResult track(const TrackingRun& run);
 
-/// Returns the model with each parameter multiplied by its own random factor, which is uniform in [1 -
-/// relative, 1 + relative]. Whole numbers do not change.
+/// Returns the model with each parameter multiplied by a random factor. The factor of each parameter is
+/// uniform in [1 - relative, 1 + relative]. Parameters that are whole numbers do not change.
 [[nodiscard]] model::Model with_scatter(const model::Model& model, double relative, std::uint64_t seed);
 
 /// Stability margins of the loop of PID and model. The model is linearised; its gain is the slope of the

@@ -28,7 +28,7 @@ struct TuneTask {
   double most_sensitivity = 2;  ///< largest permitted Ms of each finger; Ms = 2 means a gain margin of 2 and
                                 ///< a phase margin of 29 degrees
   std::uint64_t seed = 1;
-  int iterations = 40;  ///< iterations of the simplex search after the grid search
+  int iterations = 40;  ///< number of iterations of the simplex search after the grid search
 };
 
 /// The best gains, their stability margin and their tracking errors.
@@ -37,8 +37,8 @@ struct Tuned {
   double sensitivity = 0;   ///< worst Ms over the fingers
   double crossover_hz = 0;  ///< lowest crossover frequency over the fingers
   double rmse_mm = 0;       ///< root mean square tracking error over fingers and frequencies
-  double exact_mm = 0;      ///< tracking error for `finger` without variation and noise
-  double noisy_mm = 0;      ///< tracking error for `finger` without variation, with noise
+  double exact_mm = 0;      ///< tracking error for the unchanged `finger`, without noise
+  double noisy_mm = 0;      ///< tracking error for the unchanged `finger`, with noise
   double mismatch_mm = 0;   ///< tracking error for the random fingers, without noise
   int evaluations = 0;
   std::string limited_by;  ///< factor that limits the result, as text
