@@ -27,7 +27,7 @@ class Broadcast {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
-  /// Allocates space for at least `capacity` items (rounded up to a power of two).
+  /// Creates a buffer for at least `capacity` items. The number is rounded up to a power of two.
   explicit Broadcast(std::size_t capacity) : slots_(std::bit_ceil(capacity)) {}
 
   [[nodiscard]] std::size_t capacity() const noexcept { return slots_.size(); }
@@ -46,12 +46,12 @@ class Broadcast {
     newest_.store(pushed_, std::memory_order_release);
   }
 
-  /// One reader. It starts with the oldest stored item.
+  /// One reader. The first item that it returns is the oldest stored item.
   class Reader {
    public:
     explicit Reader(const Broadcast& from) noexcept : from_(&from) {}
 
-    /// Takes the next item and returns true. Returns false if there is no new item.
+    /// Returns true and stores the next item in `item`. Returns false if there is no new item.
     bool pop(T& item) noexcept {
       for (;;) {
         const std::uint64_t newest = from_->newest_.load(std::memory_order_acquire);
@@ -75,7 +75,8 @@ class Broadcast {
       }
     }
 
-    /// Returns the number of items that were overwritten before they were read.
+    /// Returns the number of items that were lost, because the writer replaced them before this reader read
+    /// them.
     [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
 
    private:

@@ -91,9 +91,9 @@ class Bus {
   /// State of the connection to the board.
   enum class Session : std::uint8_t {
     none,      // closed; it is opened when the next attempt is due
-    opened,    // connect() succeeded
-    answered,  // the board has responded to an exchange
-    proven,    // an exchange was successful
+    opened,    // connect() succeeded, but there has been no exchange yet
+    answered,  // the board has responded to an exchange, but no exchange has been successful yet
+    proven,    // an exchange has been successful
   };
 
   BusReport report_;
@@ -103,7 +103,7 @@ class Bus {
                                                                                // write since the last
                                                                                // successful exchange
   Session session_ = Session::none;
-  bool spoken_ = false;                                      // the loop has sent commands at least once
+  bool spoken_ = false;                                      // true: the loop has sent commands at least once
   control::FaultCode inhibited_ = control::FaultCode::none;  // reason why the bus is inhibited; none: it is
                                                              // not inhibited
   std::uint32_t unheard_ = 0;                                // number of steps since the loop's last commands

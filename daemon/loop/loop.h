@@ -51,7 +51,7 @@ class Loop {
   std::size_t channels_;
   std::uint32_t decimation_;
   std::uint64_t ticks_ = 0;
-  std::uint32_t unreported_ = 0;      // ticks since the bus last reported
+  std::uint32_t unreported_ = 0;      // number of ticks since the last report of the bus
   std::uint32_t inhibit_ = 0;         // newest value of BusHealth::inhibit that the bus has reported
   std::uint32_t overrun_cycles_ = 0;  // number of cycles that were missed before the next tick
   Nanoseconds woken_ = 0;

@@ -9,7 +9,7 @@
 
 namespace softgrip::daemon {
 
-/// One requested real-time setting.
+/// One real-time setting that was requested, and its result.
 struct RealTimeStep {
   enum class Outcome { verified, failed, not_asked };
   std::string name;
@@ -34,7 +34,8 @@ class RealTimeReport {
   std::vector<RealTimeStep> steps_;
 };
 
-/// Keeps the processors out of deep sleep states as long as this object exists.
+/// Request to the kernel to keep the processors out of deep sleep states. It applies while this object
+/// exists.
 class ProcessorLatencyRequest {
  public:
   ProcessorLatencyRequest() = default;

@@ -16,7 +16,7 @@ namespace softgrip::daemon {
 template <class T>
 class Ring {
  public:
-  /// Allocates space for at least `capacity` items (rounded up to a power of two).
+  /// Creates a queue for at least `capacity` items. The number is rounded up to a power of two.
   explicit Ring(std::size_t capacity) : items_(std::bit_ceil(capacity)), mask_(items_.size() - 1) {}
 
   [[nodiscard]] std::size_t capacity() const noexcept { return items_.size(); }

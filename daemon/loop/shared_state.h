@@ -19,7 +19,7 @@ namespace softgrip::daemon {
 
 /// Passed from the loop to the bus: the outputs for the board.
 struct Commands {
-  Nanoseconds at = 0;  ///< scheduled time of the tick that computed them
+  Nanoseconds at = 0;  ///< scheduled time of the tick that computed the commands
   std::array<double, control::max_channels> command_kpa{};
   /// Outputs that the bus writes if the loop stops sending commands.
   std::array<double, control::max_channels> safe_kpa{};
@@ -60,7 +60,7 @@ struct BusEvent {
   Kind kind = Kind::connected;
   Nanoseconds at = 0;
   drivers::BusStatus status = drivers::BusStatus::ok;
-  std::array<char, 256> detail{};  ///< message of the board, terminated by 0
+  std::array<char, 256> detail{};  ///< message of the board's driver, ended by 0
 };
 
 /// Passed from the loop to the recorder: a row of one channel.
@@ -98,7 +98,7 @@ struct InputLevels {
   std::atomic<bool> emergency_stop{false};
   std::atomic<bool> interlock_open{false};
   std::atomic<bool> lost{false};          ///< true: the lines cannot be read
-  std::atomic<Nanoseconds> looked_at{0};  ///< time of the last read of the lines
+  std::atomic<Nanoseconds> looked_at{0};  ///< time at which the lines were last read
   /// If the last read is older than this, the lines count as lost [ns]; 0: the rig has no lines.
   Nanoseconds longest_silence = 0;
 };

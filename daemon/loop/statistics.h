@@ -41,7 +41,7 @@ struct BusStatistics {
   Counter sessions;                         ///< number of successful connections to the board
   std::atomic<std::uint64_t> attempts{0};   ///< number of attempts to connect since the last successful
                                             ///< exchange
-  std::atomic<Nanoseconds> retry_pause{0};  ///< upper limit of the time until the next attempt
+  std::atomic<Nanoseconds> retry_pause{0};  ///< upper limit of the time until the next attempt to connect
 };
 
 }  // namespace softgrip::daemon

@@ -13,7 +13,7 @@ namespace softgrip::daemon {
 class Thread {
  public:
   struct Options {
-    std::string name;  ///< at most 15 bytes, as shown by `ps -L` and the kernel
+    std::string name;  ///< name that `ps -L` and the kernel show; at most 15 bytes
     /// Size of the stack. The stack of a std::thread has 8 MiB, and mlockall() would make all of it resident.
     std::size_t stack_bytes = 1024 * 1024;
   };

@@ -29,7 +29,7 @@ class TripleBuffer {
     write_ = taken & index_mask;
   }
 
-  /// Copies and publishes a value.
+  /// Copies a value into the write slot and publishes it.
   void publish(const T& value) noexcept {
     write_slot() = value;
     publish();

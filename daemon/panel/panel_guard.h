@@ -1,5 +1,5 @@
 #pragma once
-// Switches the enable output off when the process crashes.
+// Switches the enable output of the panel off if the process crashes.
 
 namespace softgrip::daemon {
 

@@ -22,7 +22,7 @@ constexpr std::string_view pressure_column = "pressure_kpa,", temperature_column
 /// Largest total length of the texts in a row, without numbers and the name of the channel.
 constexpr std::size_t longest_words = 128;
 
-/// The texts "00" to "99".
+/// All pairs of digits, from "00" to "99".
 constexpr std::array<char, 200> digit_pairs = [] {
   std::array<char, 200> pairs{};
   for (std::size_t i = 0; i < 100; ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-// Writes rows of run.csv quickly.
+// Writes rows of run.csv with little computing time.
 
 #include <cstddef>
 #include <string>
@@ -19,7 +19,7 @@ inline constexpr std::size_t longest_decimal = 32;
 /// above 1e12 is written as this shortest text. For a number that is not finite, nothing is written.
 [[nodiscard]] char* write_decimal(char* to, double value) noexcept;
 
-/// Writes nanoseconds as seconds, exactly and without trailing zeros.
+/// Writes nanoseconds as a number of seconds. The number is exact and has no trailing zeros.
 [[nodiscard]] char* write_seconds(char* to, Nanoseconds duration) noexcept;
 
 /// Writes the rows of one recording. docs/reference/recording.md describes the columns.
@@ -30,7 +30,7 @@ class CsvRows {
   CsvRows(std::vector<std::string> channel_names, bool with_pressure, bool with_temperature = false);
 
   [[nodiscard]] std::string header() const;
-  /// Appends a row. `begin` is time 0 of the recording.
+  /// Appends a row to `text`. `begin` is time 0 of the recording.
   void append(std::string& text, const Record& record, Nanoseconds begin) const;
 
  private:
@@ -39,7 +39,7 @@ class CsvRows {
   bool with_pressure_, with_temperature_;
 };
 
-/// Returns "valid", "none_yet", ... for the column `validity`.
+/// Returns the name of a validity in the column `validity`: "valid", "none_yet", ...
 [[nodiscard]] std::string_view name_of(model::Validity validity) noexcept;
 
 }  // namespace softgrip::daemon

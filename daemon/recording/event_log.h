@@ -1,5 +1,5 @@
 #pragma once
-// Describes events for the socket API, the recordings and the log, and stores them.
+// Describes events for the socket API, the recordings and the event log, and stores them.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,27 +23,28 @@ enum class Severity : std::uint8_t { information, warning, error };
 struct EventEntry {
   std::uint64_t id = 0;  ///< id of the event: 1, 2, 3, ...
   double time_s = 0;     ///< time since the start of the daemon or of the recording
-  std::string kind;      ///< "fault_latched", "bus_failed", ...; clients may depend on these names
+  std::string kind;      ///< name of the kind, such as "fault_latched" or "bus_failed"; clients may depend on
+                         ///< these names
   Severity severity = Severity::information;
   std::string channel;        ///< name of the channel; empty for the complete rig
   std::string code;           ///< code of the event: "F101", "R02", "HOLDING", a state or a step, depending
                               ///< on the kind; may be empty
-  std::string text;           ///< one sentence
+  std::string text;           ///< the event in one sentence
   std::uint32_t request = 0;  ///< id of the request that the event answers; 0: none
   std::string client;         ///< name of the client that made the request; empty: unknown
   double value = 0;           ///< a number that belongs to the event; 0 if there is none
   std::vector<control::Argument> parameters;  ///< for sequence_started: the values of the parameters
 };
 
-/// Describes an event of the controller. The caller sets `time_s` and `id`. `sequence` is the running or
-/// started sequence, or nullptr.
+/// Describes an event of the controller. The caller sets `time_s` and `id`. `sequence` is the sequence that
+/// runs or has just been started; nullptr if there is none.
 [[nodiscard]] EventEntry describe(const control::Event& event, const std::vector<std::string>& channel_names,
                                   const control::PreparedSequence* sequence);
 /// Describes an event of the bus.
 [[nodiscard]] EventEntry describe(const BusEvent& event);
 /// Describes an event of the digital lines.
 [[nodiscard]] EventEntry describe(const PanelEvent& event);
-/// Returns "information", "warning" or "error".
+/// Returns the name of a severity: "information", "warning" or "error".
 [[nodiscard]] std::string_view name_of(Severity severity) noexcept;
 
 /// Returns "F202 reading_out_of_range of left", or the code and the name without a channel if the fault
@@ -61,7 +62,7 @@ struct EventCount {
   std::string kind;
   std::string code;     ///< code of the events; empty for kinds whose codes are names or numbers from a
                         ///< sequence
-  std::string channel;  ///< empty for the complete rig
+  std::string channel;  ///< channel of the events; empty for the complete rig
   std::uint64_t count = 0;
 };
 
@@ -82,7 +83,7 @@ class EventLog {
   [[nodiscard]] std::vector<EventCount> counts() const;
 
  private:
-  using Sort = std::tuple<std::string, std::string, std::string>;  // kind, code, channel
+  using Sort = std::tuple<std::string, std::string, std::string>;  // kind, code and channel of an event
 
   mutable std::mutex mutex_;
   std::size_t capacity_;

@@ -10,7 +10,7 @@ namespace softgrip::daemon {
 
 /// A file that the recorded run used, with its hash.
 struct SourceFile {
-  std::string role;  ///< "rig", "board", "model", "plant"
+  std::string role;  ///< purpose of the file: "rig", "board", "model" or "plant"
   std::string path;
   std::string sha256;
 };
@@ -27,7 +27,7 @@ struct Provenance {
   bool measures_temperature = false;
   double rate_hz = 0;
   std::uint32_t decimation = 1;
-  std::optional<std::uint64_t> seed;  ///< seed of a simulated board
+  std::optional<std::uint64_t> seed;  ///< seed of a simulated board; empty for a real board
   bool virtual_time = false;          ///< true: the run is in virtual time, so its recording contains no
                                       ///< wall-clock time
 };

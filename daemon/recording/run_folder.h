@@ -34,7 +34,7 @@ class RunFolder {
   /// Passes complete lines to the kernel, so that they are not lost if the process is killed. Returns false
   /// if this write or an earlier one failed.
   bool append(std::string_view lines);
-  /// Waits until the appended lines are on the disk.
+  /// Waits until the appended lines are on the disk. Returns false after a failure.
   bool sync();
   /// Replaces run.json by a new version in one step. A failure is reported, but rows are still recorded.
   bool replace_json(std::string_view text);

@@ -27,7 +27,7 @@ class SequenceStore {
   void put(std::uint32_t request, std::shared_ptr<const LoadedSequence> sequence);
   /// Returns the sequence of a request; nullptr if it is not stored.
   [[nodiscard]] std::shared_ptr<const LoadedSequence> find(std::uint32_t request) const;
-  /// Removes a sequence whose start was refused or never reached the loop.
+  /// Removes the sequence of a request whose start was refused, or whose start did not reach the loop.
   void drop(std::uint32_t request);
   /// Removes the sequences of requests before `request`. A later start was accepted, so these sequences do
   /// not run.

@@ -39,7 +39,7 @@ class LockedFile {
   Descriptor file_;
 };
 
-/// The purpose of a lock.
+/// The purpose for which a program takes a lock.
 enum class LockPurpose : std::uint8_t {
   drive,
   /// Writes the safe outputs. For this purpose, a lock of another softgrip program that runs is respected. A
@@ -53,7 +53,8 @@ enum class LockPurpose : std::uint8_t {
 /// namespace. Another machine that drives the same Modbus TCP board is detected on the network (F304).
 class BoardLock {
  public:
-  /// Locks all boards of the rig. The error names the program that holds a lock, or gives another reason.
+  /// Takes the locks of all boards of the rig. The error names the program that holds one of the locks, or
+  /// gives another reason.
   [[nodiscard]] static tl::expected<BoardLock, std::string> take(const rig::RigFile& rig,
                                                                  LockPurpose purpose = LockPurpose::drive);
 

@@ -34,8 +34,8 @@ struct DaemonOptions {
                                                    ///< ends after this sequence
   std::optional<double> duration_s;  ///< run() ends after this time; in virtual time, a sequence or a
                                      ///< duration is required
-  std::string record_folder;         ///< all data are recorded in this folder
-  bool listen = true;                ///< opens the socket of the rig file
+  std::string record_folder;         ///< if it is not empty, all data are recorded in this folder
+  bool listen = true;                ///< true: the daemon opens the socket that the rig file gives
   /// Opens the digital lines; if it is empty, the lines of this machine's GPIO chips are opened.
   std::function<tl::expected<std::unique_ptr<drivers::GpioLines>, drivers::GpioFailure>(
       std::span<const drivers::GpioLineSettings>)>
@@ -50,10 +50,10 @@ struct DaemonOptions {
 /// The reason why run() ended.
 enum class Ending : std::uint8_t {
   asked,              ///< a signal or the duration ended a run that had no sequence
-  interrupted,        ///< a signal or the duration ended the run before its sequence had ended
+  interrupted,        ///< a signal or the duration ended the run before the end of its sequence
   sequence_ended,     ///< the sequence ended; see Outcome::sequence_end
   sequence_refused,   ///< the state of the rig did not permit the start
-  not_idle,           ///< the rig did not become idle, so the sequence was not started
+  not_idle,           ///< the rig did not become idle in time, so the sequence was not started
   real_time_refused,  ///< the rig file has `real_time: required: true`, and a setting could not be verified
   socket_failed,      ///< the socket could not be opened
   board_taken,        ///< another program drives the board
@@ -66,7 +66,7 @@ enum class Ending : std::uint8_t {
 /// The result of a run.
 struct Outcome {
   Ending ending = Ending::asked;
-  std::string message;  ///< one sentence after an error
+  std::string message;  ///< description of the error in one sentence; empty without an error
   /// `faulted` also if a fault latched after the last step and before the end of the run.
   std::optional<control::SequenceEnd> sequence_end;
   Snapshot last;  ///< state after the last tick
@@ -87,13 +87,13 @@ struct Outcome {
 /// unknown.
 [[nodiscard]] bool reached_the_board(Ending ending) noexcept;
 
-/// Returns the exit code 0, 1, 3, 4, 5 or 6. The manual describes these codes.
+/// Returns the exit code for the result of a run: 0, 1, 3, 4, 5 or 6. The manual describes these codes.
 [[nodiscard]] ExitCode exit_code_of(const Outcome& outcome) noexcept;
 
 /// Creates the board of a rig file. The board is not connected yet. `clock` must exist longer than the board.
 [[nodiscard]] std::unique_ptr<drivers::Board> make_board(const rig::RigFile& rig, const Clock& clock);
 
-struct DaemonParts;  // daemon_parts.h
+struct DaemonParts;  // daemon_parts.h defines it
 
 class Daemon {
  public:

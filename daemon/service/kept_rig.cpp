@@ -21,7 +21,7 @@ constexpr int schema = 1;
 /// Largest size of the copy [bytes]. The rig file and each board map and model have at most 256 KiB.
 constexpr std::size_t largest = std::size_t{32} << 20U;
 
-/// Returns the absolute path, independent of the working directory.
+/// Returns the absolute path of a rig file, so that the result does not depend on the working directory.
 std::string absolute(const std::string& config) {
   std::error_code error;
   const std::filesystem::path path = std::filesystem::absolute(config, error);

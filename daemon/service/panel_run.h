@@ -30,7 +30,7 @@ class PanelRun {
   bool open(Outcome& outcome);
   /// Starts the thread that reads the lines. Adds the result of the thread's scheduling to `report`.
   void start(RealTimeReport& report);
-  /// Switches off the enable output and ends the thread.
+  /// Switches off the enable output and ends the thread of the panel.
   void stop() noexcept;
 
  private:

@@ -1,4 +1,4 @@
-// Runs the daemon in real time: starts its threads in order, and ends them in order.
+// Runs the daemon in real time: starts its threads in a fixed order, and ends them in a fixed order.
 
 #include <algorithm>
 #include <atomic>

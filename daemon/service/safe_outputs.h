@@ -15,7 +15,7 @@ namespace softgrip::daemon {
 /// Result of the attempt to write the safe outputs.
 enum class SafeOutputsEnd {
   confirmed,       ///< the board accepted the rest pressures, and the next exchange confirmed them
-  board_holds,     ///< the board's own watchdog has tripped and holds its safe values
+  board_holds,     ///< the watchdog of the board has tripped, so the board holds its own safe values
   not_needed,      ///< the service manager reports that softgripd ended in order
   daemon_running,  ///< a daemon responds on the rig's socket, or another program drives the board
   board_silent,    ///< the board did not confirm the rest pressures in time
@@ -23,10 +23,10 @@ enum class SafeOutputsEnd {
 
 struct SafeOutputsReport {
   SafeOutputsEnd end = SafeOutputsEnd::board_silent;
-  std::string text;  ///< one sentence
+  std::string text;  ///< the result in one sentence
 };
 
-/// Returns the exit code 0, 4 or 5. The manual describes these codes.
+/// Returns the exit code for the result of the attempt: 0, 4 or 5. The manual describes these codes.
 [[nodiscard]] ExitCode exit_code_of(SafeOutputsEnd end) noexcept;
 
 /// Connects to the board and writes the rest pressure of all channels until two consecutive exchanges have

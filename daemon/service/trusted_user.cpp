@@ -12,7 +12,7 @@ namespace softgrip::daemon {
 
 namespace {
 
-constexpr std::size_t most_groups = 65536;  // NGROUPS_MAX of Linux
+constexpr std::size_t most_groups = 65536;  // largest number of groups of a user (NGROUPS_MAX of Linux)
 
 std::optional<gid_t> service_group() {
   const group* const entry = ::getgrnam(service_account);

@@ -11,10 +11,10 @@ namespace softgrip::daemon {
 /// The user and the group of the service.
 inline constexpr const char* service_account = "softgrip";
 
-/// Returns the user id of the service, or nothing on a machine without this user.
+/// Returns the user id of the service; nothing if this machine has no such user.
 [[nodiscard]] std::optional<uid_t> service_user();
 
-/// Returns true for root, the user of the service and the user of this process.
+/// Returns true if the user is root, the user of the service, or the user of this process.
 [[nodiscard]] bool is_trusted(uid_t user);
 
 /// The process at the other end of a Unix domain socket, as the kernel stored it at connect() or listen().

@@ -16,7 +16,7 @@
 
 namespace softgrip::daemon {
 
-/// Version of the socket API.
+/// Version of the socket API that this daemon implements.
 inline constexpr std::uint64_t api_version = 1;
 
 struct ClientRequest {
@@ -55,7 +55,8 @@ struct ClientRequest {
                                          ///< are sent
   std::string started_at;                ///< for subscribe: start time of the daemon from which the client
                                          ///< has its event ids
-  std::string client;                    ///< for hello: name, [1, 64] bytes without control characters
+  std::string client;                    ///< for hello: name of the client, 1 to 64 bytes without control
+                                         ///< characters
   std::uint64_t api = api_version;       ///< for hello: version of the socket API that the client uses
   std::uint64_t limit = 100;             ///< for events: largest number of events, 1 to 1000
   bool histograms = false;               ///< for statistics: the reply includes the bins of the histograms
@@ -63,8 +64,8 @@ struct ClientRequest {
 
 /// The reason why a line was refused.
 struct ClientError {
-  std::optional<std::uint64_t> id;  ///< id of the request, if it could be read
-  std::string message;              ///< one sentence
+  std::optional<std::uint64_t> id;  ///< id of the refused request; empty if the id could not be read
+  std::string message;              ///< reason of the refusal in one sentence
 };
 
 /// Reads one line without its line break. Parsing is strict. An unknown, repeated or missing key, a key of
@@ -76,7 +77,7 @@ struct ClientError {
 /// Returns true for a command that only reads, and false for a command that moves, stops or resets something.
 [[nodiscard]] bool only_looks(ClientRequest::Command command) noexcept;
 
-/// Returns true if the line requests a stop or a vent.
+/// Returns true if the line is a request to stop or to vent.
 [[nodiscard]] bool is_urgent(std::string_view line);
 
 }  // namespace softgrip::daemon

@@ -15,7 +15,7 @@ namespace softgrip::daemon {
 class OneShotRun {
  public:
   enum class State : std::uint8_t {
-    waiting,  ///< waits until the rig is idle
+    waiting,  ///< the run waits until the rig is idle
     asked,    ///< the start request was passed to the loop
     running,
     ended,

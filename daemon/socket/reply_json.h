@@ -18,7 +18,7 @@
 
 namespace softgrip::daemon {
 
-/// Returns the id as JSON, or null if the client gave no id.
+/// Returns the id of a request as JSON; null if the client gave no id.
 [[nodiscard]] nlohmann::ordered_json id_json(std::optional<std::uint64_t> id);
 [[nodiscard]] nlohmann::ordered_json error_json(std::string_view code, std::string_view message);
 [[nodiscard]] nlohmann::ordered_json problems_json(const std::vector<document::Problem>& problems);
@@ -32,7 +32,7 @@ struct Greeting {
   std::string_view started_at;  ///< start time of the daemon, UTC; event ids are unique only together with
                                 ///< this time
   Role role = Role::look;
-  std::string_view client;  ///< name that the client gave
+  std::string_view client;  ///< name of the client, as the client gave it
   double longest_answer_s = 0;
 };
 [[nodiscard]] nlohmann::ordered_json hello_json(const Greeting& greeting,

@@ -11,7 +11,7 @@ enum class Role : std::uint8_t {
   look,     ///< read-only; for the socket that the rig file gives as `socket: look:`
   operate,  ///< may move the gripper; for the socket that the rig file gives as `socket: path:`
 };
-/// Returns "look" or "operate".
+/// Returns the name of a role: "look" or "operate".
 [[nodiscard]] constexpr std::string_view name_of(Role role) noexcept {
   return role == Role::look ? "look" : "operate";
 }

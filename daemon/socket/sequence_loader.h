@@ -34,7 +34,7 @@ class SequenceLoader {
   /// directory. If there is no such file, the message lists the existing names.
   [[nodiscard]] Result load_named(const std::string& name, Arguments arguments = {},
                                   const std::stop_token& stop = {}) const;
-  /// Loads a text. `name` replaces the file name in messages.
+  /// Loads a sequence from a text. Messages use `name` in place of a file name.
   [[nodiscard]] Result load_text(const std::string& name, const std::string& text, Arguments arguments = {},
                                  const std::stop_token& stop = {}) const;
 

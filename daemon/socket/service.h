@@ -48,12 +48,12 @@ class Service {
     control::Fault fault;  ///< fault that was reset, or whose cause is still present; in all other cases none
   };
   [[nodiscard]] Answer take_answer(std::uint32_t request);
-  /// Discards the reply to a request.
+  /// Discards the loop's reply to a request.
   void forget(std::uint32_t request);
 
   /// Returns the result of the newest sequence that has ended, and the request that started this sequence.
   struct Ending {
-    std::uint32_t request = 0;  ///< 0: no sequence has ended
+    std::uint32_t request = 0;  ///< request that started the sequence; 0: no sequence has ended
     control::SequenceEnd end = control::SequenceEnd::done;
   };
   [[nodiscard]] const Ending& last_ending() const noexcept { return ending_; }
@@ -81,7 +81,7 @@ class Service {
   [[nodiscard]] const BusFailure& bus_failure() const noexcept { return bus_failure_; }
   [[nodiscard]] const std::vector<std::string>& channel_names() const noexcept { return channel_names_; }
 
-  /// Returns the newest state of the loop.
+  /// Returns the newest state that the loop has published.
   [[nodiscard]] const Snapshot& snapshot() noexcept;
 
  private:

@@ -43,7 +43,7 @@ class SocketApi {
 
   /// Registers a new client with its role. A client that was not registered is read-only.
   void on_opened(ClientId client, Role role);
-  /// Processes one line of a client, without its line break.
+  /// Processes one line that a client has sent, without its line break.
   void on_line(ClientId client, std::string_view line, Nanoseconds now);
   /// Removes a client that has disconnected.
   void on_closed(ClientId client);
@@ -60,13 +60,13 @@ class SocketApi {
  private:
   struct Client {
     Role role = Role::look;
-    std::string name;  ///< name from the client's hello
+    std::string name;  ///< name that the client gave in its hello
   };
   struct Asked {  // a request that was passed to the loop
     ClientId client = 0;
     std::optional<std::uint64_t> id;
     Nanoseconds give_up = 0;
-    document::Problems remarks;                     ///< warnings about the sequence
+    document::Problems remarks;                     ///< warnings about the sequence of the request
     std::shared_ptr<const LoadedSequence> checked;  ///< for a dry run: the sequence that was checked
   };
   struct Subscription {

@@ -34,7 +34,7 @@ class SocketServer {
     std::function<bool(std::uint64_t client)> keeps_place = nullptr;
   };
 
-  /// Opens the sockets of the settings (daemon/socket/listener.h). The error is a sentence.
+  /// Opens the sockets that `settings` gives (daemon/socket/listener.h). The error is a sentence.
   [[nodiscard]] static tl::expected<SocketServer, std::string> listen(const rig::SocketSettings& settings);
   SocketServer(const SocketServer&) = delete;
   SocketServer& operator=(const SocketServer&) = delete;

@@ -13,7 +13,7 @@ namespace softgrip::daemon {
 /// A start that was passed to the loop.
 struct KnownStart {
   std::uint32_t request = 0;
-  std::string id;            ///< id given by the client; empty if it gave none
+  std::string id;            ///< id that the client gave the start; empty if it gave none
   std::uint64_t client = 0;  ///< client that requested the start
 };
 
@@ -35,7 +35,7 @@ class StartLedger {
   [[nodiscard]] bool is_forbidden(std::string_view start_id) const;
 
  private:
-  std::deque<KnownStart> starts_;  ///< oldest first
+  std::deque<KnownStart> starts_;  ///< stored starts, the oldest first
   std::deque<std::string> forbidden_;
 };
 

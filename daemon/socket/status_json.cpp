@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double us_per_ns = 1e-3;
 
-/// Returns a number as JSON. NaN becomes null, because JSON has no NaN.
+/// Returns a number as JSON; null for NaN, because JSON has no NaN.
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -57,7 +57,7 @@ Json rig_file_of(const Provenance& provenance) {
   return nullptr;
 }
 
-/// Returns the text as JSON, or null if there is no text.
+/// Returns the text as JSON; null if `is_there` is false.
 Json text_or_null(std::string_view text, bool is_there) {
   return is_there ? Json(text) : Json(nullptr);
 }
