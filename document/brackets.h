@@ -1,5 +1,6 @@
 #pragma once
-// Finds the brackets that are open at a place of a text. Messages about unclosed brackets use them.
+// Finds the brackets that are open at a location of a text. Messages about unclosed brackets use this
+// function.
 
 #include <cstddef>
 #include <string_view>

@@ -1,5 +1,6 @@
 #pragma once
-// Recognises UTF-8 and control characters in bytes, and converts both to a visible form.
+// Recognises UTF-8 characters and control characters in bytes, and converts all bytes to a form that can be
+// shown.
 
 #include <cstddef>
 #include <string>
@@ -11,8 +12,8 @@ namespace softgrip::document {
 /// (overlong forms, surrogates and values above U+10FFFF included). `text` is not empty.
 [[nodiscard]] std::size_t character_length(std::string_view text) noexcept;
 
-/// Returns true if the valid character, which has 1 or 2 bytes, is a control character: U+0000-001F,
-/// U+007F-009F.
+/// Returns true if a character is a control character (U+0000 to U+001F, U+007F to U+009F). The character
+/// must be valid and have 1 or 2 bytes.
 [[nodiscard]] bool is_control(std::string_view character) noexcept;
 
 /// Moves the first character of `text` to `out`, in a form that is safe for a terminal. Returns the number of

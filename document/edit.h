@@ -37,7 +37,7 @@ class Edit {
   /// with `mark`, the new comment replaces it. Returns false if text precedes `entry` on its line.
   bool comment_above(const Node::Entry& entry, std::string_view mark, std::string_view comment);
 
-  /// Returns the text with all changes.
+  /// Returns the text with all collected changes.
   [[nodiscard]] std::string text() const;
 
  private:

@@ -76,7 +76,7 @@ bool lacks_unit(std::string_view key, std::string_view candidate) {
 struct OtherUnit {
   const Unit* used;
   const Unit* wanted;
-  double factor;  // converts a value in `used` to a value in `wanted`
+  double factor;  // factor that converts a value in `used` to a value in `wanted`
 };
 
 std::optional<OtherUnit> other_unit(std::string_view key, std::string_view candidate) {

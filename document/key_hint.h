@@ -1,5 +1,5 @@
 #pragma once
-// Suggests the known key that was probably meant by an unknown key.
+// Finds the known key that the user probably meant by an unknown key.
 
 #include <string>
 #include <string_view>
@@ -9,7 +9,8 @@
 
 namespace softgrip::document {
 
-/// The known key that was probably meant by an unknown key; both texts are empty if there is none.
+/// The known key that the user probably meant by an unknown key, and a hint; both texts are empty if there is
+/// no such key.
 struct KeyHint {
   std::string key;
   std::string hint;
@@ -22,8 +23,8 @@ struct KeyHint {
 [[nodiscard]] KeyHint hint_for_key(std::string_view key, const Node& value,
                                    const std::vector<std::string>& known);
 
-/// Returns the unit at the end of a key, in the units of the project: "kpa" for `squeeze_kpa`, "mm_per_s" for
-/// `speed_mm_per_s`; empty if the key has no unit.
+/// Returns the unit at the end of a key: "kpa" for `squeeze_kpa`, "mm_per_s" for `speed_mm_per_s`. Returns an
+/// empty text if the key does not end with a unit of the project.
 [[nodiscard]] std::string_view unit_at_end(std::string_view key);
 
 /// Returns a hint such as "the unit is seconds: 130 ms would be 0.13" for a number out of range. The hint

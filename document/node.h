@@ -1,5 +1,6 @@
 #pragma once
-// Defines a parsed YAML document as plain values with their locations. Parsing is strict: see parse().
+// Defines a parsed YAML document as plain values with their locations. Only a part of YAML is accepted: see
+// parse().
 
 #include <cstddef>
 #include <string>
@@ -24,8 +25,8 @@ struct Node {
 
   Kind kind = Kind::null;
   Location at;
-  std::string scalar;          ///< the text of a scalar, unquoted
-  bool quoted = false;         ///< the scalar was quoted, so it is a text, never a number
+  std::string scalar;          ///< text of a scalar, without its quotes
+  bool quoted = false;         ///< true: the scalar was quoted, so it is a text and never a number
   std::string stands_for;      ///< name of the parameter if the file has a parameter with `$` in place of
                                ///< this value; otherwise empty
   bool refused = false;        ///< true: a problem of the node was reported already, or the node is
@@ -61,7 +62,7 @@ struct Document {
                              const Bounds& bounds = {});
 
 /// Reads a complete file of at most `bounds.bytes` and parses it. If the file cannot be read, adds a problem
-/// at 1:1.
+/// at line 1, column 1.
 [[nodiscard]] Document parse_file(const std::string& path, Problems& problems, const Bounds& bounds = {});
 
 }  // namespace softgrip::document

@@ -14,8 +14,8 @@ bool is_digit(char c) {
 
 /// The parts of a decimal number.
 struct Decimal {
-  std::string_view digits;  // input of from_chars: without a leading +
-  std::string_view whole;   // the digits before the point
+  std::string_view digits;  // text for from_chars(), without a leading +
+  std::string_view whole;   // digits before the decimal point
   bool fraction = false;
   bool exponent = false;
 };
@@ -27,7 +27,7 @@ std::size_t count_digits(std::string_view text) {
 
 std::optional<Decimal> split(std::string_view text) {
   Decimal decimal;
-  // from_chars does not accept a leading plus sign.
+  // from_chars() does not accept a leading plus sign.
   decimal.digits = text.starts_with('+') ? text.substr(1) : text;
   if (text.starts_with('+') || text.starts_with('-')) text.remove_prefix(1);
   const std::size_t whole = count_digits(text);

@@ -19,11 +19,12 @@ struct Parsed {
   std::string hint;
 };
 
-/// Reads [+-]digits[.digits][e[+-]digits] with at least one digit before the exponent and no leading zeros.
+/// Reads a decimal number: [+-]digits[.digits][e[+-]digits]. At least one digit must precede the exponent,
+/// and leading zeros are an error.
 [[nodiscard]] Parsed<double> parse_number(const Node& node);
-/// Reads [+-]digits without leading zeros.
+/// Reads a whole number: [+-]digits. Leading zeros are an error.
 [[nodiscard]] Parsed<std::int64_t> parse_integer(const Node& node);
-/// Reads `true` or `false`.
+/// Reads a truth value: `true` or `false`.
 [[nodiscard]] Parsed<bool> parse_boolean(const Node& node);
 
 /// Returns "the decimal mark is a point: 0.5" if a comma between two nodes of one line was probably a decimal
@@ -31,7 +32,7 @@ struct Parsed {
 /// after the comma.
 [[nodiscard]] std::string hint_for_comma(const Node& before, Location after, std::string_view text_after);
 
-/// Returns the kind of a node as a text that follows "found" in a message: "a list", "a map", "nothing",
+/// Returns what a node is, as a text that follows "found" in a message: "a list", "a map", "nothing" or
 /// "`text`".
 [[nodiscard]] std::string found(const Node& node);
 

@@ -25,7 +25,8 @@ Location location_of(const YAML::Mark& mark) {
   return {mark.line + 1, mark.column + 1};
 }
 
-/// Builds the tree from the parser's events. Each alias is one event and is not followed.
+/// Builds the tree of nodes from the events of the parser. An alias is a single event; its node is not
+/// copied.
 class TreeBuilder final : public YAML::EventHandler {
  public:
   TreeBuilder(Document& document, Problems& problems, const Bounds& bounds)
@@ -116,9 +117,9 @@ class TreeBuilder final : public YAML::EventHandler {
  private:
   struct Frame {
     Node node;
-    bool flow = false;       // for a sequence: written as `[...]`
+    bool flow = false;       // for a sequence: true if it is written as `[...]`
     bool has_key = false;    // for a map: the key was read; its value is the next event
-    bool key_wanted = true;  // for a map: the key was not refused
+    bool key_wanted = true;  // for a map: true if the key was not refused
     std::string key;
     Location key_at;
     std::map<std::string, std::size_t> index;  // for a map: index of the entry by key

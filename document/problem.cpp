@@ -9,7 +9,7 @@ namespace softgrip::document {
 
 namespace {
 
-// Length above which a line is shown only around the column [bytes].
+// A line that is longer than this is shown only near the column of the problem [bytes].
 constexpr std::size_t line_bytes = 100;
 
 /// The part of `line` to show: the whole line, or a window around `column` (from 0). The window begins and
@@ -34,7 +34,7 @@ Window window_of(std::string_view line, std::size_t column) {
   return {begin, end};
 }
 
-/// Appends the line of the problem, and a second line with a caret under the column.
+/// Appends the line that contains the problem, and a second line with a caret under the column.
 void append_line(std::string& out, const Problem& problem) {
   const std::string_view line = problem.line_text;
   const std::size_t column = static_cast<std::size_t>(std::max(problem.at.column, 1)) - 1;

@@ -9,7 +9,7 @@
 
 namespace softgrip::document {
 
-/// A place in a text. Line and column are numbered from 1. The column is counted in bytes.
+/// A location in a text. Line and column are numbered from 1. The column is counted in bytes.
 struct Location {
   int line = 1;
   int column = 1;
@@ -20,10 +20,11 @@ struct Location {
 /// A problem of a document.
 struct Problem {
   std::string file;       ///< name of the file as the user wrote it
-  Location at;            ///< place in the file
-  std::string line_text;  ///< text of the line, without its line break; may be empty
+  Location at;            ///< location of the problem in the file
+  std::string line_text;  ///< text of the line that contains the problem, without its line break; may be
+                          ///< empty
   std::string message;    ///< the problem in one sentence
-  std::string hint;       ///< what the user probably meant, or empty
+  std::string hint;       ///< what the user probably meant; empty if it is unknown
 
   bool operator==(const Problem&) const = default;
 };

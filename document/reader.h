@@ -33,7 +33,7 @@ class MapReader {
   MapReader& operator=(const MapReader&) = delete;
   MapReader(MapReader&&) = delete;
   MapReader& operator=(MapReader&&) = delete;
-  /// Calls finish() if the caller has not called it.
+  /// Calls finish() if it has not been called yet.
   ~MapReader();
 
   /// Reads a required number in `range`. If the number is missing, not finite or out of range, or if the
@@ -46,36 +46,36 @@ class MapReader {
   /// Reads a required whole number in [lower, upper].
   std::int64_t integer(std::string_view key, std::int64_t lower, std::int64_t upper);
   std::optional<std::int64_t> optional_integer(std::string_view key, std::int64_t lower, std::int64_t upper);
-  /// Reads `true` or `false`. No other words are accepted.
+  /// Reads a truth value: `true` or `false`. No other words are accepted.
   bool boolean(std::string_view key);
   std::optional<bool> optional_boolean(std::string_view key);
   /// Reads a text of one line that is not empty.
   std::string text(std::string_view key);
   std::optional<std::string> optional_text(std::string_view key);
-  /// Reads one of `choices` and returns its index (0 after a problem).
+  /// Reads one of the texts in `choices` and returns the index of this text. After a problem, returns 0.
   std::size_t choice(std::string_view key, const std::vector<std::string>& choices);
   std::optional<std::size_t> optional_choice(std::string_view key, const std::vector<std::string>& choices);
-  /// Returns the node under a key, regardless of its kind. If the key is absent, returns nullptr and, if
-  /// `required`, reports a problem.
+  /// Returns the node under a key, whatever its kind is. If the key is absent, returns nullptr. In this case,
+  /// reports a problem if `required` is true.
   const Node* child(std::string_view key, bool required);
-  /// Returns the items of a sequence under a key. If the key is absent, returns an empty list and, if
-  /// `required`, reports a problem.
+  /// Returns the items of a sequence under a key. If the key is absent, returns an empty list. In this case,
+  /// reports a problem if `required` is true.
   std::vector<const Node*> sequence(std::string_view key, bool required);
-  /// Reads a required list of `count` numbers in `range`, for example `at_v: [0, 10]`. Always returns `count`
-  /// numbers.
+  /// Reads a required list of `count` numbers in `range`, for example `at_v: [0, 10]`. The result always has
+  /// `count` numbers, also after a problem.
   std::vector<double> numbers(std::string_view key, std::size_t count, Range range);
   std::optional<std::vector<double>> optional_numbers(std::string_view key, std::size_t count, Range range);
 
   /// Returns true if the map contains the key. The call does not mark the key as known.
   [[nodiscard]] bool has(std::string_view key) const;
-  /// Returns true if the map contains the key and its getter found no problem. Use it before a check that
-  /// combines the values of several keys.
+  /// Returns true if the map contains the key and its getter found no problem. Call good() before a check
+  /// that combines the values of several keys.
   [[nodiscard]] bool good(std::string_view key) const;
-  /// Returns all keys in the order of the text.
+  /// Returns all keys of the map in the order of the text.
   [[nodiscard]] std::vector<std::string> keys() const;
   /// Returns the location of a key, or the location of the map if it does not contain the key.
   [[nodiscard]] Location where(std::string_view key) const;
-  /// Reports a problem with the value of a key. Used for problems that only the caller can detect.
+  /// Reports a problem with the value of a key, for problems that only the caller can detect.
   void report(std::string_view key, std::string message, std::string hint = {});
   /// Reports a warning about the value of a key: the value is permitted but probably not meant.
   void warn(std::string_view key, std::string message, std::string hint = {});
@@ -108,7 +108,8 @@ class MapReader {
   bool finished_ = false;
 };
 
-/// Returns the number in a scalar node if it is within `range`. Otherwise adds a problem and returns nothing.
+/// Returns the number in a scalar node if the number is within `range`. Otherwise, adds a problem and returns
+/// nothing.
 [[nodiscard]] std::optional<double> number_in(const Document& document, const Node& node, Range range,
                                               Problems& problems, std::string_view what);
 

@@ -20,7 +20,8 @@ struct SyntaxMessage {
 [[nodiscard]] SyntaxMessage syntax_message(const Document& document, std::string_view said, const Node* open,
                                            Location at);
 
-/// Returns line number `line` (from 1) of a text, without its line break; empty beyond the end of the text.
+/// Returns the line with the number `line` (from 1), without its line break. Returns an empty text if there
+/// is no such line.
 [[nodiscard]] std::string_view line_of(std::string_view text, int line);
 
 }  // namespace softgrip::document

@@ -53,7 +53,7 @@ void scan_line(std::string_view line, int number, Troubles& troubles) {
   if (tab != std::string_view::npos) troubles.tab.note({number, static_cast<int>(tab) + 1}, "\t");
 }
 
-/// Calls `see(line, number)` for each line, without its line break (\n or \r\n).
+/// Calls `see(line, number)` for each line of the text, without its line break (\n or \r\n).
 template <class See>
 void for_each_line(std::string_view text, See&& see) {
   int number = 1;
