@@ -21,12 +21,13 @@ enum class BusStatus : std::uint8_t {
   timed_out,         ///< the deadline of the exchange passed before it was complete
   bad_reply,         ///< the reply has a wrong unit id, length, transaction id or function; the session must
                      ///< be closed
-  exception,         ///< the board answered with a Modbus exception
+  exception,         ///< the board responded with a Modbus exception
   write_refused,     ///< a command is invalid or out of range, or the read-back differs from the written
                      ///< value
   overwritten,       ///< another client has written to the board since the last exchange
   watchdog_tripped,  ///< the board's own watchdog holds the outputs at their safe value
-  closed_at_once,    ///< the other end accepted the connection and closed it before its first response
+  closed_at_once,    ///< the board, or a device before it, accepted the connection and closed it before the
+                     ///< first response
 };
 [[nodiscard]] const char* name_of(BusStatus status) noexcept;
 
@@ -62,7 +63,8 @@ class Board {
     return std::numeric_limits<double>::quiet_NaN();
   }
 
-  /// Returns one line for the start-up report: "ADAM-6024 at 127.0.0.1:502 unit 1".
+  /// Returns a description of the board in one line for the start-up report, such as "ADAM-6024 at
+  /// 127.0.0.1:502 unit 1".
   [[nodiscard]] virtual std::string describe() const = 0;
 
   /// The shortest period of exchanges with this board [s], and the calculation of this period ("115200 8N1,

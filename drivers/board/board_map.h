@@ -15,7 +15,7 @@
 
 namespace softgrip::drivers {
 
-/// The representation of one number in registers.
+/// The format in which registers contain a number.
 enum class RegisterKind : std::uint8_t { uint16, int16, uint32, int32, float32 };
 /// The order of the two words of a number with two registers, and of the two bytes of each register.
 /// high_first: the high word has the lower address.
@@ -25,7 +25,7 @@ enum class WordOrder : std::uint8_t {
   high_first_bytes_swapped,
   low_first_bytes_swapped,
 };
-/// Returns the name in the board file.
+/// Returns the name of a word order in the board file.
 [[nodiscard]] std::string_view name_of(WordOrder order) noexcept;
 /// The unit of the quantity at a terminal. The "terminal" of a pressure generator is its air port, whose unit
 /// is kPa.
@@ -35,15 +35,15 @@ enum class ElectricalUnit : std::uint8_t { volt, milliampere, kilopascal };
 [[nodiscard]] constexpr std::uint16_t words_of(RegisterKind kind) noexcept {
   return kind == RegisterKind::uint16 || kind == RegisterKind::int16 ? 1 : 2;
 }
-/// Returns the name in the board file: "uint16" ... "float32".
+/// Returns the name of a kind in the board file: "uint16" ... "float32".
 [[nodiscard]] std::string_view name_of(RegisterKind kind) noexcept;
-/// Returns "V", "mA" or "kPa".
+/// Returns the symbol of a unit: "V", "mA" or "kPa".
 [[nodiscard]] std::string_view name_of(ElectricalUnit unit) noexcept;
 
 /// Consecutive numbers of one kind. `address` is the address in the Modbus request, from 0. The loader of the
 /// board file has subtracted the file's address_base from it.
 struct RegisterBlock {
-  std::uint8_t function = 0;  ///< function code for reading (1-4) or writing (5, 6, 16)
+  std::uint8_t function = 0;  ///< function code for reading (1 to 4) or for writing (5, 6, 16)
   std::uint16_t address = 0;
   std::uint16_t count = 0;  ///< quantity of numbers; each number has one or two registers
   RegisterKind kind = RegisterKind::uint16;
@@ -63,11 +63,11 @@ struct RegisterBlock {
 struct TerminalBlock {
   RegisterBlock registers;
   ElectricalUnit unit = ElectricalUnit::volt;
-  TwoPoints scaling;   ///< x: raw, y: in `unit`
+  TwoPoints scaling;   ///< line from the raw number (x) to the value in `unit` (y)
   double raw_min = 0;  ///< lower end of the converter's range; a command outside the range is limited to the
                        ///< range
   double raw_max = 0;
-  int bits = 0;                    ///< resolution over [raw_min, raw_max]; 0: not quantised (float)
+  int bits = 0;                    ///< resolution over [raw_min, raw_max]; 0: no quantisation (float)
   std::vector<double> error_raws;  ///< raw numbers of the inputs that are error codes and not values
 };
 
@@ -91,14 +91,14 @@ struct ReadBack {
 
 /// A write of a fixed value to one register or coil.
 struct FixedWrite {
-  std::uint8_t function = 0;  ///< 5, 6 or 16
+  std::uint8_t function = 0;  ///< function code 5, 6 or 16
   std::uint16_t address = 0;
-  std::uint16_t value = 0;  ///< for a coil: 0 or 1
+  std::uint16_t value = 0;  ///< value to write; for a coil 0 or 1
   /// Value of every second write, for a heartbeat if the board expects a change of the value.
   std::optional<std::uint16_t> alternate{};
 };
 
-/// The watchdog of the board, which acts when the daemon sends no requests.
+/// Describes the watchdog of the board, which acts when the daemon sends no requests.
 struct BoardWatchdog {
   enum class Kind : std::uint8_t {
     none,                   ///< outputs keep their last value for an unlimited time

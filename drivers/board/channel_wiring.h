@@ -15,13 +15,13 @@ namespace softgrip::drivers {
 /// An electrical value by which a sensor reports that it cannot measure (Keyence IL: 5.5 V or 3.00 mA;
 /// optoNCDT 1402: 3.75 mA).
 struct SensorErrorCode {
-  double electrical = 0;  ///< V or mA, in the unit of the input
+  double electrical = 0;  ///< electrical value in the unit of the input (V or mA)
   double tolerance = 0;   ///< >= 0; largest difference from `electrical`, in the same unit
 };
 
 /// A sensor on an input of the board.
 struct InputWiring {
-  std::size_t input = 0;                       ///< terminal, from 0
+  std::size_t input = 0;                       ///< number of the terminal, from 0
   ElectricalUnit unit = ElectricalUnit::volt;  ///< unit in the rig file; it must equal the unit of the
                                                ///< board's terminal
   TwoPoints scaling;                           ///< x: V or mA, y: mm, kPa or degrees C; the slope may be
@@ -35,9 +35,9 @@ struct InputWiring {
 
 /// A valve on an output of the board.
 struct OutputWiring {
-  std::size_t output = 0;  ///< terminal, from 0
+  std::size_t output = 0;  ///< number of the terminal, from 0
   ElectricalUnit unit = ElectricalUnit::volt;
-  TwoPoints scaling;       ///< x: V or mA, y: kPa
+  TwoPoints scaling;       ///< line from the electrical value in V or mA (x) to the pressure in kPa (y)
   std::size_t module = 0;  ///< index of the module, for a board with several modules
 };
 
@@ -60,7 +60,7 @@ struct Terminal {
 
 /// The terminals of one module of a board.
 struct ModuleTerminals {
-  std::string name;  ///< name in messages
+  std::string name;  ///< name of the module in messages
   std::vector<Terminal> inputs;
   std::vector<Terminal> outputs;
 };

@@ -13,8 +13,8 @@ namespace softgrip::drivers {
 [[nodiscard]] double decode(std::span<const std::uint16_t> words, RegisterKind kind,
                             WordOrder order) noexcept;
 
-/// Writes `raw` into `words`. For integer kinds, the number is rounded to the nearest integer and limited to
-/// the range of the kind. NaN becomes 0.
+/// Writes `raw` into the registers `words`. For integer kinds, `raw` is rounded to the nearest integer and
+/// limited to the range of the kind. NaN is written as 0.
 void encode(double raw, RegisterKind kind, WordOrder order, std::span<std::uint16_t> words) noexcept;
 
 /// Returns the raw number that the terminal's converter gives for a value in V or mA. The value is scaled,

@@ -35,7 +35,7 @@ class RoundTrip {
 [[nodiscard]] Board::Budget tcp_cost(std::size_t transactions, const std::string& plan,
                                      const std::string& host, const RoundTrip& measured);
 
-/// Returns, for example, "9.7 ms".
+/// Returns a duration as text in milliseconds, for example "9.7 ms".
 [[nodiscard]] std::string milliseconds(double seconds);
 
 /// Returns the duration of an exchange over several links that are used one after the other. The explanation

@@ -1,5 +1,5 @@
 #pragma once
-// The GPIO chips of this computer.
+// Finds the GPIO chips of this computer.
 
 #include <filesystem>
 #include <vector>

@@ -33,12 +33,12 @@ enum class GpioBias : std::uint8_t { as_is, disabled, pull_up, pull_down };
 struct GpioLineSettings {
   GpioRole role = GpioRole::emergency_stop;
   std::string chip;                     ///< a word that matches exactly one of chips_in()
-  std::string line;                     ///< name of the line; empty: `offset` is used
+  std::string line;                     ///< name of the line; if it is empty, `offset` selects the line
   std::optional<std::uint32_t> offset;  ///< number of the line in its chip, from 0
   bool active_low = false;              ///< true: a low level means active (pressed, in position, on)
   GpioBias bias = GpioBias::as_is;      ///< pull resistor; used for inputs
 };
-/// Returns, for example, "gpiochip0 line `ESTOP`, active high".
+/// Returns a description of a line, for example "gpiochip0 line `ESTOP`, active high".
 [[nodiscard]] std::string text_of(const GpioLineSettings& line);
 
 /// A change of an input between its logical levels (active, inactive).

@@ -30,7 +30,7 @@ struct LineFacts {
 struct CloseChip {
   void operator()(gpiod_chip* chip) const noexcept { gpiod_chip_close(chip); }
 };
-/// A chip that is open while its handle exists.
+/// A GPIO chip. It is closed when this handle is destroyed.
 using Chip = std::unique_ptr<gpiod_chip, CloseChip>;
 
 }  // namespace softgrip::drivers::libgpiod

@@ -81,16 +81,16 @@ ModuleTerminals terminals_of(const IioSettings& settings) {
 struct IioBoard::Parts {
   /// One wired terminal: the attribute that contains its raw number, and the scaling of this number.
   struct Converter {
-    std::string name;  // for messages
-    std::string path;  // path of the attribute
+    std::string name;  // name of the converter in messages
+    std::string path;  // path of the attribute that contains the raw number
     std::string identity;
     std::string first_identity;  // identity of the converter in the first session
     IioAttribute raw;
     double scale = 1;   // factor from the raw number to V, mA or kPa
-    double offset = 0;  // added to the raw number
+    double offset = 0;  // number that is added to the raw number
     std::string powerdown_path;
     IioAttribute powerdown;
-    IioAttribute wake;  // the powerdown attribute, open for writing
+    IioAttribute wake;  // powerdown attribute, which is open for writing
     bool is_off = false;
     bool stays_off = false;  // true: an earlier attempt to switch the output on had no effect
   };
@@ -102,7 +102,7 @@ struct IioBoard::Parts {
   }
 
   IioSettings settings;
-  std::vector<IioTerminal> written;  // the outputs, followed by the heartbeat
+  std::vector<IioTerminal> written;  // terminals that are written: the outputs, followed by the heartbeat
   std::vector<Converter> inputs;
   std::vector<Converter> outputs;  // one converter per terminal of `written`
   bool beats_second = false;

@@ -11,9 +11,10 @@
 
 namespace softgrip::drivers {
 
-/// Size of the header [bytes]: transaction id, protocol id and length (two bytes each), and unit id.
+/// Size of the header [bytes]. It consists of transaction id, protocol id and length, with two bytes each,
+/// and the unit id.
 inline constexpr std::size_t mbap_size = 7;
-inline constexpr std::size_t mbap_unit = 6;  ///< index of the unit id
+inline constexpr std::size_t mbap_unit = 6;  ///< index of the unit id in the frame
 
 /// Writes the header for the PDU (function code and data) of `pdu_size` bytes that begins at
 /// frame[mbap_size]. Returns the size of the frame.

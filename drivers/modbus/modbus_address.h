@@ -28,7 +28,7 @@ struct TcpAddress {
   bool numbered = true;        ///< true: a response contains the transaction id of its request
   bool rtu_framing = false;    ///< true: RTU frames over TCP to a serial server; RTU frames have no
                                ///< transaction id
-  double silence_s = 1.75e-3;  ///< silence between two RTU frames
+  double silence_s = 1.75e-3;  ///< silence between two RTU frames [s]
 
   bool operator==(const TcpAddress&) const = default;
 };

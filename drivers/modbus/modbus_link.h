@@ -54,7 +54,7 @@ class ModbusLink {
   [[nodiscard]] std::span<const std::uint8_t> data() const noexcept { return data_; }
   /// Returns the exception code if the last ask() returned `exception`; otherwise 0.
   [[nodiscard]] unsigned exception_code() const noexcept { return exception_code_; }
-  /// Returns the reason of the last failure.
+  /// Returns the reason of the last failure as text.
   [[nodiscard]] const char* detail() const noexcept { return detail_.data(); }
 
   /// forget_measurements() deletes the measurements for cost(). keep_measurement() adds the round trip of the
@@ -65,7 +65,7 @@ class ModbusLink {
   /// text. The text contains `plan`, a description of the transactions.
   [[nodiscard]] virtual Board::Budget cost(std::span<const TransactionSize> transactions,
                                            const std::string& plan) const = 0;
-  /// Returns, for example, "127.0.0.1:502" or "/dev/ttyUSB0 (115200 8N1)".
+  /// Returns the address of the link as text, for example "127.0.0.1:502" or "/dev/ttyUSB0 (115200 8N1)".
   [[nodiscard]] virtual std::string describe() const = 0;
 
  protected:

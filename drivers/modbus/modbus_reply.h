@@ -15,19 +15,20 @@ enum class ReplyDefect : std::uint8_t {
   none,
   transaction,  ///< the bytes are the response to another request: a late or a duplicated reply
   protocol,     ///< the bytes are not a Modbus frame
-  length,       ///< the length in the header does not match the response
+  length,       ///< the length in the header differs from the length of the expected response
   unit,         ///< the response comes from another unit
   function,     ///< the response has another function code than the request
-  byte_count,   ///< the number of data bytes does not match the request
+  byte_count,   ///< the number of data bytes differs from the number that the request requires
   echo,         ///< the response confirms a write with another address or value
   trailing,     ///< there are more bytes than the response has
   checksum,     ///< the checksum is wrong: bytes were changed in transmission (serial lines)
-  own_echo,     ///< the received bytes are the request itself (serial lines)
+  own_echo,     ///< the received bytes are the request itself, which the line returned (serial lines)
 };
 /// Returns a sentence about a defect for the event log.
 [[nodiscard]] const char* text_of(ReplyDefect defect) noexcept;
 
-/// The bit that an exception sets in the function code, and the size of an exception without framing [bytes].
+/// Bit that is added to the function code of an exception, and size of an exception without its framing
+/// [bytes].
 inline constexpr std::uint8_t exception_bit = 0x80;
 inline constexpr std::size_t exception_pdu_size = 2;
 

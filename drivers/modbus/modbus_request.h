@@ -27,7 +27,8 @@ struct ModbusRequest {
   std::uint8_t function = 0;
   std::uint16_t address = 0;                   ///< address of the read; for function codes 5, 6 and 16 the
                                                ///< address of the write
-  std::uint16_t count = 0;                     ///< number of bits or registers to read
+  std::uint16_t count = 0;                     ///< number of bits or registers to read; function codes that
+                                               ///< only write do not use it
   std::uint16_t write_address = 0;             ///< for function code 23: address of the write
   std::span<const std::uint16_t> values = {};  ///< values to write; for function code 5 one value, where any
                                                ///< value except 0 means on

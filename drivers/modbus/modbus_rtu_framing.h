@@ -1,5 +1,5 @@
 #pragma once
-// Modbus RTU on a serial line, or on a TCP connection to a serial server.
+// Link with Modbus RTU framing, on a serial line or on a TCP connection to a serial server.
 
 #include <cstdint>
 #include <span>

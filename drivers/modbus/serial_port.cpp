@@ -1,6 +1,6 @@
 #include "drivers/modbus/serial_port.h"
 
-#include <asm/termbits.h>  // termios2; excludes <termios.h>
+#include <asm/termbits.h>  // for termios2; <termios.h> cannot be included too
 #include <fcntl.h>
 #include <modbus/modbus.h>
 #include <sys/file.h>
@@ -44,7 +44,7 @@ tcflag_t line_flags(const SerialLine& line) noexcept {
 
 /// Returns true if the device really has the baud rate and the format of `line`.
 bool keeps_to(int descriptor, const SerialLine& line) noexcept {
-  termios2 settings{};  // contains the baud rate as a number
+  termios2 settings{};  // struct in which the baud rate is a number
   if (::ioctl(descriptor, TCGETS2, &settings) != 0) return false;
   constexpr tcflag_t judged = CSIZE | PARENB | PARODD | CSTOPB;
   const bool same_format = (settings.c_cflag & judged) == line_flags(line);

@@ -38,11 +38,12 @@ struct SerialFailure {
 /// Returns the silence before and after a frame [s]. If the settings of the line give a silence, returns this
 /// value, otherwise the value of the specification.
 [[nodiscard]] double silence_s(const SerialLine& line) noexcept;
-/// Sets parity and stop bits from "8N1", "8E1", "8O1", "8N2" or "8E2". Returns false for any other text.
+/// Sets parity and stop bits from the text "8N1", "8E1", "8O1", "8N2" or "8E2". Returns false for any other
+/// text.
 [[nodiscard]] bool set_format(std::string_view text, SerialLine& line) noexcept;
 /// Returns the texts that set_format() accepts.
 [[nodiscard]] std::span<const std::string_view> formats() noexcept;
-/// Returns, for example, "115200 8N1".
+/// Returns the settings of the line as text, for example "115200 8N1".
 [[nodiscard]] std::string format_of(const SerialLine& line);
 
 /// Time for which the driver of a USB adapter collects bytes before it passes them on.

@@ -1,5 +1,5 @@
 #pragma once
-// Connects to a host within a deadline, and sends to the host without waiting. No function allocates memory.
+// Connects to a host within a deadline, and sends frames without waiting. No function allocates memory.
 
 #include <cstdint>
 #include <span>

@@ -31,8 +31,8 @@ class Connection {
   Connection(Descriptor line, WireTime wire_time)
       : descriptor_(std::move(line)), stream_(RtuRequestStream{}), wire_time_(wire_time) {}
 
-  /// Reads the received bytes and passes each complete request to `serve`. Returns false if the caller must
-  /// close the connection.
+  /// Reads the received bytes, and passes each complete request to `serve`. Returns false if the connection
+  /// must be closed.
   [[nodiscard]] bool receive(const Serve& serve);
   /// Sends all parts of replies that are due. Returns false if the caller must close the connection.
   [[nodiscard]] bool send_due(Clock::time_point now);

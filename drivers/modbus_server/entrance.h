@@ -21,7 +21,7 @@ class Entrance {
   /// @param listener  a socket from listen_tcp() or listen_unix(); if it is empty, no client is accepted.
   explicit Entrance(Descriptor listener);
 
-  /// Returns the descriptor for poll(), or -1 while the listener pauses.
+  /// Returns the descriptor for poll(); -1 while the listener pauses.
   [[nodiscard]] int descriptor(Nanoseconds now) const noexcept {
     return now < rests_until_ ? -1 : listener_.get();
   }
@@ -36,7 +36,7 @@ class Entrance {
   void take_spares() noexcept;
 
   Descriptor listener_;
-  /// Spare descriptors: one for a client, and one that the client's request may need.
+  /// Reserved descriptors: one for a client, and one that the request of this client may need.
   std::array<Descriptor, 2> spares_;
   Nanoseconds rests_until_ = 0;
   bool short_ = false;

@@ -24,7 +24,8 @@ struct Listener {
 /// Listens on a numeric address. Port 0 selects a free port. The error is one sentence.
 [[nodiscard]] tl::expected<Listener, std::string> listen_tcp(const std::string& address, std::uint16_t port);
 
-/// Listens on a Unix domain socket that only this user may open. An old socket at the path is replaced.
+/// Listens on a Unix domain socket that only this user may open. If a socket already exists at the path, it
+/// is replaced.
 [[nodiscard]] tl::expected<Descriptor, std::string> listen_unix(const std::string& path);
 
 /// Returns the descriptor of the next client; empty if no client waits. The descriptor does not block and is
