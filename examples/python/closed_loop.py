@@ -5,7 +5,7 @@ import sys
 
 import softgrip
 
-TICK = 0.005  # s
+TICK = 0.005  # period of the controller [s]
 
 
 def main(model_file: str) -> None:

@@ -29,7 +29,7 @@ def main(out: str, logs: list[str], local: bool) -> int:
 
     where = ["--cores", str(os.cpu_count())] if local else ["--slurm", "--batch", "20"]
     code = subprocess.run([sys.executable, WORKFLOW, table, "--out", folder, *where]).returncode
-    if code not in (0, 6):  # 6: some rows failed
+    if code not in (0, 6):  # exit code 6: some rows of the table failed
         return code
     for name in names:
         row = json.loads((folder / "identify" / name / "row.json").read_text())
