@@ -18,7 +18,7 @@ struct NeededUnit {
   Unit unit = Unit::mm;
 };
 
-/// Returns the unit of a model as the unit that logs must have.
+/// Returns the unit of a model, which logs for this model must have too.
 [[nodiscard]] NeededUnit needed_for(const Model& model);
 
 /// Checks logs in the same way as the `softgrip` commands, and converts them. Throws InvalidArgument.

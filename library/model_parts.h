@@ -26,13 +26,13 @@ namespace library {
 /// Throws FileError with all problems in its text.
 [[noreturn]] void refuse(const document::Problems& problems);
 
-/// Returns the unit as text for messages: "mm" or "deg".
+/// Returns the name of a unit for messages: "mm" or "deg".
 [[nodiscard]] std::string in_brackets(model::OutputUnit unit);
 
 // Each of the following functions throws InvalidArgument if its requirement is not met.
 /// Requires one value for each of `count` times.
 void require_size(const std::string& argument, std::size_t size, std::size_t count, const std::string& unit);
-/// Requires finite values.
+/// Requires that all values are finite.
 void require_finite(const std::string& argument, std::span<const double> values, const std::string& unit);
 /// Requires finite and increasing times, at least `fewest` of them.
 void require_times(const std::string& argument, std::span<const double> time_s, std::size_t fewest);

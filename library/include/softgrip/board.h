@@ -19,13 +19,13 @@ namespace softgrip {
 
 /// The reason why a reading can or cannot be used.
 enum class Validity : std::uint8_t {
-  valid,         ///< usable
+  valid,         ///< the reading can be used
   none_yet,      ///< there has been no response yet
-  out_of_range,  ///< outside the electrical range of the sensor
-  sensor_error,  ///< an error code of the sensor or of the board
-  jumped,        ///< changed faster than the finger can move
+  out_of_range,  ///< the signal is outside the electrical range of the sensor
+  sensor_error,  ///< the sensor or the board reported an error code
+  jumped,        ///< the reading changed faster than the finger can move
   frozen,        ///< did not change although the command changed
-  stale,         ///< older than permitted
+  stale,         ///< the reading is older than permitted
 };
 
 /// Reading of one channel.
@@ -36,7 +36,7 @@ struct Reading {
   double temperature_c =
       std::numeric_limits<double>::quiet_NaN();  ///< temperature [degrees Celsius]; NaN: no sensor
   std::chrono::nanoseconds sampled_at{0};        ///< time of the sample
-  std::uint32_t sequence = 0;                    ///< number of responses so far
+  std::uint32_t sequence = 0;                    ///< number of responses of the board so far
   Validity validity = Validity::none_yet;        ///< validity of the reading according to the driver
 };
 
@@ -52,7 +52,7 @@ enum class BusStatus : std::uint8_t {
   watchdog_tripped,  ///< the watchdog of the board holds the outputs at their safe value
   closed_at_once,    ///< the connection was closed before the first response
 };
-/// Returns the name of the enumerator.
+/// Returns the name of a status.
 [[nodiscard]] SOFTGRIP_API std::string name_of(BusStatus status);
 
 /// An I/O board with one output and one set of inputs per channel. To write a driver, derive a class from
@@ -93,9 +93,9 @@ struct SimulatedObject {
 struct SimulatedFinger {
   Model model;                                 ///< model of the finger
   std::optional<SimulatedObject> object = {};  ///< object that is present from the start
-  double noise = 0;                            ///< standard deviation of a reading, >= 0
-  double pressure_min_kpa = 0;                 ///< lower end of the output [kPa]
-  double pressure_max_kpa = 100;               ///< upper end of the output [kPa]
+  double noise = 0;                            ///< standard deviation of the noise of a reading, >= 0
+  double pressure_min_kpa = 0;                 ///< smallest output pressure [kPa]
+  double pressure_max_kpa = 100;               ///< largest output pressure [kPa]
   std::uint64_t seed = 1;                      ///< seed of the random numbers of all noise
 };
 

@@ -20,7 +20,7 @@ namespace softgrip {
 
 /// Limits of one finger. Displacements are in the unit of the model.
 struct Limits {
-  double pressure_min_kpa = 0;       ///< smallest command [kPa]
+  double pressure_min_kpa = 0;       ///< smallest permitted command [kPa]
   double pressure_max_kpa = 0;       ///< largest command [kPa]; it must be above pressure_min_kpa
   double slew_up_kpa_per_s = 300;    ///< fastest rise of the command [kPa/s], > 0
   double slew_down_kpa_per_s = 300;  ///< fastest fall of the command [kPa/s], > 0
@@ -30,11 +30,11 @@ struct Limits {
                                      ///< the command
 };
 
-/// A command within the limits.
+/// A command that is within the limits.
 struct LimitedCommand {
   double command_kpa = 0;  ///< the command, within the pressure range and the slew limits [kPa]
-  bool saturated = false;  ///< the request is outside the pressure range
-  bool slewing = false;    ///< the request changes faster than the slew limits allow
+  bool saturated = false;  ///< true: the request is outside the pressure range
+  bool slewing = false;    ///< true: the request changes faster than the slew limits allow
   bool invalid = false;    ///< the request is not a number, so the command is the last command
 };
 
@@ -130,7 +130,7 @@ class SOFTGRIP_API Reference {
 
   /// Content of the object; its definition is not public.
   struct Parts;
-  /// Returns the content; only the library itself uses it.
+  /// Returns the content of the object, for the library itself.
   [[nodiscard]] const Parts& parts() const noexcept { return *parts_; }
 
  private:
@@ -146,7 +146,7 @@ enum class FeedforwardKind : std::uint8_t {
 
 /// Result of Feedforward::step().
 struct FeedforwardStep {
-  double pressure_kpa = 0;    ///< command [kPa]
+  double pressure_kpa = 0;    ///< command of this period [kPa]
   bool out_of_reach = false;  ///< true: because of the limits, the command cannot reach the reference
 };
 
@@ -239,7 +239,7 @@ class SOFTGRIP_API Controller {
   /// Goes to a pressure [kPa] from the next tick() on, within the slew limits and without feedback.
   void pressure(double pressure_kpa) noexcept;
 
-  /// Runs one period and returns the command.
+  /// Executes one period and returns the command.
   /// @param now      time of this period on the clock of the readings
   /// @param reading  newest reading of the finger
   [[nodiscard]] ControlOutput tick(std::chrono::nanoseconds now, const Reading& reading) noexcept;

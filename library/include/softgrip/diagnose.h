@@ -56,8 +56,10 @@ struct Diagnosis {
   Model refitted;                     ///< model of the given structure with parameters that were estimated
                                       ///< again
   Model extended;                     ///< the refitted model with the causes
-  std::string json;  ///< diagnosis.json of `softgrip diagnose`, without the experiment and the closed loop
-  std::string html;  ///< report.html, without the experiment and the closed loop
+  std::string json;  ///< content of diagnosis.json that `softgrip diagnose` writes, without the experiment
+                     ///< and the closed loop
+  std::string html;  ///< content of report.html that `softgrip diagnose` writes, without the experiment and
+                     ///< the closed loop
 };
 
 /// Diagnoses a model. Computes its error on the logs, finds the causes of this error, extends the model by
@@ -74,10 +76,10 @@ struct Change {
   std::string verdict;   ///< "unchanged", "cause_found", "ambiguous", "partly_explained" or "unexplained"
   std::string sentence;  ///< the verdict in one sentence
   std::vector<std::string> warnings;  ///< warnings about the logs and the result
-  std::vector<Cause> causes;          ///< changes of the finger; the largest change first
+  std::vector<Cause> causes;          ///< causes of the change of the finger, the largest change first
   Unit unit = Unit::mm;               ///< unit of displacements
-  std::string json;                   ///< diagnosis.json of `softgrip diagnose --healthy`
-  std::string html;                   ///< report.html of `softgrip diagnose --healthy`
+  std::string json;                   ///< content of diagnosis.json that `softgrip diagnose --healthy` writes
+  std::string html;                   ///< content of report.html that `softgrip diagnose --healthy` writes
 };
 
 /// Compares later logs of a finger with logs that were recorded when the finger was healthy. `softgrip

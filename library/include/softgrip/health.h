@@ -42,8 +42,8 @@ struct HealthIndicator {
   std::string title;                ///< name of the indicator in words
   std::string unit;                 ///< unit of value, reference, spread and values
   std::optional<double> value;      ///< value at the last point that has one; empty if no point has one
-  std::optional<double> reference;  ///< mean since the last maintenance record
-  std::optional<double> spread;     ///< standard deviation since the last maintenance record
+  std::optional<double> reference;  ///< mean of the indicator since the last maintenance record
+  std::optional<double> spread;     ///< standard deviation of the indicator since the last maintenance record
   std::vector<double> values;       ///< one value per point, for points with the recipe of the reference;
                                     ///< NaN: the point has no value
 };
@@ -68,7 +68,7 @@ struct Suspect {
 /// Health of one finger.
 struct FingerHealth {
   std::string finger;               ///< name of the channel
-  std::string state;                ///< "learning", "steady" or "alarm"
+  std::string state;                ///< state of the finger: "learning", "steady" or "alarm"
   std::string sentence;             ///< the state in one sentence
   Unit unit = Unit::mm;             ///< unit of displacements
   std::size_t grips = 0;            ///< number of recordings
@@ -94,7 +94,7 @@ struct Health {
   std::vector<FingerHealth> fingers;      ///< fingers in the order of their names
   std::vector<std::string> warnings;      ///< changes that are not attributed to a finger
   std::vector<SkippedRecording> skipped;  ///< recordings that were not used
-  std::string json;                       ///< health.json of `softgrip health`
+  std::string json;                       ///< content of health.json that `softgrip health` writes
 };
 
 /// Reports which fingers have changed, since when, and the possible causes. `softgrip health` uses the same

@@ -25,7 +25,7 @@ struct Interval {
 
 /// A parameter that was estimated or kept fixed.
 struct Estimate {
-  std::string name;              ///< for example "kelvin_voigt.k1_kpa_per_mm"
+  std::string name;              ///< name of the parameter, for example "kelvin_voigt.k1_kpa_per_mm"
   std::string unit;              ///< unit of value and interval
   double value = 0;              ///< estimated or fixed value
   std::optional<Interval> ci95;  ///< 95 % interval; empty if the parameter is fixed, at a bound, or without
@@ -64,7 +64,7 @@ enum class Structure : std::uint8_t {
 
 /// Settings of identify().
 struct IdentifyOptions {
-  Structure structure = Structure::start;  ///< choice of the structure
+  Structure structure = Structure::start;  ///< how the structure of the model is chosen
   std::optional<Model> start = {};         ///< start point of the fit; only for Structure::start
   std::size_t branches = 2;                ///< number of creep branches of the default structure, 1 to 8
   std::vector<std::string> fixed = {};     ///< names of the parameters that keep their value in `start`
@@ -96,8 +96,8 @@ struct Identification {
   std::vector<Prediction> fit;         ///< predictions of the fitted samples, one per log
   std::vector<Prediction> held_out;    ///< predictions of the samples that were not fitted, one per log
   std::vector<Prediction> validation;  ///< predictions of the logs in IdentifyOptions::validation
-  std::string json;                    ///< identify.json of `softgrip identify`
-  std::string html;                    ///< report.html of `softgrip identify`
+  std::string json;                    ///< content of identify.json that `softgrip identify` writes
+  std::string html;                    ///< content of report.html that `softgrip identify` writes
 };
 
 /// Fits a model to logs, as `softgrip identify` does. The method is maximum likelihood by nonlinear least

@@ -17,9 +17,9 @@ namespace softgrip {
 /// A measured log of one finger. All columns have one value per time. Optional columns may be empty. Fill the
 /// arrays directly, or use read_log(). Each function that gets a log checks it.
 struct Log {
-  std::string name = {};                          ///< short name for results and reports
+  std::string name = {};                          ///< short name of the log for results and reports
   std::vector<double> time_s = {};                ///< times [s], increasing; the first time counts as 0
-  std::vector<double> pressure_command_kpa = {};  ///< commanded pressure [kPa], finite
+  std::vector<double> pressure_command_kpa = {};  ///< commanded pressure [kPa]; all values must be finite
   std::vector<double> displacement = {};          ///< readings in `unit`; NaN: the reading is missing
   std::vector<double> pressure_kpa = {};          ///< measured pressure [kPa], optional; NaN: the reading is
                                                   ///< missing
@@ -67,7 +67,7 @@ enum class Drive : std::uint8_t {
 
 /// The initial state of a log.
 enum class Begin : std::uint8_t {
-  automatic,  ///< determined from the log
+  automatic,  ///< the state is determined from the log
   rest,       ///< the finger is at rest under the first pressure
   unknown,    ///< the state is unknown and is estimated from the readings
 };

@@ -16,18 +16,18 @@ namespace softgrip {
 
 /// Unit of the displacement in a log and of the output of a model.
 enum class Unit : std::uint8_t {
-  mm,   ///< displacement
-  deg,  ///< bending angle
+  mm,   ///< the output is a displacement in mm
+  deg,  ///< the output is a bending angle in degrees
 };
 
-/// Returns "mm" or "deg".
+/// Returns the name of a unit: "mm" or "deg".
 [[nodiscard]] SOFTGRIP_API std::string name_of(Unit unit);
 
 /// One parameter of a model.
 struct Parameter {
-  std::string name;   ///< for example "kelvin_voigt.k1_kpa_per_mm"
+  std::string name;   ///< name of the parameter, for example "kelvin_voigt.k1_kpa_per_mm"
   double value = 0;   ///< value in `unit`
-  std::string unit;   ///< for example "kPa/mm"; empty: no unit
+  std::string unit;   ///< unit of the parameter, for example "kPa/mm"; empty: the parameter has no unit
   double lower = 0;   ///< smallest permitted value
   double upper = 0;   ///< largest permitted value
   std::string about;  ///< description in one line
@@ -42,13 +42,14 @@ struct SimulateOptions {
   double noise = 0;  ///< standard deviation of white noise on the output, in the unit of the model; >= 0
   std::uint64_t seed = 1;                      ///< seed of all noise; equal seeds give identical results
   std::span<const double> supply_kpa = {};     ///< supply pressure [kPa], one value per sample, or empty
-  std::span<const double> temperature_c = {};  ///< temperature [degrees Celsius], one per sample, or empty
+  std::span<const double> temperature_c = {};  ///< temperature [degrees Celsius], one value per sample, or
+                                               ///< empty
 };
 
 /// Settings of Model::inverse().
 struct InverseOptions {
   double pressure_min_kpa = 0;       ///< smallest command [kPa]
-  double pressure_max_kpa = 100;     ///< largest command [kPa], above the smallest
+  double pressure_max_kpa = 100;     ///< largest command [kPa]; it must be above pressure_min_kpa
   double slew_up_kpa_per_s = 300;    ///< fastest rise of the command [kPa/s], > 0
   double slew_down_kpa_per_s = 300;  ///< fastest fall of the command [kPa/s], > 0
   double start_kpa = 0;              ///< command under which the finger rests at the first sample [kPa]
@@ -120,9 +121,9 @@ class SOFTGRIP_API Model {
 
   /// Content of the object; its definition is not public.
   struct Parts;
-  /// Creates a model from its content; only the library itself uses it.
+  /// Creates a model from its content, for the library itself.
   explicit Model(std::shared_ptr<const Parts> parts) noexcept;
-  /// Returns the content; only the library itself uses it.
+  /// Returns the content of the model, for the library itself.
   [[nodiscard]] const Parts& parts() const noexcept { return *parts_; }
 
  private:

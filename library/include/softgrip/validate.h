@@ -18,8 +18,8 @@ struct Validation {
   std::string verdict;                  ///< assessment of the predictions in one sentence
   std::vector<std::string> warnings;    ///< warnings about the data
   std::vector<Prediction> predictions;  ///< one prediction per log
-  std::string json;                     ///< validate.json of `softgrip validate`
-  std::string html;                     ///< report.html of `softgrip validate`
+  std::string json;                     ///< content of validate.json that `softgrip validate` writes
+  std::string html;                     ///< content of report.html that `softgrip validate` writes
 };
 
 /// Predicts logs with a model, as `softgrip validate` does. Throws InvalidArgument.
