@@ -99,7 +99,7 @@ struct BlockInfo {
   Station station;
   Kind kind;
   Inverse inverse;
-  std::string_view title;     ///< "Transport delay"
+  std::string_view title;     ///< title, such as "Transport delay"
   std::string_view meaning;   ///< description in one line for the reference page
   std::string_view equation;  ///< the equation as plain text
   bool repeatable = false;    ///< true: a chain may contain the block more than once (two stops, two
@@ -210,13 +210,13 @@ consteval bool keeps_contract() {
   return true;
 }
 
-/// Returns "valve", "actuator", "load" or "sensor".
+/// Returns the name of a station: "valve", "actuator", "load" or "sensor".
 [[nodiscard]] constexpr std::string_view name_of(Station station) {
   constexpr std::array<std::string_view, 4> names{"valve", "actuator", "load", "sensor"};
   return names[static_cast<std::size_t>(station)];
 }
 
-/// Returns "pressure", "element", "displacement" or "reading".
+/// Returns the name of a kind: "pressure", "element", "displacement" or "reading".
 [[nodiscard]] constexpr std::string_view name_of(Kind kind) {
   constexpr std::array<std::string_view, 4> names{"pressure", "element", "displacement", "reading"};
   return names[static_cast<std::size_t>(kind)];

@@ -12,7 +12,7 @@
 
 namespace softgrip::model {
 
-/// One block type.
+/// Description of one block type.
 struct BlockDescriptor {
   BlockInfo info;
   std::span<const ParameterSpec> parameters;  ///< parameters that do not belong to a repeated part

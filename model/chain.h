@@ -106,7 +106,7 @@ class Chain {
   }
 
   std::vector<AnyBlock<T>> blocks_;
-  std::array<Index, 4> end_{};  // for each station: index after its last block
+  std::array<Index, 4> end_{};  // for each station: index of the block after its last block
   Index first_element_ = 0, first_displacement_ = 0, first_reading_ = 0;
   bool leaps_in_parts_ = false;  // true: large pressure changes are divided, see longest_way_kpa
   double sample_time_s_;

@@ -17,7 +17,7 @@ namespace softgrip::model {
 /// One block of a model. `values` contains its parameters in the order of their declaration. In a block with
 /// repeated parts, the parameters that belong to no part come first, followed by the parameters of each part.
 struct BlockSpec {
-  std::size_t type = 0;  ///< index in catalogue()
+  std::size_t type = 0;  ///< index of the block's type in catalogue()
   std::vector<double> values;
 
   bool operator==(const BlockSpec&) const = default;
@@ -63,8 +63,8 @@ struct Model {
 
 /// The position of one value in a model.
 struct ParameterPlace {
-  std::size_t block = 0;  ///< index in Model::blocks
-  std::size_t value = 0;  ///< index in BlockSpec::values
+  std::size_t block = 0;  ///< index of the block in Model::blocks
+  std::size_t value = 0;  ///< index of the value in BlockSpec::values
 };
 
 /// Returns the total number of values in all blocks of a model.
@@ -75,7 +75,7 @@ struct ParameterPlace {
 /// Returns the path of a value, for example "kelvin_voigt.k2_kpa_per_mm". From the second block of the same
 /// type on, the path contains the number of the block: "contact_2.position_mm".
 [[nodiscard]] std::string parameter_path(const Model& model, std::size_t flat_index);
-/// Returns the flat index of the value with this path, or nullopt.
+/// Returns the flat index of the value with this path; nullopt if there is none.
 [[nodiscard]] std::optional<std::size_t> find_path(const Model& model, std::string_view path);
 /// Returns the declaration of the value with a flat index.
 [[nodiscard]] const ParameterSpec& parameter_spec(const Model& model, std::size_t flat_index);

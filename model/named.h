@@ -89,7 +89,7 @@ template <template <class> class Block>
   return position_of(model, block_type<Block>());
 }
 
-/// Returns the first block of this type, or nullptr.
+/// Returns the first block of this type; nullptr if the model has none.
 template <template <class> class Block>
 [[nodiscard]] const BlockSpec* find_block(const Model& model) {
   const auto position = position_of<Block>(model);

@@ -12,11 +12,11 @@ namespace softgrip::model {
 enum class Validity : std::uint8_t {
   valid,
   none_yet,      ///< there has been no reply yet
-  out_of_range,  ///< outside the electrical range of the sensor
+  out_of_range,  ///< the signal is outside the electrical range of the sensor
   sensor_error,  ///< the sensor or the board reported an error code
   jumped,        ///< the reading changed faster than a finger can move
   frozen,        ///< the reading did not change while the command changed
-  stale,         ///< older than the allowed age
+  stale,         ///< the reading is older than the allowed age
 };
 
 /// The measured values of a channel.
@@ -29,7 +29,7 @@ struct Reading {
   /// Output that the board reports [kPa]; NaN if the board does not report it.
   double command_readback_kpa = std::numeric_limits<double>::quiet_NaN();
   Nanoseconds sampled_at = 0;  ///< time of the request to the board; 0 before the first reply
-  std::uint32_t sequence = 0;  ///< number of replies so far
+  std::uint32_t sequence = 0;  ///< number of replies of the board so far
   Validity validity = Validity::none_yet;
 };
 

@@ -19,9 +19,9 @@ struct RegulatorNumbers {
   T filling_s{0.0};      ///< time constant while the port to the supply is open
   T venting_s{0.0};      ///< time constant while the port to the atmosphere is open, at a gauge pressure of
                          ///< 50 kPa
-  T overlap_kpa{0.0};    ///< largest error at which both ports are closed
+  T overlap_kpa{0.0};    ///< control error up to which both ports are closed
   T integral_s{0.0};     ///< integral time: with a constant error, the spool position doubles in this time
-  T full_open_kpa{0.0};  ///< error at which a port is fully open
+  T full_open_kpa{0.0};  ///< control error at which a port is fully open
 };
 
 /// The equations use e = u - p and v = e + integral of e / integral_s, limited to +-full_open_kpa. Here u is

@@ -9,10 +9,10 @@ namespace softgrip::model {
 
 enum class SignalName { tp1, tp2, sp1, sp2, steps, hold };
 
-/// Returns the signal with this name, or nullopt.
+/// Returns the test signal with this name; nullopt if there is none.
 [[nodiscard]] std::optional<SignalName> signal_named(std::string_view name);
 [[nodiscard]] std::string_view name_of(SignalName signal);
-/// Returns all signals, for help texts and tests.
+/// Returns all test signals.
 [[nodiscard]] const std::vector<SignalName>& all_signals();
 
 /// Returns the duration of the signal [s].

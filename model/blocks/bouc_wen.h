@@ -30,7 +30,7 @@ template <class T>
 struct BoucWenSkew {
   T delta_per_kpa{0.0};    ///< deviation of gamma
   T epsilon_per_kpa{0.0};  ///< deviation of eta
-  T beta_share{0.0};       ///< deviation of beta, as a share of beta
+  T beta_share{0.0};       ///< relative deviation of beta
 };
 
 /// Parameters by which the loop changes at high pressure rates.
@@ -245,7 +245,7 @@ class BoucWen {
     return grows ? T(growing_[way] + more_eta_) : T(shrinking_[way] - more_eta_);
   }
 
-  // Returns |h|^n.
+  // Returns |h|^n, where n is the exponent.
   template <class U>
   [[nodiscard]] U power(const U& h) const {
     const U magnitude = value_of(h) < 0.0 ? U(-h) : h;

@@ -76,7 +76,7 @@ class DuhemHysteresis {
   }
 
   T gain_;
-  T unloading_per_kpa_;  // 1/unloading
+  T unloading_per_kpa_;  // 1 divided by the unloading length
   T loading_per_kpa_;
   bool falling_ = false;
   T wound_kpa_{0.0};  // state z

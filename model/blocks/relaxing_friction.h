@@ -66,8 +66,8 @@ class RelaxingFriction {
   }
 
   T gain_;
-  T per_kpa_;        // 1/width
-  T per_s_;          // 1/tau
+  T per_kpa_;        // 1 divided by the width
+  T per_s_;          // 1 divided by tau
   T held_kpa_{0.0};  // state z
   T pressure_{0.0};
   T output_{0.0};

@@ -99,7 +99,7 @@ class ValveStiction {
     T past(0.0);
     for (T start = level(up); is_beyond(in.end, start, up); start = level(up)) {
       if (is_beyond(in.begin, start, up)) {
-        jump(in.begin, next);  // at the beginning of the segment
+        jump(in.begin, next);  // this jump is at the beginning of the segment
         continue;
       }
       const T now = in.duration_s * in.fraction_at(start);

@@ -234,7 +234,7 @@ class ModelReader {
   bool has_element_ = false;
 };
 
-// Returns a double-quoted YAML scalar.
+// Returns the text as a double-quoted YAML scalar.
 std::string double_quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
