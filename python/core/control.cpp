@@ -55,7 +55,7 @@ Validity validity_of(const std::string& word) {
   throw InvalidArgument("validity", "'" + word + "' is not the validity of a reading");
 }
 
-/// Longest time in s that the clock of a board can show, about 30 years.
+/// Longest time that the clock of a board can show [s], about 30 years.
 constexpr double longest_s = 1e9;
 
 std::chrono::nanoseconds duration_of(const char* argument, double seconds) {

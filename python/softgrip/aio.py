@@ -1,4 +1,4 @@
-"""The client for asyncio."""
+"""The client of softgripd for asyncio."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ class AsyncGripper:
             yield event
 
     async def ask(self, command: str, **keys: Any) -> Mapping[str, Any]:
-        """Sends any command of the socket API and returns its result."""
+        """Sends a request of the socket API and returns its result. `command` is the name of the request."""
         if self._writer is None:
             raise ConnectionLost(f"{self.path}: not connected")
         number, line = self._session.request(command, keys)
@@ -133,7 +133,7 @@ class AsyncGripper:
             self._session.forget(number)
 
     async def _stop_own(self) -> None:
-        """Stops the sequences of this client, as Gripper does."""
+        """Stops the sequences that this client started, as Gripper does."""
         failure: Optional[SoftgripError] = None
         for start_id in tuple(self._session.starts):
             try:

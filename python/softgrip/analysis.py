@@ -100,7 +100,7 @@ def identify(logs: Logs, structure: str = "start", *, start: Optional[Model] = N
 
 
 def validate(model: Model, logs: Logs, *, drive: str = "command", begin: str = "auto", held: bool = False) -> Validation:
-    """Predicts logs with a model, as `softgrip validate` does."""
+    """Predicts logs with a model and rates the predictions, as `softgrip validate` does."""
     found = _core.validate(_model("model", model), _columns("logs", logs), text_of("drive", drive), text_of("begin", begin),
                            _flag("held", held))
     found.update(predictions=_predictions(found["predictions"]), warnings=tuple(found["warnings"]))

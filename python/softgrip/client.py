@@ -1,4 +1,4 @@
-"""The blocking client."""
+"""The client of softgripd whose methods block."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ class Gripper:
             yield self._session.events.popleft()
 
     def ask(self, command: str, **keys: Any) -> Mapping[str, Any]:
-        """Sends any command of the socket API and returns its result."""
+        """Sends a request of the socket API and returns its result. `command` is the name of the request."""
         return self._connected().ask(self._session, command, keys, time.monotonic() + self.answer_s)
 
     def _open(self) -> Hello:

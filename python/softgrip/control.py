@@ -316,7 +316,7 @@ class ControlOutput:
 
     command: float  # command for the board [kPa], within the limits
     reference: float  # present value of the reference; NaN while no reference is followed
-    displacement: float  # last valid reading
+    displacement: float  # the last valid reading
     feedforward: float  # feedforward part of the command [kPa]
     feedback: float  # feedback part of the command [kPa]
     residual: float  # reading minus model output

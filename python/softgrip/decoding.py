@@ -59,7 +59,7 @@ def decoded(cls: type[T], value: Any, where: str) -> T:
 def checked(kind: Any, value: Any, where: str) -> Any:
     """Returns the value if it has the type `kind` of the annotation. Raises ProtocolError otherwise."""
     origin, inner = typing.get_origin(kind), typing.get_args(kind)
-    if origin is Union:  # an Optional
+    if origin is Union:  # the annotation is Optional[...]
         return None if value is None else checked(inner[0], value, where)
     if origin is tuple:
         items = _is(list, "list", value, where)

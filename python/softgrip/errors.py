@@ -1,4 +1,4 @@
-"""The exceptions of the package, with the possible reactions of a program."""
+"""The exceptions of the package. The docstring of each exception describes its cause."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class ConnectionLost(SoftgripError):
 
 
 class NotAnswered(SoftgripError, TimeoutError):
-    """The daemon or the grip exceeded the given time."""
+    """The daemon did not reply, or the grip did not end, within the given time."""
 
 
 class ProtocolError(SoftgripError):

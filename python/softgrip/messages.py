@@ -54,7 +54,7 @@ class Hello(_AsSaid):
     api: int
     version: str
     started_at: str  # start time of the daemon, UTC; the ids of its events begin at this time
-    role: str  # "look" or "operate"
+    role: str  # role of the client: "look" or "operate"
     commands: tuple[str, ...]
     capabilities: tuple[str, ...]
 
@@ -66,7 +66,7 @@ class Fault(_AsSaid):
     meaning: str
     remedy: str
     channel: Optional[str]  # name of the channel; None: the whole rig
-    next: str  # the action that resets the fault
+    next: str  # action of the user that resets the fault
 
 
 @dataclasses.dataclass(frozen=True)
@@ -119,8 +119,8 @@ class Status:
     rig: str
     version: str
     rate_hz: float
-    time_s: float  # since the daemon's start
-    json: Mapping[str, Any] = dataclasses.field(repr=False, compare=False)  # the complete status
+    time_s: float  # time since the daemon's start
+    json: Mapping[str, Any] = dataclasses.field(repr=False, compare=False)  # the complete status as the daemon sent it
 
     @classmethod
     def of(cls, json: Mapping[str, Any], where: str) -> Status:
@@ -138,7 +138,7 @@ class Status:
 class Event(_AsSaid):
     id: int
     time_s: float
-    at: str  # UTC
+    at: str  # time of the event, UTC
     kind: str
     severity: str
     text: str
@@ -178,7 +178,7 @@ class Problem(_AsSaid):
 
 @dataclasses.dataclass(frozen=True)
 class Sequence(_AsSaid):
-    """A file of the daemon's sequence directory."""
+    """A sequence file in the daemon's sequence directory."""
 
     name: str
     about: str

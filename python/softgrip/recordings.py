@@ -22,7 +22,7 @@ from .errors import MalformedFile
 Array = npt.NDArray[Any]
 
 
-LARGEST_CSV = 512 << 20  # bytes, as in the softgrip commands
+LARGEST_CSV = 512 << 20  # largest size of a CSV file [bytes], as in the softgrip commands
 LARGEST_JSON = 64 << 20
 
 
@@ -90,7 +90,7 @@ def read_columns(path: Path) -> dict[str, Array]:
 
 
 def read_report(path: Path) -> Mapping[str, Any]:
-    """Reads identify.json, diagnosis.json or run.json. Lists of numbers become arrays."""
+    """Reads identify.json, diagnosis.json or run.json. Lists of numbers are returned as arrays."""
     return _with_arrays(_json_object(path))  # type: ignore[no-any-return]
 
 
@@ -108,7 +108,7 @@ def _with_arrays(value: Any) -> Any:
 class Recording:
     """A recorded run: a folder with run.csv and run.json."""
 
-    about: Mapping[str, Any]  # run.json
+    about: Mapping[str, Any]  # content of run.json
     channels: Mapping[str, Mapping[str, Array]]  # for each finger, its columns of run.csv; all have the same length
 
     @classmethod

@@ -1,4 +1,4 @@
-"""Results of identification, validation, diagnosis and health: typed values, a table for notebooks, and plots."""
+"""Results of identification, validation, diagnosis and health, as objects with a table for notebooks and with plots."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ class _Reported:
         return json.loads(self.json)  # type: ignore[no-any-return]
 
     def save_html(self, path: Any) -> None:
-        """Writes the report page of the command."""
+        """Writes the report page of the command to a file."""
         with open(path, "w", encoding="utf-8") as file:
             file.write(self.html)
 

@@ -27,7 +27,7 @@ NOT_RUNNING = "named_start_not_running"
 
 
 def default_path() -> str:
-    """The default path of softgripd's socket."""
+    """Returns the default path of softgripd's socket."""
     return os.environ.get("SOFTGRIP_SOCKET") or "/run/softgrip/softgripd.sock"
 
 
@@ -41,7 +41,7 @@ def start_keys(sequence: str, text: Optional[str], parameters: Mapping[str, floa
 
 
 def error_of(error: Optional[Failure]) -> SoftgripError:
-    """Returns the exception for the error of a reply."""
+    """Returns the exception that belongs to the error in a reply."""
     if error is None:
         return ProtocolError("a reply lacks 'error'")
     if error.code == "sequence_refused":
@@ -75,7 +75,7 @@ class Session:
         self.started_at = ""
         self.last_event: Optional[int] = None
         self.grip = 0  # request number of the last start
-        self.failure: Optional[Exception] = None  # the daemon's reason for closing the connection
+        self.failure: Optional[Exception] = None  # reason that the daemon gave before it closed the connection
         # The starts of this client that may still run, by start id. The value is the start's request number in the daemon's
         # events, once this number is known.
         self.starts: dict[str, Optional[int]] = {}

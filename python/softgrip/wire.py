@@ -30,7 +30,7 @@ class Wire:
         self._socket = None
 
     def ask(self, session: Session, command: str, keys: Mapping[str, Any], end: float) -> Mapping[str, Any]:
-        """Sends a request and returns its result."""
+        """Sends a request, waits for the reply, and returns the result."""
         number, line = session.request(command, keys)
         try:
             self._send(session, line, end)
@@ -41,7 +41,7 @@ class Wire:
             session.forget(number)
 
     def read(self, session: Session, end: float) -> None:
-        """Receives at least one line."""
+        """Receives lines until at least one is complete, and processes them."""
         while b"\n" not in self._input:
             self._receive(session, end)
         *lines, self._input = self._input.split(b"\n")
