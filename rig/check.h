@@ -13,14 +13,14 @@
 namespace softgrip::rig {
 
 enum class FileKind : std::uint8_t { unknown, rig, board_map, model, sequence, plc, web };
-/// Returns "rig", "board map", "model", "sequence", "PLC gateway", "page" or "unknown".
+/// Returns the name of a kind: "rig", "board map", "model", "sequence", "PLC gateway", "page" or "unknown".
 [[nodiscard]] std::string_view name_of(FileKind kind) noexcept;
 
 /// Determines the kind of a document from the keys at its top level. A misspelt key has half the weight of a
 /// correct key. If the document has no known key, a problem is reported.
 [[nodiscard]] FileKind kind_of(const document::Document& document, document::Problems& problems);
 
-/// One file that was checked.
+/// One file that was checked, and the result of its check.
 struct CheckedFile {
   std::string path;
   FileKind kind = FileKind::unknown;

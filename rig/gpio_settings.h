@@ -20,7 +20,7 @@ struct GpioSettings {
   /// True: the enable output is switched off while a fault is latched. An emergency stop switches it off in
   /// any case.
   bool enable_drops_on_fault = true;
-  std::vector<drivers::GpioLineSettings> lines;  ///< at most one per role
+  std::vector<drivers::GpioLineSettings> lines;  ///< settings of the lines; at most one line for each purpose
   std::vector<document::Problem> places;         ///< for each line, its location in the rig file, as a
                                                  ///< problem without a message
 

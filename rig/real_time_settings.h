@@ -14,8 +14,8 @@ struct RealTimeSettings {
   /// SCHED_FIFO priority of the loop thread, 1 to 80; 0: no real-time scheduling. The kernel threads on which
   /// the loop depends have priorities above 80. The priority of the bus thread is 1 lower.
   int priority = 70;
-  /// If true, the daemon calls mlockall() for current and future pages, does not trim the heap, and does not
-  /// use mmap() for large blocks.
+  /// If true, the daemon locks its present and future pages with mlockall(). It also does not return heap
+  /// memory to the kernel, and does not use mmap() for large blocks.
   bool lock_memory = true;
   /// Number of bytes of its stack that each real-time thread writes before the first tick, so that the pages
   /// are resident in memory.

@@ -50,7 +50,8 @@ struct InputFile {
 struct RigFile {
   std::string name;
   std::string path;                            ///< path of the rig file, as the user gave it
-  control::RigSettings settings;               ///< channels in the order of the file
+  control::RigSettings settings;               ///< settings of the controller; channels are in the order of
+                                               ///< the file
   std::vector<ValveFacts> valves;              ///< one entry per channel
   std::vector<drivers::ChannelWiring> wiring;  ///< one entry per channel, for every kind of board
   std::variant<simulation::SimulatedBoardSettings, drivers::ModbusSettings, drivers::IioSettings> board;

@@ -34,7 +34,7 @@ struct Context {
   std::map<std::string, document::Location> names;  ///< names of the channels, with their locations in the
                                                     ///< file
   UsedTerminals inputs;
-  UsedTerminals thermometers;  ///< inputs of temperature sensors, which several channels may share
+  UsedTerminals thermometers;  ///< inputs for temperature sensors; several channels may share such an input
   UsedTerminals outputs;
   std::map<std::string, std::optional<model::Model>> models;  ///< models by path, so that each file is read
                                                               ///< only once

@@ -6,7 +6,7 @@
 
 namespace softgrip::rig {
 
-/// A Unix domain stream socket in the file system.
+/// The file of a Unix domain stream socket.
 struct SocketFile {
   std::string path;  ///< path of the socket file; empty: there is no such socket
   /// Permissions of the socket file.
