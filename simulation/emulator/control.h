@@ -23,7 +23,7 @@ namespace softgrip::simulation {
 
 struct ControlAnswer {
   std::string line;   ///< reply to the command: "ok", "error: ..." or the status, without a line break
-  bool quit = false;  ///< the command requests the end of the emulator
+  bool quit = false;  ///< true: the command requests the end of the emulator
 };
 
 /// Executes one command line at the time `now`.

@@ -29,7 +29,7 @@ struct EmulatorSettings {
   std::vector<EmulatedModule> modules;
   Wire wire = Wire::tcp;
   std::vector<drivers::ChannelWiring> wiring;
-  std::vector<simulation::PlantSettings> plants;  ///< one per channel
+  std::vector<simulation::PlantSettings> plants;  ///< simulated fingers, one per channel
   std::vector<FaultSpec> faults;
 };
 

@@ -18,7 +18,7 @@
 namespace softgrip::simulation {
 
 struct ServerSockets {
-  std::vector<Descriptor> modbus;  ///< listening sockets, one per link of a network
+  std::vector<Descriptor> modbus;  ///< listening sockets, one for each link of a network
   /// Settings of the serial line; empty if the links are on a network. With them, the line is opened again
   /// after the fault `disconnect`.
   std::optional<drivers::SerialLine> line;

@@ -51,7 +51,7 @@ struct SimulatedChannel {
   double valve_min_kpa = 0;  ///< lowest pressure of the valve; below 0 for vacuum
   double valve_max_kpa = 0;  ///< highest pressure of the valve; commands outside the valve's range are
                              ///< limited, and this is reported
-  double vented_kpa = 0;     ///< output after a watchdog trip
+  double vented_kpa = 0;     ///< output of the valve after the watchdog has tripped
   double sensor_min_mm = 0;  ///< lower end of the measuring range; readings outside the range are not valid
   double sensor_max_mm = 0;
   int output_bits = 0;  ///< resolution over the valve's range; 0: no quantisation
