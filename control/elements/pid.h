@@ -37,8 +37,8 @@ class Pid {
  public:
   Pid(const PidSettings& settings, double tick_s) noexcept;
 
-  /// Makes the request of the next step() equal to `command_kpa`, whatever the error and the feedforward are:
-  /// the integrator absorbs the difference. Call this function at a start, when the mode changes from hold or
+  /// Makes the request of the next step() equal to `command_kpa`, for any error and any feedforward: the
+  /// integrator absorbs the difference. Call this function at a start, when the mode changes from hold or
   /// pressure to displacement, and for a new feedforward.
   void align(double command_kpa) noexcept;
 

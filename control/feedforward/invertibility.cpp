@@ -66,9 +66,9 @@ void look(const model::Chain<double>& chain, double pressure_kpa, double tick_s,
 }
 
 /// Moves a chain through its working range and checks the slope at every step. The first loading and the full
-/// unloading reach the outermost hysteresis states, whatever the initial state is. Inner loops and a slow
-/// pass cover the other states. In the slow pass, creep changes the state of the blocks that depend on
-/// displacement. The pressures go from 0 kPa up and down to the limits.
+/// unloading reach the outermost hysteresis states from any initial state. Inner loops and a slow pass cover
+/// the other states. In the slow pass, creep changes the state of the blocks that depend on displacement. The
+/// pressures go from 0 kPa up and down to the limits.
 Worst worst_gain(const model::Model& model, const LimitSettings& limits, double tick_s) {
   constexpr int steps = 200;
   constexpr std::array<double, 10> turns{1, 0, 1, 0.3, 0.8, 0.5, 0.6, 0, 0.4, 0};

@@ -110,7 +110,7 @@ class Supervisor {
   const PreparedSequence* sequence_ = nullptr;  ///< set from the acceptance of a start until the end of the
                                                 ///< sequence
   std::uint32_t start_request_ = 0;
-  std::uint32_t halted_by_ = 0;  ///< id of the newest request to vent, or to stop whatever sequence runs
+  std::uint32_t halted_by_ = 0;  ///< id of the newest request to vent, or to stop any sequence
   std::uint32_t taken_ = 0;      ///< id of the newest request of any other kind; such requests arrive in the
                                  ///< order of their ids
   /// Ids of starts that a stop request named before they arrived. The array is large enough, because the
