@@ -133,7 +133,7 @@ struct SharedState {
   Broadcast<StampedEvent> events;
   Ring<PanelEvent> panel_events{64};
   Ring<control::Request> vents{16};  ///< requests to vent; the loop reads this queue first
-  Ring<control::Request> stops{16};  ///< requests to stop whatever sequence runs; the loop reads this queue
+  Ring<control::Request> stops{16};  ///< requests to stop any running sequence; the loop reads this queue
                                      ///< second
   /// Requests to stop one particular start, at most one request per start; the loop reads this queue third.
   /// The capacity is sufficient for all starts that wait and for some that were read just before.

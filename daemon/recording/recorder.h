@@ -36,9 +36,9 @@ struct RecorderStatus {
 /// thread.
 class Recorder {
  public:
-  /// If `only_folder` is not empty, all data from start to stop are recorded in this folder, whatever the
-  /// recording mode is. `origin` is time 0 of the event log. All referenced objects must exist longer than
-  /// the recorder.
+  /// If `only_folder` is not empty, all data from start to stop are recorded in this folder, in every
+  /// recording mode. `origin` is time 0 of the event log. All referenced objects must exist longer than the
+  /// recorder.
   Recorder(const rig::RecorderSettings& settings, const Provenance& provenance, std::string only_folder,
            Nanoseconds origin, SharedState& shared, EventLog& events, const SequenceStore& sequence_store);
   Recorder(const Recorder&) = delete;

@@ -58,12 +58,12 @@ std::string real_path(const std::string& path) {
 std::string name_of(const drivers::ModbusAddress& link, std::uint8_t unit) {
   if (const auto* tcp = std::get_if<drivers::TcpAddress>(&link))
     return fmt::format("modbus {} port {} unit {}", numeric(tcp->host), tcp->port, unit);
-  // A serial line has only one client (master), whatever unit addresses are used.
+  // A serial line has only one client (master), even if it reaches modules with different unit addresses.
   return "serial " + real_path(std::get<drivers::SerialLine>(link).device);
 }
 
-/// Returns a name for a converter. The same converter gets the same name, whatever word the rig file uses for
-/// it.
+/// Returns a name for a converter. The name does not depend on the word that the rig file uses for the
+/// converter.
 std::string name_of(const std::vector<ComputerDevice>& there, const std::string& word,
                     const std::string& root) {
   const auto device = only_device(there, word, "converter");

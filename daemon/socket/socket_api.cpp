@@ -255,7 +255,7 @@ void SocketApi::stop(ClientId client, const ClientRequest& request, Nanoseconds 
   ask(client, request.id, Kind::stop, nullptr, now);
 }
 
-/// Stops one start, whatever its state is: not received yet, being loaded, passed to the loop, or running.
+/// Stops one start in any of its states: not received yet, being loaded, passed to the loop, or running.
 void SocketApi::stop_of(ClientId client, const ClientRequest& request, Nanoseconds now) {
   const std::string& id = request.start_id;
   if (!id.empty() && planned_ && !planned_->abandoned && planned_->start_id == id) {
@@ -277,8 +277,7 @@ void SocketApi::stop_of(ClientId client, const ClientRequest& request, Nanosecon
 }
 
 /// Lists the sequences of the directory. A separate thread reads their files, so that a vent request never
-/// waits for the disk. If the directory blocks, only one thread is blocked, whatever the number of requests
-/// is.
+/// waits for the disk. If the directory blocks, only one thread is blocked, even if there are many requests.
 void SocketApi::list_sequences(ClientId client, std::optional<std::uint64_t> id) {
   if (!listing_) {
     std::packaged_task<std::vector<SequenceLoader::Listed>()> read(
