@@ -141,7 +141,7 @@ class TreeBuilder final : public YAML::EventHandler {
     }
     if (anchor != 0) refuse(at, "an anchor (`&name`) is not accepted here", "remove it");
     // The parser reports the tag "?" for a plain node and "!" for a quoted node. It reports "!" also for a
-    // node with a `!` in the text, so the text decides.
+    // node with a `!` in the text, so the `!` is searched in the text.
     const auto position = static_cast<std::size_t>(std::max(mark.pos, 0));
     const bool written = position < document_.text.size() && document_.text[position] == '!';
     if ((!tag.empty() && tag != "?" && tag != "!") || (tag == "!" && written)) {

@@ -53,8 +53,7 @@ class Problems {
   /// line break.
   [[nodiscard]] std::string format() const;
 
-  /// Returns the problems without repetitions. The same problem occurs twice if a file was read more than
-  /// once.
+  /// Returns the problems without repetitions. A problem is repeated if a file was read more than once.
   [[nodiscard]] Problems without_repeats() const;
 
  private:

@@ -55,8 +55,8 @@ class MapReader {
   /// Reads one of the texts in `choices` and returns the index of this text. After a problem, returns 0.
   std::size_t choice(std::string_view key, const std::vector<std::string>& choices);
   std::optional<std::size_t> optional_choice(std::string_view key, const std::vector<std::string>& choices);
-  /// Returns the node under a key, whatever its kind is. If the key is absent, returns nullptr. In this case,
-  /// reports a problem if `required` is true.
+  /// Returns the node under a key; the node may be of any kind. If the key is absent, returns nullptr. In
+  /// this case, reports a problem if `required` is true.
   const Node* child(std::string_view key, bool required);
   /// Returns the items of a sequence under a key. If the key is absent, returns an empty list. In this case,
   /// reports a problem if `required` is true.
