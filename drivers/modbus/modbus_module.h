@@ -109,7 +109,7 @@ class ModbusModule {
   std::vector<std::vector<std::uint16_t>> replies_;  ///< one reply per read of the plan; a bit is stored as 0
                                                      ///< or 1
   Nanoseconds sampled_at_ = 0;
-  std::uint32_t unlooked_ = 0;  ///< number of exchanges since the last exchange that read first
+  std::uint32_t unlooked_ = 0;  ///< number of exchanges since the last exchange that read before it wrote
   bool confirmed_ = false;      ///< true: the last exchange read back the values that it had written
   bool reads_first_ = false;
   bool alternate_due_ = false;  ///< true: the next write of the heartbeat has the alternate value
