@@ -78,7 +78,7 @@ class SOFTGRIP_API Model {
 
   /// Writes a model file. load() reads an equal model from this file. Throws FileError.
   void save(const std::string& path) const;
-  /// Returns the text of a model file. The numbers have so many digits that parse() gives an equal model.
+  /// Returns the text of a model file. The numbers have all digits that parse() needs to give an equal model.
   [[nodiscard]] std::string yaml() const;
 
   /// Returns the name of the model.
