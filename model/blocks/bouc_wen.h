@@ -178,7 +178,7 @@ class BoucWen {
   /// Returns dh/dp at the present state, for a rising or falling pressure [mm/kPa].
   [[nodiscard]] T slope(bool rising) const { return slope_at(hysteresis_, rising ? 1.0 : -1.0); }
   [[nodiscard]] const T& alpha_mm_per_kpa() const { return alpha_; }
-  /// Returns beta for loading or for unloading, whichever is larger.
+  /// Returns the larger of the two values of beta for loading and for unloading.
   [[nodiscard]] const T& beta_mm_per_kpa() const {
     return value_of(beta_[0]) > value_of(beta_[1]) ? beta_[0] : beta_[1];
   }
