@@ -23,7 +23,8 @@
 
 namespace softgrip::rig {
 
-/// What a valve does when its power fails. The daemon reports this at start-up.
+/// Behaviour of a valve when its power fails: it vents, or it holds the pressure. The daemon reports the
+/// behaviour at start-up.
 enum class PowerLoss : std::uint8_t { vents, holds };
 
 /// Properties of a channel's valve that do not depend on its wiring.
@@ -58,7 +59,7 @@ struct RigFile {
   std::optional<std::uint64_t> seed;  ///< seed of a simulated board, as in the file; empty if the file gives
                                       ///< none
   /// Text of `accept_no_watchdog`. With this key, the file accepts a board that does not vent by itself.
-  /// Empty if the file does not have the key.
+  /// The text is empty if the file does not have the key.
   std::string accept_no_watchdog;
   /// True: the file accepts a rate that the bus may not reach. Without this key, such a rate is an error.
   bool accept_over_budget = false;
