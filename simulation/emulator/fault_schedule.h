@@ -24,7 +24,7 @@ class FaultSchedule {
   /// Returns the next scheduled time at which a fault begins or ends.
   [[nodiscard]] std::optional<Nanoseconds> next_change() const;
 
-  /// Begins a fault now, whatever its at_s is. Returns false if no fault has this name.
+  /// Begins a fault now, independent of its at_s. Returns false if no fault has this name.
   bool trigger(std::string_view name, Nanoseconds now);
   /// Ends a fault. After that, only trigger() can begin it. Returns false if no fault has this name.
   bool clear(std::string_view name);
