@@ -16,8 +16,8 @@ struct LimitSettings {
   double pressure_min_kpa = 0;
   double pressure_max_kpa = 0;        ///< largest command; it must be above pressure_min_kpa
   double slew_up_kpa_per_s = 0;       ///< > 0; largest rate of increase of the command
-  double slew_down_kpa_per_s = 0;     ///< > 0; largest rate of increase of the command
-  double displacement_min_mm = 0;     ///< > 0; largest rate of decrease of the command
+  double slew_down_kpa_per_s = 0;     ///< > 0; largest rate of decrease of the command
+  double displacement_min_mm = 0;     ///< lower limit of references
   double displacement_max_mm = 0;     ///< upper limit of references; it must be above displacement_min_mm
   double displacement_margin_mm = 0;  ///< >= 0; a reading outside the displacement range by more than this
                                       ///< margin is a fault

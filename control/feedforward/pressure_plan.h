@@ -17,8 +17,8 @@ struct PressurePlan {
   double start_s = 0;  ///< time of the first point on the reference's clock
   double step_s = 0;   ///< time between points
   std::vector<double> pressure_kpa;
-  std::vector<double> displacement_mm;  ///< reference for which the plan was computed
-  Reference reference;                  ///< the reference that was planned
+  std::vector<double> displacement_mm;  ///< displacement of the model at the times of the points
+  Reference reference;                  ///< reference for which the plan was computed
   double begin_s = 0;                   ///< time on the plan's clock at which the step with this reference
                                         ///< starts
   double rmse_mm = 0;                   ///< root mean square of the difference between model and reference
