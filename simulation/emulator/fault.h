@@ -44,8 +44,8 @@ enum class FaultKind : std::uint8_t {
   ignored_write,  ///< writes are confirmed but have no effect
   // faults of a channel
   sensor_stuck,         ///< the sensor repeats its last value
-  sensor_jumping,       ///< the reading has the offset by_mm in every second interval of interval_s
-  sensor_out_of_range,  ///< in every second interval of interval_s, by_mm is added to the reading
+  sensor_jumping,       ///< in every second interval of interval_s, by_mm is added to the reading
+  sensor_out_of_range,  ///< the sensor gives no valid reading
   line_blocked,         ///< the pressure of the finger stays constant
   line_leaking,         ///< the finger receives (1 - share) of the commanded pressure
   object_removed,       ///< the object is removed, and put back at the end of the fault
