@@ -82,7 +82,7 @@ struct StatusBlock {
 
 /// Registers in which the board reports its outputs.
 struct ReadBack {
-  RegisterBlock registers;   ///< registers of the outputs, with the kind and the scaling of the outputs
+  RegisterBlock registers;  ///< registers to read; their numbers have the kind and the scaling of the outputs
   double tolerance_raw = 0;  ///< a larger difference from the written value means that the write was refused
   /// Largest number of exchanges until the board reports a written value. Until then, the values that were
   /// written before it are also accepted.
