@@ -47,7 +47,7 @@ class ThreadBudget {
     return 0;
   }
   void give_back(std::size_t threads) noexcept { idle_ += static_cast<std::ptrdiff_t>(threads); }
-  /// Counts a thread as computing after it has waited for other threads. Until one of the other threads ends,
+  /// Counts the calling thread as computing after it has waited for other threads. Until another thread ends,
   /// one thread more than the budget allows may compute.
   void go_on() noexcept { --idle_; }
 
