@@ -21,8 +21,7 @@ struct LimitSettings {
   double displacement_max_mm = 0;     ///< upper limit of references; it must be above displacement_min_mm
   double displacement_margin_mm = 0;  ///< >= 0; a reading outside the displacement range by more than this
                                       ///< margin is a fault
-  double rest_kpa = 0;  ///< pressure of every safe state; resting_kpa() returns it after limiting it to the
-                        ///< pressure range
+  double rest_kpa = 0;  ///< pressure of every safe state; resting_kpa() limits it to the pressure range
 };
 
 /// A command that is within the limits, and the limits that changed the request.

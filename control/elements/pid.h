@@ -69,8 +69,8 @@ class Pid {
   PidSettings settings_;
   double tick_s_;
   double filter_keep_;     ///< share of the derivative filter's state that remains per tick
-  double tracking_share_;  ///< for back_calculation: share of the pressure removed by the limits by which the
-                           ///< integral is reduced per tick
+  double tracking_share_;  ///< for back_calculation: share of the pressure removed by the limits that is
+                           ///< subtracted from the integral in each tick
   double integral_kpa_ = 0;
   double rate_mm_per_s_ = 0;  ///< filtered derivative of the measurement
   double last_error_mm_ = 0;

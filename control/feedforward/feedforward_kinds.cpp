@@ -36,8 +36,8 @@ constexpr double clock_rounding_s = 1e-6;
 constexpr double plan_fade_s = 3;
 
 model::Model bouc_wen_of(const model::Model& model) {
-  // The asymmetry of the hysteresis is a block of its own. It is kept, because it is a part of the hysteresis
-  // element.
+  // The asymmetry of the hysteresis is a separate block. The block is kept, because it is a part of the
+  // hysteresis element.
   return model::only(model, [](const model::BlockInfo& info) {
     return model::is<model::BoucWen, model::AsymmetricBoucWen, model::DuhemHysteresis>(info);
   });

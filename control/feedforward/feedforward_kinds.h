@@ -97,7 +97,7 @@ class FullModelFeedforward {
   double easy_mm_per_s2_;                   ///< acceleration that the finger reaches within the slew limits
   double easy_mm_per_s_;                    ///< speed that the finger reaches within the slew limits
   std::array<double, 2> last_target_mm_{};  ///< target displacements of the last two ticks, newest first
-  double last_displacement_mm_ = 0;         ///< displacement according to the plan, one tick earlier
+  double last_displacement_mm_ = 0;         ///< displacement that the plan gave one tick earlier
   Reference fade_;  ///< fade-out of the difference after enter() or after a jump of the reference, on the
                     ///< clock of the reference
 };
@@ -130,8 +130,8 @@ class PlannedFeedforward {
   double origin_s_ = 0;
   bool on_plan_ = false;
   double last_kpa_ = 0;
-  double difference_kpa_ = 0;  ///< difference between the previous pressure and the first pressure of the new
-                               ///< plan, or of its replacement without a plan
+  double difference_kpa_ = 0;  ///< difference between the last pressure of the previous source (plan or
+                               ///< settled gain) and the first pressure of the new source
   double fade_left_s_ = 0;     ///< remaining time of the fade-out
   bool entering_ = true;
 };

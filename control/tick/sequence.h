@@ -79,7 +79,7 @@ struct Target {
   double value = 0;
   bool at_rest = false;   ///< true: the target is the rest pressure of the channel; `value` is not used
   double speed = 0;       ///< 0: the ramp has the duration duration_s
-  double duration_s = 0;  ///< if it is 0 and speed is 0, the ramp is as fast as the limits allow
+  double duration_s = 0;  ///< if duration_s and speed are 0, the ramp is as fast as the limits allow
 };
 
 struct Verify {
@@ -142,8 +142,8 @@ struct Bounds {
 
 /// The gripping pressure of a grip after its first contact.
 struct Squeeze {
-  double by_kpa = 0;           ///< pressure above that of the free finger at the same displacement; 0: the
-                               ///< grip has no gripping pressure of its own, and its target determines the
+  double by_kpa = 0;           ///< pressure above that of the free finger at the same displacement; 0: only
+                               ///< the target of the grip determines the pressure
                                ///< pressure
   double speed_kpa_per_s = 0;  ///< speed at which the gripping pressure increases; it must be above 0 if
                                ///< by_kpa is above 0

@@ -68,14 +68,14 @@ struct FaultSettings {
                                              ///< displacement range of the limits
   std::uint32_t readback_cycles = 5;         ///< consecutive cycles in which the read-back differs from the
                                              ///< commands
-  double readback_tolerance_kpa = 1;         ///< the read-back differs if it is more than this outside the
-                                             ///< range of the past commands
+  double readback_tolerance_kpa = 1;         ///< the read-back differs if it is outside the range of the past
+                                             ///< commands by more than this pressure
   double readback_delay_s = 0.1;             ///< duration of the past commands that are compared with the
                                              ///< read-back
   std::uint32_t pressure_cycles = 0;  ///< consecutive cycles in which the measured pressure differs from the
                                       ///< commands; 0: the pressure is not checked
-  double pressure_tolerance_kpa = 5;  ///< the pressure differs if it is more than this outside the range of
-                                      ///< the past commands
+  double pressure_tolerance_kpa = 5;  ///< the pressure differs if it is outside the range of the past
+                                      ///< commands by more than this pressure
   double pressure_delay_s = 0.5;      ///< duration of the past commands that are compared with the pressure
   bool model_unfit_is_fault = false;  ///< true: an unfit model is a fault; false: model health is only
                                       ///< reported

@@ -58,7 +58,8 @@ SafeAction Supervisor::action_for(FaultCode code, Phase phase) const noexcept {
   // The board's output has changed, so the command that a hold would keep is no longer present at the output.
   if (code == FaultCode::board_watchdog_tripped || code == FaultCode::outputs_overwritten)
     return SafeAction::vent;
-  // If the inputs cannot be read, an emergency stop may be hidden.
+  // If the inputs cannot be read, the daemon does not see an emergency stop. Therefore, lost inputs count as
+  // an emergency stop.
   if (code == FaultCode::emergency_stop || code == FaultCode::inputs_lost) {
     return safety_.on_emergency_stop;
   }

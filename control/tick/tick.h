@@ -17,12 +17,12 @@
 
 namespace softgrip::control {
 
-struct PreparedSequence;  // control/tick/sequence.h defines it
+struct PreparedSequence;  // control/tick/sequence.h defines this struct
 
 /// States of the supervisor. Status and recordings use the names of these states.
 enum class State : std::uint8_t {
   starting,         ///< not all channels have a valid reading yet; the commands are the rest pressures, or
-                    ///< those after a fault
+                    ///< the commands after a fault
   idle,             ///< the rig is ready, and nothing moves
   resynchronising,  ///< a start was accepted; waits until the fingers are at rest, and adjusts the models to
                     ///< the readings
@@ -56,7 +56,7 @@ struct Request {
   enum class Kind : std::uint8_t {
     none,
     start,
-    check,  ///< the reply is that of a start at this time, but there is no other effect
+    check,  ///< the reply is the same as for a start at this time, but the rig does not start
     stop,
     vent,
     acknowledge,
@@ -74,7 +74,8 @@ struct Request {
 /// State of the bus in the time since the last tick.
 struct BusHealth {
   bool connected = false;             ///< a connection to the board is open
-  FaultCode fault = FaultCode::none;  ///< cause of the last exchange if it failed; none if it was successful
+  FaultCode fault = FaultCode::none;  ///< cause of the last failed exchange; `none` after a successful
+                                      ///< exchange
   std::uint32_t consecutive_failures = 0;
   /// Number of times that the bus thread has stopped applying the commands. After such a stop, the bus thread
   /// writes no pressure that is further from rest than TickInput::outputs_kpa, and `fault` gives the reason.

@@ -15,7 +15,7 @@ namespace softgrip::control {
 /// The task of a tuning. The simulated fingers are random variations of `finger`; the controller uses
 /// `channel.model`.
 struct TuneTask {
-  ChannelSettings channel;  ///< model, feedforward and limits; the gains in it are not used
+  ChannelSettings channel;  ///< model, feedforward and limits of the controller; its PID gains are not used
   model::Model finger;
   double rate_hz = 200;
   double exchange_s = 0;  ///< time from the tick to the exchange, as in TrackingRun
