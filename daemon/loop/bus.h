@@ -85,8 +85,8 @@ class Bus {
   std::size_t channels_;
   std::array<double, control::max_channels> rest_kpa_{};
   Nanoseconds watchdog_;         // watchdog time of the board; 0: the board has no watchdog
-  Nanoseconds watchdog_margin_;  // longest time from the start of an exchange until the board receives its
-                                 // request
+  Nanoseconds watchdog_margin_;  // longest time from the start of an exchange until its request reaches the
+                                 // board
 
   /// State of the connection to the board.
   enum class Session : std::uint8_t {
@@ -104,8 +104,8 @@ class Bus {
                                                                                // successful exchange
   Session session_ = Session::none;
   bool spoken_ = false;                                      // true: the loop has sent commands at least once
-  control::FaultCode inhibited_ = control::FaultCode::none;  // reason why the bus is inhibited; none: it is
-                                                             // not inhibited
+  control::FaultCode inhibited_ = control::FaultCode::none;  // reason why the bus is inhibited; `none` if the
+                                                             // bus is not inhibited
   std::uint32_t unheard_ = 0;                                // number of steps since the loop's last commands
   std::optional<Nanoseconds> last_good_;                     // start time of the last successful exchange
   bool told_failed_ = false;                                 // true: the present failure has been logged
@@ -114,7 +114,7 @@ class Bus {
   std::array<char, sizeof(BusEvent::detail)> told_{};        // text of the last failure in the log
   bool told_clients_ = false;  // true: another client of the board has been logged since the connection was
                                // opened
-  Nanoseconds pause_ = 0;      // pause between the next attempt to connect and the one after it
+  Nanoseconds pause_ = 0;      // pause between the next attempt to connect and the attempt after it
   Nanoseconds next_attempt_ = 0;
 };
 

@@ -14,7 +14,8 @@ struct RealTimeStep {
   enum class Outcome { verified, failed, not_asked };
   std::string name;
   Outcome outcome = Outcome::not_asked;
-  std::string detail;  ///< value that was read back; after a failure, its reason and the usual remedy
+  std::string detail;  ///< value that was read back; after a failure, the reason of the failure and the usual
+                       ///< remedy
   std::string cost;    ///< consequence of a failure, in one sentence
 };
 [[nodiscard]] std::string_view name_of(RealTimeStep::Outcome outcome) noexcept;

@@ -61,8 +61,8 @@ class Ring {
 
   std::vector<T> items_;
   std::size_t mask_;
-  // Producer and consumer each store the position of the other one that they read last. Therefore, most calls
-  // do not access the cache line of the other thread.
+  // The producer stores the last position of the consumer that it read, and the consumer stores that of the
+  // producer. Therefore, most calls do not access the cache line of the other thread.
   alignas(cache_line) std::atomic<std::size_t> head_{0};  // written by the consumer
   std::size_t known_tail_ = 0;                            // used only by the consumer
   alignas(cache_line) std::atomic<std::size_t> tail_{0};  // written by the producer

@@ -27,7 +27,7 @@ struct LoopStatistics {
   Histogram compute;      ///< time from the first instruction to the end of the tick
   Histogram reading_age;  ///< age of the oldest reading when the tick uses it
   Counter ticks;
-  Counter overruns_woken_late;  ///< overruns because the thread woke up a period late, or later
+  Counter overruns_woken_late;  ///< overruns because the thread woke up at least one period late
   Counter overruns_took_long;   ///< overruns because a tick took too long
 };
 

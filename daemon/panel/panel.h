@@ -74,7 +74,8 @@ class Panel {
   bool latched_ = false;  // true: the loop has latched the emergency stop, which counts as pressed at
                           // start-up
   bool lost_ = false;
-  std::uint64_t ticks_ = 0;  // number of ticks of the loop; it has not changed since ticked_
+  std::uint64_t ticks_ = 0;  // number of ticks of the loop at the time ticked_; the number has not changed
+                             // since
   Nanoseconds ticked_ = 0;
   bool hung_ = false;
   std::array<std::optional<bool>, drivers::gpio_role_count> written_{};

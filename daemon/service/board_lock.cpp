@@ -34,8 +34,8 @@ namespace {
 /// The first bytes of an IPv4 address that is written as an IPv6 address.
 constexpr std::array<unsigned char, 12> mapped_prefix{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff};
 
-/// Returns the normal form of an address. Two notations of one address give the same board, such as "::1" and
-/// "0:0::1", or "::ffff:10.0.0.5" and "10.0.0.5".
+/// Returns the normal form of an address. Two notations of one address must have the same normal form, such
+/// as "::1" and "0:0::1", or "::ffff:10.0.0.5" and "10.0.0.5".
 std::string numeric(const std::string& host) {
   std::array<unsigned char, sizeof(in6_addr)> address{};
   std::array<char, INET6_ADDRSTRLEN> text{};

@@ -75,8 +75,8 @@ struct Outcome {
   bool safe_state_confirmed = false;  ///< true: at the end, the board confirmed the safe outputs
   bool pressure_left_on = false;      ///< true: the safe output of at least one channel is a pressure that
                                       ///< differs from rest (control::pressed())
-  double vents_after_s = 0;           ///< time until the board's watchdog vents these channels [s]; 0: the
-                                      ///< board never vents them
+  double vents_after_s = 0;           ///< time until the board's watchdog vents the channels under pressure
+                                      ///< [s]; 0: the board never vents them
   int signal = 0;  ///< first signal that requested the end before the outputs were safe; 0: there was none
   std::uint64_t ticks = 0;
   std::uint64_t overruns = 0;
@@ -93,7 +93,7 @@ struct Outcome {
 /// Creates the board of a rig file. The board is not connected yet. `clock` must exist longer than the board.
 [[nodiscard]] std::unique_ptr<drivers::Board> make_board(const rig::RigFile& rig, const Clock& clock);
 
-struct DaemonParts;  // daemon_parts.h defines it
+struct DaemonParts;  // daemon_parts.h defines this struct
 
 class Daemon {
  public:

@@ -34,7 +34,7 @@ std::vector<std::string> usual_places() {
 }
 
 /// Creates the folder if it is missing. The folder of the service always belongs to the service user, even if
-/// another user such as root creates it.
+/// root creates the folder.
 void make(const std::string& place) {
   const bool of_service = place == service_folder;
   if (::mkdir(place.c_str(), of_service ? 0755 : 0700) != 0 || !of_service) return;

@@ -66,14 +66,14 @@ class SocketServer {
     std::string output;
     Nanoseconds stalled_since = 0;  // time since which the client has not read the waiting output; 0: no
                                     // output waits
-    Nanoseconds ended_at = 0;       // time at which the client ended, so that it will send no more lines; 0:
-                                    // it may send lines
+    Nanoseconds ended_at = 0;       // time at which the client ended; after it, the client sends no more
+                                    // lines; 0: the client has not ended
     Nanoseconds active_at = 0;      // time of the last line that was sent or read, or time of the connection
     bool spoke = false;             // true: the client has sent a line
     bool stands = false;            // true: the client has no place
     bool closing = false;           // true: the connection is closed after all output is sent
-    bool deaf = false;              // true: the client does not read any more; its last lines are still
-                                    // processed
+    bool deaf = false;              // true: the client does not read any more; the server still processes its
+                                    // last lines
     bool dead = false;
   };
 
