@@ -29,8 +29,8 @@ struct Node {
   bool quoted = false;         ///< true: the scalar was quoted, so it is a text and never a number
   std::string stands_for;      ///< name of the parameter if the file has a parameter with `$` in place of
                                ///< this value; otherwise empty
-  bool refused = false;        ///< true: a problem of the node was reported already, or the node is
-                               ///< truncated; it is not checked again
+  bool refused = false;        ///< true: a problem of the node was already reported, or the node is
+                               ///< truncated; the node is not checked again
   std::vector<Node> items;     ///< items of a sequence
   std::vector<Entry> entries;  ///< entries of a map in the order of the text, with unique keys
 };

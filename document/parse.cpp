@@ -97,8 +97,8 @@ class TreeBuilder final : public YAML::EventHandler {
       if (is_key) {
         frames_.pop_back();
       } else {
-        // After an early stop, a list such as `[1, 2` may lack items, so it is refused. A list in block style
-        // contains complete items only.
+        // After an early stop, a list such as `[1, 2` may lack items, so the list is refused. A list in block
+        // style contains complete items only.
         frames_.back().node.refused = frames_.back().flow;
         close();
       }

@@ -27,8 +27,8 @@ Window window_of(std::string_view line, std::size_t column) {
   std::size_t begin = column < line_bytes / 2 ? 0 : std::min(column, line.size()) - line_bytes / 2;
   begin = std::min(begin, line.size() - line_bytes);
   std::size_t end = begin + line_bytes;
-  // Each end of the window moves to the start of the next character. The move is limited to three bytes,
-  // because a text that is not UTF-8 may have no such start.
+  // Each end of the window moves to the start of the next character. The move is limited to three bytes: a
+  // text that is not UTF-8 may have no start of a character.
   for (int i = 0; i < 3 && inside_character(begin); ++i) ++begin;
   for (int i = 0; i < 3 && inside_character(end); ++i) ++end;
   return {begin, end};
