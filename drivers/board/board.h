@@ -18,7 +18,7 @@ using model::Reading;
 enum class BusStatus : std::uint8_t {
   ok,
   disconnected,      ///< there is no open session; connect() is necessary
-  timed_out,         ///< the deadline of the exchange passed before it was complete
+  timed_out,         ///< the deadline passed before the exchange was complete
   bad_reply,         ///< the reply has a wrong unit id, length, transaction id or function; the session must
                      ///< be closed
   exception,         ///< the board responded with a Modbus exception

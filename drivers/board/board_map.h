@@ -106,9 +106,9 @@ struct BoardWatchdog {
                             ///< watchdog
   };
   enum class Feed : std::uint8_t {
-    any_request,  ///< each request that the board receives feeds it
-    functions,    ///< a request feeds it if its function code is one of `functions`
-    feed_write,   ///< only the write `feed_write` feeds it; each exchange contains this write
+    any_request,  ///< each request that the board receives feeds the watchdog
+    functions,    ///< a request feeds the watchdog if its function code is one of `functions`
+    feed_write,   ///< only the write `feed_write` feeds the watchdog; each exchange contains this write
   };
   /// The registers or bits in which the board reports that its watchdog has tripped.
   struct Tripped {

@@ -1,6 +1,6 @@
 #pragma once
-// A straight line through two calibration points. All scalings are such lines. The slope may be positive or
-// negative.
+// A straight line through two calibration points. Every scaling in a rig file or board file is such a line.
+// The slope may be positive or negative.
 
 namespace softgrip::drivers {
 

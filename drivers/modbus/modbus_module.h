@@ -110,7 +110,7 @@ class ModbusModule {
                                                      ///< or 1
   Nanoseconds sampled_at_ = 0;
   std::uint32_t unlooked_ = 0;  ///< number of exchanges since the last exchange that read before it wrote
-  bool confirmed_ = false;      ///< true: the last exchange read back the values that it had written
+  bool confirmed_ = false;      ///< true: in the last exchange, the read-back confirmed the written values
   bool reads_first_ = false;
   bool alternate_due_ = false;  ///< true: the next write of the heartbeat has the alternate value
   bool clear_due_ = false;      ///< true: the session is new, so a tripped watchdog may be cleared

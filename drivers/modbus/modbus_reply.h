@@ -19,7 +19,7 @@ enum class ReplyDefect : std::uint8_t {
   unit,         ///< the response comes from another unit
   function,     ///< the response has another function code than the request
   byte_count,   ///< the number of data bytes differs from the number that the request requires
-  echo,         ///< the response confirms a write with another address or value
+  echo,         ///< the response confirms another address or value than the request contains
   trailing,     ///< there are more bytes than the response has
   checksum,     ///< the checksum is wrong: bytes were changed in transmission (serial lines)
   own_echo,     ///< the received bytes are the request itself, which the line returned (serial lines)

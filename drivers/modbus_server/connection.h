@@ -61,8 +61,8 @@ class Connection {
   Descriptor descriptor_;
   std::variant<RequestStream, RtuRequestStream> stream_;
   WireTime wire_time_;
-  std::vector<Outgoing> outgoing_;  // sorted by the time at which they are due; parts with equal times are in
-                                    // the order of insertion
+  std::vector<Outgoing> outgoing_;  // parts of replies in the order in which they are due; parts with equal
+                                    // times are in the order of insertion
   bool closing_ = false;
   bool blocked_ = false;
 };
