@@ -76,8 +76,8 @@ enum class Station : std::uint8_t { valve, actuator, load, sensor };
 /// The effect of a block on the signal in the chain.
 enum class Kind : std::uint8_t {
   pressure,      ///< pressure in, pressure out [kPa]; the blocks are in series
-  element,       ///< pressure in [kPa], displacement out [mm]; all elements have the same input, and their
-                 ///< outputs are added
+  element,       ///< pressure in [kPa], displacement out [mm]; all elements of a chain have the same input,
+                 ///< and their outputs are added
   displacement,  ///< displacement in, displacement out [mm]; the blocks are in series
   reading,       ///< displacement in, reading out [mm]; an effect of the sensor that is computed once at the
                  ///< end of a step

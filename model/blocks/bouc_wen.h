@@ -192,8 +192,8 @@ class BoucWen {
     hysteresis_ = moved(change, direction);
     pressure_ = in.end;
     direction_ = direction;
-    // The mean of h over the segment is the mean of the cubic with the values and slopes of h at both ends. A
-    // correction for the curvature of p is added.
+    // The mean of h over the segment is the mean of the cubic that has the values and slopes of h at the ends
+    // of the segment. A correction for the curvature of p is added.
     const T slope_before = slope_at(before, direction);
     const T slope_after = slope_at(hysteresis_, direction);
     const T off_middle = in.mean - (in.begin + in.end) * 0.5;

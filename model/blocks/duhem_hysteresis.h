@@ -46,7 +46,7 @@ class DuhemHysteresis {
     wound_kpa_ = moved(change, falling_);
     pressure_ = in.end;
     output_ = gain_ * wound_kpa_;
-    // Computes the mean of the cubic with the values and slopes of z at both ends.
+    // Computes the mean of the cubic that has the values and slopes of z at the ends of the segment.
     const T size = falling_ ? T(-change) : change;
     const T bow =
         size * (falling_ ? unloading_per_kpa_ : loading_per_kpa_) * (wound_kpa_ - before) * (1.0 / 12.0);

@@ -28,8 +28,8 @@ class Leak {
   void step(const Segment<T>& in, const Surroundings&, Next&& next) {
     const T begin = output_;
     output_ = loss_.behind(in.end);
-    // The map is replaced by the straight line between its values at both ends. This is sufficient, because
-    // only the preceding lag makes the pressure curved within a sample.
+    // The map is replaced by the straight line between its values at the two ends of the segment. This is
+    // sufficient, because only the preceding lag makes the pressure curved within a sample.
     const T middle = (begin + output_) * 0.5;
     const double way = value_of(in.end) - value_of(in.begin);
     const T slope = way != 0.0 ? T((output_ - begin) / (in.end - in.begin)) : T(1.0);

@@ -1,5 +1,6 @@
 #pragma once
-// Models a gain that changes with the displacement, in the same way for both signs of the displacement.
+// Models a gain that changes with the magnitude of the displacement; the sign of the displacement has no
+// effect on the gain.
 
 #include "model/block.h"
 #include "model/static_map.h"

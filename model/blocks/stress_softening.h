@@ -1,5 +1,6 @@
 #pragma once
-// Models a material that becomes softer with the largest load so far (Mullins effect of filled rubbers).
+// Models a material that becomes softer as its largest load so far increases (Mullins effect of filled
+// rubbers).
 
 #include "model/block.h"
 #include "model/clip.h"
