@@ -161,8 +161,7 @@ class Gripper:
         try:
             self._ask_stop(self._connected(), self._session, start_id, end)
         except (ConnectionLost, ProtocolError):
-            # The connection was lost, or an exception interrupted this client before it had sent the whole line of a
-            # request.
+            # The connection was lost, or an exception interrupted this client while it sent a request.
             wire = Wire(self.path, end)
             try:
                 self._ask_stop(wire, Session(), start_id, end)
