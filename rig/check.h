@@ -25,10 +25,10 @@ struct CheckedFile {
   std::string path;
   FileKind kind = FileKind::unknown;
   std::string name;          ///< value of the key `name` in the file; empty if the file has no such key
-  std::size_t errors = 0;    ///< number of errors in this file; errors in the files to which it refers are
-                             ///< not counted
-  std::size_t warnings = 0;  ///< number of warnings in this file; warnings in the files to which it refers
-                             ///< are not counted
+  std::size_t errors = 0;    ///< number of errors in this file; errors in other files to which this file
+                             ///< refers are not counted
+  std::size_t warnings = 0;  ///< number of warnings in this file; warnings in other files to which this file
+                             ///< refers are not counted
   bool passed_over = false;  ///< true: skipped, because it was found in a folder and is of no known kind
 };
 

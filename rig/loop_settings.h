@@ -36,8 +36,8 @@ struct LoopSettings {
 
 /// Returns the safety margin of the board's watchdog time [ns]. If a gap between exchanges is longer than the
 /// watchdog time minus this margin, the daemon assumes that the watchdog has tripped. The margin is needed
-/// because a request may reach the board as late as the deadline of its exchange. It is at most half of the
-/// watchdog time.
+/// because a request may reach the board as late as the deadline of its exchange. The margin is at most half
+/// of the watchdog time.
 [[nodiscard]] inline std::chrono::nanoseconds watchdog_margin(const LoopSettings& loop,
                                                               std::chrono::nanoseconds watchdog) noexcept {
   return std::min(std::chrono::nanoseconds(nanoseconds(loop.exchange_deadline_s)), watchdog / 2);
