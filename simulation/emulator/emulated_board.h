@@ -70,13 +70,14 @@ class EmulatedBoard {
   Registers registers_;
   std::vector<double> outputs_;  // signals of the output terminals [V or mA]
   Nanoseconds fed_at_ = 0;
-  std::optional<bool> alternated_;  // true: the last write of the heartbeat had the second of its two values
+  std::optional<bool> alternated_;  // true: the last write of the heartbeat had the second of the two
+                                    // alternating values
   bool watchdog_awake_ = false;
   bool tripped_ = false;
   bool commanded_ = false;
   bool writes_ignored_ = false;
-  std::vector<bool> cleared_;  // for each write that clears the watchdog; true: it was received since the
-                               // watchdog tripped
+  std::vector<bool> cleared_;  // for each write that clears the watchdog: true if the write was received
+                               // since the watchdog tripped
 };
 
 }  // namespace softgrip::simulation

@@ -1,6 +1,6 @@
 #pragma once
-// The end of a serial line that the emulated board uses: a serial device or a pseudo-terminal. The daemon
-// opens the other end.
+// The end of a serial line that the emulated board uses. It is a serial device or a pseudo-terminal. The
+// daemon opens the other end of the line.
 
 #include <string>
 
