@@ -11,7 +11,7 @@ enum class Waited : std::uint8_t {
   ready,      ///< the descriptor is ready, or has an error or a hang-up; the next call on the descriptor
               ///< reports the error
   timed_out,  ///< the deadline has passed
-  failed,     ///< errno contains the reason
+  failed,     ///< waiting failed; errno contains the reason
 };
 
 /// Waits for events of poll() until `deadline` on CLOCK_BOOTTIME. select() is not used, because it does not
