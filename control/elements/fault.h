@@ -32,16 +32,16 @@ enum class FaultCode : std::uint16_t {
   emergency_stop = 501,
   inputs_lost = 502,  ///< the digital inputs cannot be read
   cycles_lost = 901,  ///< the loop missed more consecutive cycles than allowed
-  not_finite = 902,   ///< a command was NaN or infinite
+  not_finite = 902,   ///< a pressure command was NaN or infinite
 };
 
 /// Description of a fault in the manual and in events.
 struct FaultInfo {
   FaultCode code;
-  std::string_view id;       ///< id, such as "F101"
-  std::string_view name;     ///< name, such as "bus_down"
+  std::string_view id;       ///< id of the fault, such as "F101"
+  std::string_view name;     ///< name of the fault, such as "bus_down"
   std::string_view meaning;  ///< meaning of the fault in one sentence
-  std::string_view cause;    ///< usual cause
+  std::string_view cause;    ///< usual cause of the fault
   std::string_view remedy;   ///< action that the user must take before the reset (`acknowledge`)
   std::string_view bound;    ///< keys of the rig file that give the number of cycles until the fault latches
 };
@@ -61,7 +61,7 @@ struct FaultInfo {
 /// The reason why a request was refused.
 enum class RefusalCode : std::uint16_t {
   none = 0,
-  faulted = 1,   ///< a fault is latched
+  faulted = 1,   ///< refused, because a fault is latched
   not_idle = 2,  ///< a sequence runs, starts or is being stopped
   interlock_open = 3,
   emergency_stop = 4,

@@ -17,8 +17,9 @@ struct LimitSettings {
   double pressure_max_kpa = 0;        ///< largest command; it must be above pressure_min_kpa
   double slew_up_kpa_per_s = 0;       ///< > 0; largest rate of increase of the command
   double slew_down_kpa_per_s = 0;     ///< > 0; largest rate of decrease of the command
-  double displacement_min_mm = 0;     ///< lower limit of references
-  double displacement_max_mm = 0;     ///< upper limit of references; it must be above displacement_min_mm
+  double displacement_min_mm = 0;     ///< lower limit of displacement references
+  double displacement_max_mm = 0;     ///< upper limit of displacement references; it must be above
+                                      ///< displacement_min_mm
   double displacement_margin_mm = 0;  ///< >= 0; a reading outside the displacement range by more than this
                                       ///< margin is a fault
   double rest_kpa = 0;  ///< pressure of every safe state; resting_kpa() limits it to the pressure range
@@ -30,7 +31,7 @@ struct LimitedCommand {
   bool saturated = false;  ///< the requested pressure is outside the pressure range
   bool slewing = false;    ///< the request is further from the last command than the slew limits allow
   bool invalid = false;    ///< the request or the ceiling is not a number, so the last command is held
-  bool capped = false;     ///< the request is above the ceiling
+  bool capped = false;     ///< the requested pressure is above the ceiling
 };
 
 /// Returns the pressure in the pressure range that is nearest to `pressure_kpa`.

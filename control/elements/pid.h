@@ -83,7 +83,7 @@ class Pid {
   enum class Memory : std::uint8_t {
     none,           ///< the integral; there is no earlier measurement for the derivative and the trapezoidal
                     ///< rule
-    measured,       ///< the integral and the last measurement
+    measured,       ///< the integral and the measurement of the last step
     aligning,       ///< the command that align() received
     aligned_ahead,  ///< the command that align() received, after hold() has kept it unchanged
   };

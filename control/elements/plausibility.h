@@ -73,7 +73,7 @@ class Plausibility {
   PlausibilitySettings settings_;
   Nanoseconds max_age_;
   Nanoseconds frozen_after_;
-  bool known_ = false;  ///< true: there is a last valid reading
+  bool known_ = false;  ///< true: there is a last valid reading for comparison
   double last_mm_ = 0;
   Nanoseconds last_sampled_at_ = 0;
   bool watching_ = false;  ///< true: there is a displacement with which later readings are compared

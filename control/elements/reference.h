@@ -11,8 +11,8 @@ namespace softgrip::control {
 /// Value, rate and acceleration of a reference at one time, in mm for a displacement or kPa for a pressure.
 struct ReferencePoint {
   double value = 0;
-  double rate = 0;          ///< change of the value per second
-  double acceleration = 0;  ///< change of the rate per second
+  double rate = 0;          ///< change of the reference's value per second
+  double acceleration = 0;  ///< change of the reference's rate per second
 };
 
 /// A sequence of segments. Before the first segment and after the last one, the reference is constant. In

@@ -92,7 +92,7 @@ class FullModelFeedforward {
   ValveInverse valve_;
   double preview_s_;
   ActuatorInverse inverse_;
-  double command_kpa_ = 0;                  ///< command of the last tick
+  double command_kpa_ = 0;                  ///< pressure command of the last tick
   double last_wanted_kpa_ = 0;              ///< pressure that was needed for the reference in the last tick
   double easy_mm_per_s2_;                   ///< acceleration that the finger reaches within the slew limits
   double easy_mm_per_s_;                    ///< speed that the finger reaches within the slew limits
@@ -132,7 +132,7 @@ class PlannedFeedforward {
   double last_kpa_ = 0;
   double difference_kpa_ = 0;  ///< difference between the last pressure of the previous source (plan or
                                ///< settled gain) and the first pressure of the new source
-  double fade_left_s_ = 0;     ///< remaining time of the fade-out
+  double fade_left_s_ = 0;     ///< remaining time of the fade-out between two pressures
   bool entering_ = true;
 };
 

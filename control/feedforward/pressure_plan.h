@@ -15,7 +15,7 @@ namespace softgrip::control {
 /// memory.
 struct PressurePlan {
   double start_s = 0;  ///< time of the first point on the reference's clock
-  double step_s = 0;   ///< time between points
+  double step_s = 0;   ///< time between two points of the plan
   std::vector<double> pressure_kpa;
   std::vector<double> displacement_mm;  ///< displacement of the model at the times of the points
   Reference reference;                  ///< reference for which the plan was computed

@@ -56,7 +56,7 @@ class ValveInverse {
   Lag filling_, venting_;
   std::optional<RegulatorInverse> regulator_;  ///< inverse of the regulator, used if the valve has no lag
   double half_band_kpa_ = 0;
-  double behind_band_kpa_ = 0;  ///< command after the dead band
+  double behind_band_kpa_ = 0;  ///< pressure command after the dead band of the valve
 };
 
 }  // namespace softgrip::control

@@ -94,7 +94,7 @@ class Walk {
   double ahead_s_;
   ChannelPlayer player_;
   std::optional<Planner> planner_;
-  PreparedStep* step_ = nullptr;  ///< the present step
+  PreparedStep* step_ = nullptr;  ///< the present step of the channel
   double since_s_ = 0;
 };
 

@@ -20,7 +20,7 @@
 namespace softgrip::control {
 
 struct ChannelInput {
-  Nanoseconds now = 0;     ///< scheduled time of the tick
+  Nanoseconds now = 0;     ///< time for which the tick was scheduled
   model::Reading reading;  ///< newest reading that the driver returned
   ChannelDemand demand;    ///< demand of the sequence player or of the supervisor
   /// Sets the model's offset to the difference between reading and model. This is requested only at rest,
@@ -56,7 +56,7 @@ class ChannelController {
  private:
   /// Determines how the command is computed.
   enum class Loop : std::uint8_t {
-    stopped,  ///< there has been no tick since start()
+    stopped,  ///< there has been no tick since the call of start()
     open,     ///< the demand gives the command without feedback: hold, vent, pressure
     closed,   ///< the command is the sum of feedforward and feedback
     held,     ///< the command is the sum of feedforward and a constant feedback

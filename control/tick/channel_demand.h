@@ -12,7 +12,7 @@ namespace softgrip::control {
 /// The mode may change in each tick; the command does not jump at such a change.
 struct ChannelDemand {
   enum class Mode : std::uint8_t {
-    hold,          ///< the command does not change
+    hold,          ///< the pressure command does not change
     vent,          ///< the command goes to the rest pressure at the slew limit
     pressure,      ///< the command is `pressure_kpa`, within the limits; no feedback
     displacement,  ///< feedforward and feedback follow `reference`

@@ -14,7 +14,7 @@ struct Parameter {
   double lower = 0;  ///< lower and upper are the smallest and the largest allowed value
   double upper = 0;
   double default_value = 0;
-  std::string about;      ///< description in one sentence
+  std::string about;      ///< description of the parameter in one sentence
   document::Location at;  ///< place of the parameter's name in the file
   double value = 0;       ///< value of the parameter in this reading of the sequence
 };

@@ -78,7 +78,7 @@ struct Target {
   Quantity quantity = Quantity::pressure_kpa;
   double value = 0;
   bool at_rest = false;   ///< true: the target is the rest pressure of the channel; `value` is not used
-  double speed = 0;       ///< 0: the ramp has the duration duration_s
+  double speed = 0;       ///< speed of the ramp; 0: the ramp has the duration duration_s
   double duration_s = 0;  ///< if duration_s and speed are 0, the ramp is as fast as the limits allow
 };
 
@@ -158,16 +158,16 @@ struct Step {
                                        ///< sequence
   Target target;                       ///< target of the steps move, grip and release
   Sine sine;                           ///< reference of a track step
-  Profile profile;                     ///< pressure of a pressure step
+  Profile profile;                     ///< pressure over time of a pressure step
   double settle_s = 0;                 ///< waiting time after the end of the ramp
   std::optional<double> tolerance_mm;  ///< for move: the step fails if the displacement is not within this
                                        ///< tolerance of the target by timeout_s
   Bounds bounds;                       ///< for all kinds except release; for hold only if the file gives
                                        ///< bounds for the hold
   OnContact on_contact = OnContact::ignore;
-  bool on_contact_stated = false;  ///< true: the file gives on_contact
+  bool on_contact_stated = false;  ///< true: the sequence file gives the key on_contact
   Squeeze squeeze;                 ///< gripping pressure of a grip step
-  Verify verify;                   ///< verification of a grip step
+  Verify verify;                   ///< criterion by which a grip step is verified
   double hold_s = 0;               ///< infinite: the hold lasts until a release is requested
   double reverify_every_s = 0;     ///< for hold: time between two verifications
   double purge_s = 0;              ///< for release: time for which the channels stay at the rest pressure
@@ -185,7 +185,7 @@ enum class Interlock : std::uint8_t {
 /// A sequence as written in the file.
 struct Sequence {
   std::string name;
-  std::string about;  ///< description in one line; may be empty
+  std::string about;  ///< description of the sequence in one line; may be empty
   Interlock interlock = Interlock::start;
   std::vector<std::string> channels;  ///< channels that the sequence uses; empty: all channels of the rig
   std::vector<Parameter> parameters;  ///< the parameters with the values that the steps use

@@ -31,7 +31,7 @@ inline constexpr std::size_t phase_count = 4;
 /// The action of the outputs when motion must end.
 enum class SafeAction : std::uint8_t {
   vent,  ///< go to the rest pressure: at the slew limit while the loop runs, at once when the loop ends
-  hold,  ///< keep the last command
+  hold,  ///< the outputs keep the last command
 };
 /// Returns the name of an action: "vent" or "hold".
 [[nodiscard]] std::string_view name_of(SafeAction action) noexcept;
@@ -61,17 +61,19 @@ struct SafetySettings {
 /// Number of cycles for which a condition may last before it is a fault. These numbers determine the
 /// guaranteed reaction times of the rig.
 struct FaultSettings {
-  std::uint32_t bus_down_cycles = 5;         ///< consecutive cycles without a valid exchange
+  std::uint32_t bus_down_cycles = 5;         ///< number of consecutive cycles without a valid exchange
   std::uint32_t invalid_reading_cycles = 3;  ///< consecutive cycles in which the reading of a channel is not
-                                             ///< valid
-  std::uint32_t displacement_cycles = 3;     ///< consecutive cycles in which a reading is outside the
-                                             ///< displacement range of the limits
-  std::uint32_t readback_cycles = 5;         ///< consecutive cycles in which the read-back differs from the
-                                             ///< commands
+                                             ///< number of consecutive cycles in which the reading of a
+                                             ///< channel is not valid
+  std::uint32_t displacement_cycles = 3;     ///< number of consecutive cycles in which a reading is outside
+                                             ///< the displacement range of the limits
+  std::uint32_t readback_cycles = 5;         ///< number of consecutive cycles in which the read-back differs
+                                             ///< from the commands
   double readback_tolerance_kpa = 1;         ///< the read-back differs if it is outside the range of the past
                                              ///< commands by more than this pressure
   double readback_delay_s = 0.1;             ///< duration of the past commands that are compared with the
-                                             ///< read-back
+                                             ///< number of consecutive cycles in which the measured pressure
+                                             ///< differs from the commands; 0: the pressure is not checked
   std::uint32_t pressure_cycles = 0;  ///< consecutive cycles in which the measured pressure differs from the
                                       ///< commands; 0: the pressure is not checked
   double pressure_tolerance_kpa = 5;  ///< the pressure differs if it is outside the range of the past

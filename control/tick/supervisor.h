@@ -23,7 +23,7 @@ enum class Rest : std::uint8_t { pending, at_rest, timed_out };
 
 /// Inputs of the supervisor in addition to the tick input. In the bit masks, bit i is channel i.
 struct SupervisorInputs {
-  Fault fault;  ///< fault that must latch now
+  Fault fault;  ///< fault that the supervisor must latch now
   Fault cause;  ///< present condition that is a fault, or can become a fault if it lasts
   bool bus_good = false;
   std::uint32_t ready = 0;    ///< channels that have a valid reading, or that need no reading

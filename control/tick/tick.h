@@ -73,7 +73,7 @@ struct Request {
 
 /// State of the bus in the time since the last tick.
 struct BusHealth {
-  bool connected = false;             ///< a connection to the board is open
+  bool connected = false;             ///< true: a connection to the board is open
   FaultCode fault = FaultCode::none;  ///< cause of the last failed exchange; `none` after a successful
                                       ///< exchange
   std::uint32_t consecutive_failures = 0;
@@ -123,7 +123,8 @@ struct ChannelOutput {
   model::Validity validity = model::Validity::none_yet;
   GripResult result = GripResult::none;
   GripEvidence evidence = GripEvidence::none;  ///< evidence on which the grip result is based
-  HealthState health = HealthState::unknown;   ///< health of the channel's model
+  HealthState health =
+      HealthState::unknown;  ///< health of the channel's model: healthy, suspect, unfit or unknown
   bool health_changed = false;
   BindingLimit bound_by = BindingLimit::none;  ///< limit that changes the command noticeably compared with
                                                ///< the request

@@ -33,7 +33,7 @@ struct TrackingRun {
   double exchange_s = 0;        ///< time from the tick to the exchange; less than one period of the tick
   double noise_mm = 0.03;       ///< standard deviation of the sensor's white noise
   double reading_step_mm = 0;   ///< quantisation of the reading; 0: no quantisation
-  double command_step_kpa = 0;  ///< quantisation of the output; 0: no quantisation
+  double command_step_kpa = 0;  ///< quantisation of the board's output; 0: no quantisation
   std::uint64_t seed = 1;
   /// Result of plan_for(), for the feedforward `planned`. If the pointer is null, the plan is computed for
   /// this simulation.
@@ -49,7 +49,7 @@ struct TrackingRun {
 struct TrackingResult {
   double rmse_mm = 0;
   double worst_mm = 0;
-  double pressure_mean_kpa = 0;  ///< mean of the commands
+  double pressure_mean_kpa = 0;  ///< mean of the pressure commands
   double pressure_most_kpa = 0;
   double residual_rms_mm = 0;                 ///< root mean square residual of the controller's running model
   double out_of_reach_share = 0;              ///< share of the ticks in which the reference was out of reach
@@ -65,8 +65,9 @@ struct TrackingResult {
 /// Stability margins of the loop of PID and model. The model is linearised; its gain is the slope of the
 /// hysteresis.
 struct LoopMargins {
-  double sensitivity = 0;   ///< Ms, the largest |1/(1+L)|; infinite for an unstable loop
-  double crossover_hz = 0;  ///< lowest frequency at which |L| = 1
+  double sensitivity = 0;   ///< largest sensitivity Ms of the loop, max |1/(1+L)|; infinite for an unstable
+                            ///< loop
+  double crossover_hz = 0;  ///< lowest frequency at which the loop gain |L| is 1
 };
 /// Returns the worst margins over the smallest and the largest instantaneous gain of the model. The gains are
 /// searched within the pressure range, on both sides of 0 kPa. The loop includes the model's dead time, half

@@ -34,14 +34,14 @@ struct TuneTask {
 /// The best gains, their stability margin and their tracking errors.
 struct Tuned {
   PidSettings pid;
-  double sensitivity = 0;   ///< worst Ms over the fingers
+  double sensitivity = 0;   ///< worst sensitivity Ms over the fingers
   double crossover_hz = 0;  ///< lowest crossover frequency over the fingers
   double rmse_mm = 0;       ///< root mean square tracking error over fingers and frequencies
   double exact_mm = 0;      ///< tracking error for the unchanged `finger`, without noise
   double noisy_mm = 0;      ///< tracking error for the unchanged `finger`, with noise
   double mismatch_mm = 0;   ///< tracking error for the random fingers, without noise
   int evaluations = 0;
-  std::string limited_by;  ///< factor that limits the result, as text
+  std::string limited_by;  ///< factor that limits the tuning result, as text
 };
 
 /// Minimises the tracking error over all fingers. The largest Ms must stay within its bound. A grid search in
