@@ -104,7 +104,7 @@ class Broadcast {
   }
 
   std::vector<Slot> slots_;
-  std::uint64_t pushed_ = 0;  // used only by the writer
+  std::uint64_t pushed_ = 0;  // number of items written so far; used only by the writer
   alignas(64) std::atomic<std::uint64_t> newest_{0};
 };
 

@@ -93,7 +93,7 @@ class Bus {
     none,      // closed; it is opened when the next attempt is due
     opened,    // connect() succeeded, but there has been no exchange yet
     answered,  // the board has responded to an exchange, but no exchange has been successful yet
-    proven,    // an exchange has been successful
+    proven,    // an exchange with the board has been successful
   };
 
   BusReport report_;

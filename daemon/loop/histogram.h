@@ -52,7 +52,7 @@ class Histogram {
  private:
   static constexpr int sub_bits = 7;
   static constexpr std::size_t sub_count = std::size_t{1} << sub_bits;
-  static constexpr int top_bit = 36;  // durations are below 2^36 ns
+  static constexpr int top_bit = 36;  // the histogram covers durations below 2^36 ns
   static constexpr std::size_t bin_count = sub_count * (top_bit - sub_bits + 1);
 
   [[nodiscard]] static std::size_t index_of(std::uint64_t duration_ns) noexcept;

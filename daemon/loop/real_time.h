@@ -16,7 +16,7 @@ struct RealTimeStep {
   Outcome outcome = Outcome::not_asked;
   std::string detail;  ///< value that was read back; after a failure, the reason of the failure and the usual
                        ///< remedy
-  std::string cost;    ///< consequence of a failure, in one sentence
+  std::string cost;    ///< consequence if the setting failed, in one sentence
 };
 [[nodiscard]] std::string_view name_of(RealTimeStep::Outcome outcome) noexcept;
 

@@ -63,10 +63,14 @@ class Ring {
   std::size_t mask_;
   // The producer stores the last position of the consumer that it read, and the consumer stores that of the
   // producer. Therefore, most calls do not access the cache line of the other thread.
-  alignas(cache_line) std::atomic<std::size_t> head_{0};  // written by the consumer
-  std::size_t known_tail_ = 0;                            // used only by the consumer
-  alignas(cache_line) std::atomic<std::size_t> tail_{0};  // written by the producer
-  std::size_t known_head_ = 0;                            // used only by the producer
+  alignas(cache_line) std::atomic<std::size_t> head_{0};  // number of items taken so far; written by the
+                                                          // consumer
+  std::size_t known_tail_ = 0;                            // last position of the producer that the consumer
+                                                          // read
+  alignas(cache_line) std::atomic<std::size_t> tail_{0};  // number of items added so far; written by the
+                                                          // producer
+  std::size_t known_head_ = 0;                            // last position of the consumer that the producer
+                                                          // read
 };
 
 }  // namespace softgrip::daemon

@@ -60,9 +60,12 @@ class TripleBuffer {
   };
 
   std::array<Slot, 3> slots_{};
-  alignas(cache_line) std::uint8_t write_ = 0;               // used only by the writer
-  alignas(cache_line) std::uint8_t read_ = 1;                // used only by the reader
-  alignas(cache_line) std::atomic<std::uint8_t> middle_{2};  // used by writer and reader
+  alignas(cache_line) std::uint8_t write_ = 0;               // index of the write slot; used only by the
+                                                             // writer
+  alignas(cache_line) std::uint8_t read_ = 1;                // index of the read slot; used only by the
+                                                             // reader
+  alignas(cache_line) std::atomic<std::uint8_t> middle_{2};  // index of the middle slot; used by writer and
+                                                             // reader
 };
 
 }  // namespace softgrip::daemon

@@ -12,7 +12,7 @@ namespace softgrip::daemon {
 namespace {
 
 constexpr double decimals_scale = 1e6;
-constexpr double largest_scaled = 9e18;  // largest scaled number; it is below 2^63
+constexpr double largest_scaled = 9e18;  // largest number of millionths that is written; it is below 2^63
 constexpr std::string_view columns =
     "time_s,channel,pressure_command_kpa,displacement_mm,pressure_kpa,temperature_c,reference_mm,"
     "feedforward_kpa,feedback_kpa,residual_mm,"

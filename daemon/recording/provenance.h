@@ -18,7 +18,7 @@ struct SourceFile {
 /// Data that are the same in all recordings of a daemon.
 struct Provenance {
   std::string software_version;
-  std::string rig;  ///< name of the rig
+  std::string rig;  ///< name of the recorded rig
   std::vector<SourceFile> files;
   std::vector<std::string> channel_names;
   bool simulated = false;          ///< true: there is no real board; fingers, valves and sensors are

@@ -27,7 +27,7 @@ struct RunStory {
   std::uint32_t request = 0;  ///< id of the request that started the sequence
   std::vector<EventEntry> events;
   std::uint64_t events_left_out = 0;  ///< number of events that did not fit into the file
-  std::string error;                  ///< disk error; empty if there was none
+  std::string error;                  ///< disk error of the recording; empty if there was none
 };
 
 /// Returns the parameters of a sequence as an object: {"squeeze_kpa": 4}.

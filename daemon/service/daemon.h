@@ -26,7 +26,7 @@
 namespace softgrip::daemon {
 
 struct DaemonOptions {
-  std::string program = "softgripd";  ///< name of the program in messages
+  std::string program = "softgripd";  ///< name of the program, used in messages
   /// Runs as fast as possible, without sleeping and without the machine's clock. Equal seeds give equal
   /// results. Requires a simulated board, and has no socket.
   bool virtual_time = false;
@@ -51,11 +51,11 @@ struct DaemonOptions {
 enum class Ending : std::uint8_t {
   asked,              ///< a signal or the duration ended a run that had no sequence
   interrupted,        ///< a signal or the duration ended the run before the end of its sequence
-  sequence_ended,     ///< the sequence ended; see Outcome::sequence_end
+  sequence_ended,     ///< the sequence of the run ended; see Outcome::sequence_end
   sequence_refused,   ///< the state of the rig did not permit the start
   not_idle,           ///< the rig did not become idle in time, so the sequence was not started
   real_time_refused,  ///< the rig file has `real_time: required: true`, and a setting could not be verified
-  socket_failed,      ///< the socket could not be opened
+  socket_failed,      ///< the socket of the daemon could not be opened
   board_taken,        ///< another program drives the board
   gpio_refused,       ///< a digital line of the rig file does not exist, or differs from the settings in the
                       ///< rig file
@@ -69,7 +69,7 @@ struct Outcome {
   std::string message;  ///< description of the error in one sentence; empty without an error
   /// `faulted` also if a fault latched after the last step and before the end of the run.
   std::optional<control::SequenceEnd> sequence_end;
-  Snapshot last;  ///< state after the last tick
+  Snapshot last;  ///< state of the rig after the last tick
   std::vector<std::string> channel_names;
   std::string recording_error;        ///< reason why record_folder is incomplete; empty if it is complete
   bool safe_state_confirmed = false;  ///< true: at the end, the board confirmed the safe outputs
@@ -80,7 +80,7 @@ struct Outcome {
   int signal = 0;  ///< first signal that requested the end before the outputs were safe; 0: there was none
   std::uint64_t ticks = 0;
   std::uint64_t overruns = 0;
-  double wall_s = 0;  ///< elapsed time of the run
+  double wall_s = 0;  ///< elapsed time of the run on the wall clock
 };
 
 /// Returns false if run() ended before the board was opened. In this case, the outputs of the board are

@@ -39,7 +39,7 @@ struct DaemonParts {
   MonotonicClock system_clock;
   VirtualClock virtual_clock;
   const Clock& clock;
-  Nanoseconds origin;  // time 0 of the event log
+  Nanoseconds origin;  // time that counts as 0 in the event log
   std::unique_ptr<drivers::Board> board;
   std::string board_text;
   control::RigController controller;

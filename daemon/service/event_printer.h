@@ -33,7 +33,7 @@ class EventPrinter {
 
  private:
   struct Flow {
-    double window_s = 0;  ///< start time of the present counting window
+    double window_s = 0;  ///< start time of the window in which events are counted
     int printed = 0;
     int suppressed = 0;
   };
@@ -42,7 +42,7 @@ class EventPrinter {
   std::shared_ptr<spdlog::logger> logger_;
   std::shared_ptr<spdlog::details::thread_pool> writer_;  // it must be destroyed first, because its thread
                                                           // uses the logger
-  std::map<std::string, Flow> flows_;                     // number of events by kind
+  std::map<std::string, Flow> flows_;                     // number of events in the window, by kind of event
 };
 
 }  // namespace softgrip::daemon

@@ -76,7 +76,7 @@ std::optional<rig::RigFile> kept_rig(const std::string& config) {
     const auto files = files_of(*text, config);
     document::Problems ignored;
     return files ? rig::read_stored_rig(*files, ignored) : std::nullopt;
-  } catch (const json::exception&) {  // a value has an unexpected type
+  } catch (const json::exception&) {  // a value in the JSON text has an unexpected type
     return std::nullopt;
   }
 }

@@ -23,7 +23,7 @@ enum class SafeOutputsEnd {
 
 struct SafeOutputsReport {
   SafeOutputsEnd end = SafeOutputsEnd::board_silent;
-  std::string text;  ///< the result in one sentence
+  std::string text;  ///< the result of the attempt in one sentence
 };
 
 /// Returns the exit code for the result of the attempt: 0, 4 or 5. The manual describes these codes.

@@ -22,7 +22,7 @@ class ServiceManager {
   void feed(Nanoseconds now, bool alive);
 
  private:
-  Nanoseconds interval_ = 0;  // 0: the unit has no watchdog
+  Nanoseconds interval_ = 0;  // time between two messages to the watchdog; 0: the unit has no watchdog
   Nanoseconds fed_ = 0;
   std::string status_;
 };

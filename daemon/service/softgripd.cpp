@@ -168,7 +168,7 @@ ExitCode run(const Arguments& arguments) {
   document::Problems problems;
   auto rig = rig::load_rig(arguments.config, problems);
   if (!rig || !problems.empty()) return refuse(problems);
-  std::fputs(problems.format().c_str(), stderr);  // these problems are warnings
+  std::fputs(problems.format().c_str(), stderr);  // the rig is valid, so these problems are warnings
   if (arguments.seed && !rig::reseed(*rig, *arguments.seed)) {
     complain("--seed needs a simulated board");
     return ExitCode::usage;

@@ -104,7 +104,7 @@ class Service {
                                                      // returned
   std::map<std::uint32_t, std::uint32_t> stops_of_;  // for each start, the request to stop this start that
                                                      // has no reply yet
-  std::vector<control::GripResult> results_;         // results by channel in the present sequence
+  std::vector<control::GripResult> results_;         // grip results by channel in the present sequence
   control::GripResult overall_ = control::GripResult::none;
   std::map<std::uint32_t, std::string> clients_;  // names of the clients that made the newest requests
   std::shared_ptr<const LoadedSequence> sequence_;

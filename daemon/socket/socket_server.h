@@ -103,7 +103,8 @@ class SocketServer {
   std::map<std::uint64_t, Client> clients_;
   std::uint64_t last_id_ = 0;
   Nanoseconds now_ = 0;
-  Nanoseconds accepts_again_ = 0;  // until this time, no descriptor is free
+  Nanoseconds accepts_again_ = 0;  // time until which the server accepts no clients, because no descriptor is
+                                   // free
   bool lines_left_ = false;        // true: a client has lines for the next call
 };
 

@@ -14,7 +14,7 @@ namespace softgrip::daemon {
 struct KnownStart {
   std::uint32_t request = 0;
   std::string id;            ///< id that the client gave the start; empty if it gave none
-  std::uint64_t client = 0;  ///< client that requested the start
+  std::uint64_t client = 0;  ///< connection of the client that requested the start
 };
 
 /// Stores the newest `most` starts, and the start of the running sequence.

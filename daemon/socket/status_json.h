@@ -28,9 +28,10 @@ struct StatusSources {
   const BusStatistics& bus;
   const std::string& board;  ///< description of the board in one line
   Nanoseconds origin = 0;
-  const RealTimeReport* real_time = nullptr;  ///< nullptr in virtual time
-  const rig::GpioSettings* gpio = nullptr;    ///< nullptr if the rig has no digital lines
-  const SharedState* shared = nullptr;        ///< must not be nullptr if gpio is set
+  const RealTimeReport* real_time = nullptr;  ///< report on the real-time settings; nullptr in virtual time
+  const rig::GpioSettings* gpio = nullptr;    ///< settings of the digital lines; nullptr if the rig has none
+  const SharedState* shared = nullptr;        ///< state that the threads share; must not be nullptr if gpio
+                                              ///< is set
 };
 
 /// Returns a fault as {"code", "name", "channel"}; the channel is null if the fault concerns the complete
