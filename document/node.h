@@ -31,7 +31,7 @@ struct Node {
                                ///< this value; otherwise empty
   bool refused = false;        ///< true: a problem of the node was already reported, or the node is
                                ///< truncated; the node is not checked again
-  std::vector<Node> items;     ///< items of a sequence
+  std::vector<Node> items;     ///< items of a sequence node
   std::vector<Entry> entries;  ///< entries of a map in the order of the text, with unique keys
 };
 struct Node::Entry {

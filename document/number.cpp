@@ -14,8 +14,8 @@ bool is_digit(char c) {
 
 /// The parts of a decimal number.
 struct Decimal {
-  std::string_view digits;  // text for from_chars(), without a leading +
-  std::string_view whole;   // digits before the decimal point
+  std::string_view digits;  // the number as text for from_chars(), without a leading +
+  std::string_view whole;   // digits of the number before the decimal point
   bool fraction = false;
   bool exponent = false;
 };

@@ -104,7 +104,7 @@ class MapReader {
   std::string what_;
   std::vector<std::string> known_;
   std::vector<std::string> missing_;
-  std::vector<std::string> bad_;  // keys whose value was refused
+  std::vector<std::string> bad_;  // keys of the map whose value was refused
   bool finished_ = false;
 };
 
