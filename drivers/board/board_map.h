@@ -91,7 +91,7 @@ struct ReadBack {
 
 /// A write of a fixed value to one register or coil.
 struct FixedWrite {
-  std::uint8_t function = 0;  ///< function code 5, 6 or 16
+  std::uint8_t function = 0;  ///< function code of the write: 5, 6 or 16
   std::uint16_t address = 0;
   std::uint16_t value = 0;  ///< value to write; for a coil 0 or 1
   /// Value of every second write, for a heartbeat if the board expects a change of the value.
@@ -116,12 +116,12 @@ struct BoardWatchdog {
     std::uint16_t address = 0;
     std::uint16_t mask = 0xffff;  ///< the watchdog has tripped if (number & mask) is not 0 in any of `count`
                                   ///< numbers
-    std::uint16_t count = 1;      ///< quantity of numbers, one per output
+    std::uint16_t count = 1;      ///< quantity of registers or bits, one per output
   };
 
   /// The register that contains the number of clients.
   struct ClientCount {
-    std::uint8_t function = 0;  ///< function code 3 or 4
+    std::uint8_t function = 0;  ///< function code of the read: 3 or 4
     std::uint16_t address = 0;
   };
 

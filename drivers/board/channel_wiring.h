@@ -21,7 +21,7 @@ struct SensorErrorCode {
 
 /// A sensor on an input of the board.
 struct InputWiring {
-  std::size_t input = 0;                       ///< number of the terminal, from 0
+  std::size_t input = 0;                       ///< number of the input terminal, from 0
   ElectricalUnit unit = ElectricalUnit::volt;  ///< unit in the rig file; it must equal the unit of the
                                                ///< board's terminal
   TwoPoints scaling;                           ///< x: V or mA, y: mm, kPa or degrees C; the slope may be
@@ -35,7 +35,7 @@ struct InputWiring {
 
 /// A valve on an output of the board.
 struct OutputWiring {
-  std::size_t output = 0;  ///< number of the terminal, from 0
+  std::size_t output = 0;  ///< number of the output terminal, from 0
   ElectricalUnit unit = ElectricalUnit::volt;
   TwoPoints scaling;       ///< line from the electrical value in V or mA (x) to the pressure in kPa (y)
   std::size_t module = 0;  ///< index of the module, for a board with several modules

@@ -13,8 +13,9 @@ namespace softgrip::drivers {
 
 /// An input after scaling. Both numbers are NaN if the board delivered no number.
 struct JudgedInput {
-  double electrical = std::numeric_limits<double>::quiet_NaN();  ///< electrical value [V or mA]
-  double physical = std::numeric_limits<double>::quiet_NaN();    ///< value after scaling [mm or kPa]
+  double electrical = std::numeric_limits<double>::quiet_NaN();  ///< electrical value of the input [V or mA]
+  double physical = std::numeric_limits<double>::quiet_NaN();    ///< value of the input after scaling [mm or
+                                                                 ///< kPa]
   model::Validity validity = model::Validity::none_yet;
 };
 

@@ -198,7 +198,7 @@ class LibgpiodLines final : public GpioLines {
     std::size_t count = 0;
     for (std::size_t i = 0; ready > 0 && i < polled_count_; ++i) {
       if ((polled_[i].revents & POLLIN) == 0) {
-        if (polled_[i].revents != 0) return std::nullopt;  // the chip was removed
+        if (polled_[i].revents != 0) return std::nullopt;  // the chip was removed, so no edge can be read
         continue;
       }
       if (count == edges.size()) break;

@@ -36,7 +36,7 @@ struct GpioLineSettings {
   std::string line;                     ///< name of the line; if it is empty, `offset` selects the line
   std::optional<std::uint32_t> offset;  ///< number of the line in its chip, from 0
   bool active_low = false;              ///< true: a low level means active (pressed, in position, on)
-  GpioBias bias = GpioBias::as_is;      ///< pull resistor; used for inputs
+  GpioBias bias = GpioBias::as_is;      ///< setting of the pull resistor; used for inputs only
 };
 /// Returns a description of a line, for example "gpiochip0 line `ESTOP`, active high".
 [[nodiscard]] std::string text_of(const GpioLineSettings& line);
@@ -80,7 +80,7 @@ struct GpioFailure {
   /// request.
   enum class Kind : std::uint8_t { refused, failed };
   Kind kind = Kind::refused;
-  std::size_t line = 0;  ///< index of the line in the settings
+  std::size_t line = 0;  ///< index of the line in the settings of all lines
   std::string message;
   std::string hint;
 };

@@ -90,7 +90,7 @@ struct IioBoard::Parts {
     double offset = 0;  // number that is added to the raw number
     std::string powerdown_path;
     IioAttribute powerdown;
-    IioAttribute wake;  // powerdown attribute, which is open for writing
+    IioAttribute wake;  // powerdown attribute of the output, which is open for writing
     bool is_off = false;
     bool stays_off = false;  // true: an earlier attempt to switch the output on had no effect
   };

@@ -27,7 +27,7 @@ struct ReadStep {
 struct WriteStep {
   std::uint8_t function = 0;
   std::uint16_t address = 0;
-  std::uint16_t count = 0;  ///< number of registers
+  std::uint16_t count = 0;  ///< number of registers that the write contains
   std::size_t first_word = 0;
 
   bool operator==(const WriteStep&) const = default;

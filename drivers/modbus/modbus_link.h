@@ -98,7 +98,7 @@ class ModbusLink {
   static constexpr int whole_frame = 0;
 
   Descriptor held_;               ///< descriptor that is closed together with the link
-  Nanoseconds heard_at_ = 0;      ///< time of the last received bytes
+  Nanoseconds heard_at_ = 0;      ///< time at which bytes were last received
   bool answer_may_come_ = false;  ///< true: a response to a request of the last session may still arrive
 
  private:

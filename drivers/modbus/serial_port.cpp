@@ -1,6 +1,6 @@
 #include "drivers/modbus/serial_port.h"
 
-#include <asm/termbits.h>  // for termios2; <termios.h> cannot be included too
+#include <asm/termbits.h>  // for struct termios2; <termios.h> cannot be included together with this header
 #include <fcntl.h>
 #include <modbus/modbus.h>
 #include <sys/file.h>

@@ -26,7 +26,8 @@ constexpr std::chrono::milliseconds no_lump{100};
 std::size_t rtu_request_size(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < 2) return 0;
   constexpr std::size_t crc_size = 2;
-  constexpr std::size_t fixed_request = 6 + crc_size;  // unit id, function code, two words, CRC
+  constexpr std::size_t fixed_request = 6 + crc_size;  // size of a request with unit id, function code, two
+                                                       // words and CRC
   constexpr std::size_t count_of_multiple = 6;
   constexpr std::size_t count_of_read_write = 10;
   const auto counted = [&](std::size_t at) -> std::size_t {
