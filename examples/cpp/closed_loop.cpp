@@ -33,8 +33,8 @@ int main(int count, char** arguments) try {
   softgrip::Controller controller(settings);
   softgrip::Reference reference;
   reference.start(1, 0);         // the clock of the board starts at 1 s
-  reference.ramp_to(6, 3);       // ramp to 6 mm within 3 s
-  reference.sine(9, 3, 0.1, 3);  // three cycles of 10 s
+  reference.ramp_to(6, 3);       // ramp of the reference to 6 mm within 3 s
+  reference.sine(9, 3, 0.1, 3);  // three cycles of a sine with a period of 10 s
   controller.follow(reference);
 
   if (board.connect(100ms) != softgrip::BusStatus::ok) return 1;
