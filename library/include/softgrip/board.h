@@ -20,22 +20,23 @@ namespace softgrip {
 /// The reason why a reading can or cannot be used.
 enum class Validity : std::uint8_t {
   valid,         ///< the reading can be used
-  none_yet,      ///< there has been no response yet
+  none_yet,      ///< the board has not responded yet
   out_of_range,  ///< the signal is outside the electrical range of the sensor
   sensor_error,  ///< the sensor or the board reported an error code
   jumped,        ///< the reading changed faster than the finger can move
-  frozen,        ///< did not change although the command changed
+  frozen,        ///< the reading did not change although the command changed
   stale,         ///< the reading is older than permitted
 };
 
 /// Reading of one channel.
 struct Reading {
-  double displacement = 0;  ///< displacement in the unit of the model
-  double pressure_kpa =
-      std::numeric_limits<double>::quiet_NaN();  ///< measured pressure [kPa]; NaN: no sensor
+  double displacement = 0;  ///< measured displacement in the unit of the model
+  double pressure_kpa = std::numeric_limits<double>::quiet_NaN();  ///< measured pressure [kPa]; NaN: the
+                                                                   ///< channel has no pressure sensor
   double temperature_c =
-      std::numeric_limits<double>::quiet_NaN();  ///< temperature [degrees Celsius]; NaN: no sensor
-  std::chrono::nanoseconds sampled_at{0};        ///< time of the sample
+      std::numeric_limits<double>::quiet_NaN();  ///< measured temperature [degrees Celsius]; NaN: the channel
+                                                 ///< has no temperature sensor
+  std::chrono::nanoseconds sampled_at{0};        ///< time at which the sensor was sampled
   std::uint32_t sequence = 0;                    ///< number of responses of the board so far
   Validity validity = Validity::none_yet;        ///< validity of the reading according to the driver
 };
@@ -43,12 +44,12 @@ struct Reading {
 /// Result of an exchange with a board.
 enum class BusStatus : std::uint8_t {
   ok,                ///< the commands were written and the readings taken
-  disconnected,      ///< there is no connection; call connect()
+  disconnected,      ///< there is no connection to the board; call connect()
   timed_out,         ///< the deadline passed before the exchange was complete
-  bad_reply,         ///< the response is malformed
+  bad_reply,         ///< the response of the board is malformed
   exception,         ///< the board returned an error
   write_refused,     ///< the outputs did not change to the commanded values
-  overwritten,       ///< another client also writes the outputs
+  overwritten,       ///< another client also writes to the outputs of the board
   watchdog_tripped,  ///< the watchdog of the board holds the outputs at their safe value
   closed_at_once,    ///< the connection was closed before the first response
 };
@@ -91,11 +92,11 @@ struct SimulatedObject {
 
 /// One channel of a SimulatedBoard.
 struct SimulatedFinger {
-  Model model;                                 ///< model of the finger
+  Model model;                                 ///< model of the simulated finger
   std::optional<SimulatedObject> object = {};  ///< object that is present from the start
   double noise = 0;                            ///< standard deviation of the noise of a reading, >= 0
-  double pressure_min_kpa = 0;                 ///< smallest output pressure [kPa]
-  double pressure_max_kpa = 100;               ///< largest output pressure [kPa]
+  double pressure_min_kpa = 0;                 ///< smallest output pressure of the board [kPa]
+  double pressure_max_kpa = 100;               ///< largest output pressure of the board [kPa]
   std::uint64_t seed = 1;                      ///< seed of the random numbers of all noise
 };
 

@@ -24,8 +24,9 @@ struct Limits {
   double pressure_max_kpa = 0;       ///< largest command [kPa]; it must be above pressure_min_kpa
   double slew_up_kpa_per_s = 300;    ///< fastest rise of the command [kPa/s], > 0
   double slew_down_kpa_per_s = 300;  ///< fastest fall of the command [kPa/s], > 0
-  double displacement_min = -1e6;    ///< lower limit of references
-  double displacement_max = 1e6;     ///< upper limit of references; it must be above displacement_min
+  double displacement_min = -1e6;    ///< lower limit of displacement references
+  double displacement_max = 1e6;     ///< upper limit of displacement references; it must be above
+                                     ///< displacement_min
   double rest_kpa = 0;               ///< command while the finger rests [kPa]; it is limited to the range of
                                      ///< the command
 };
@@ -48,7 +49,7 @@ struct LimitedCommand {
 
 /// Method against integrator windup, which occurs while the command cannot follow the request.
 enum class AntiWindup : std::uint8_t {
-  none,              ///< no method (for comparisons)
+  none,              ///< no anti-windup (for comparisons)
   conditional,       ///< the integrator stops while it would move a limited request further beyond the limit
   back_calculation,  ///< the part of the request that the limits remove drives the integrator back within
                      ///< `tracking_time_s`
@@ -61,7 +62,7 @@ struct PidSettings {
   double kd_kpa_s_per_mm = 0;         ///< derivative gain [kPa s per unit of the model]
   double derivative_filter_s = 0.02;  ///< time constant of the filter of the derivative [s], >= 0
   double setpoint_weight = 1;         ///< share of the reference in the proportional part, 0 to 1
-  AntiWindup anti_windup = AntiWindup::back_calculation;  ///< anti-windup method
+  AntiWindup anti_windup = AntiWindup::back_calculation;  ///< method against integrator windup
   double tracking_time_s = 0.5;                           ///< time constant for back_calculation [s], > 0
 };
 
@@ -139,14 +140,14 @@ class SOFTGRIP_API Reference {
 
 /// The kind of a feedforward.
 enum class FeedforwardKind : std::uint8_t {
-  none,        ///< no feedforward
+  none,        ///< the command has no feedforward part
   bouc_wen,    ///< inverse of the hysteresis without the rest of the model
   full_model,  ///< inverse of the whole model: hysteresis, creep, lag, dead time
 };
 
 /// Result of Feedforward::step().
 struct FeedforwardStep {
-  double pressure_kpa = 0;    ///< command of this period [kPa]
+  double pressure_kpa = 0;    ///< pressure command of this period [kPa]
   bool out_of_reach = false;  ///< true: because of the limits, the command cannot reach the reference
 };
 
@@ -189,8 +190,9 @@ class SOFTGRIP_API Feedforward {
 struct ControllerSettings {
   Model model;                                                ///< model of the finger in free motion
   Limits limits = {};                                         ///< limits of command and reference
-  PidSettings pid = {};                                       ///< settings of the PID
-  FeedforwardKind feedforward = FeedforwardKind::full_model;  ///< kind of feedforward
+  PidSettings pid = {};                                       ///< settings of the PID controller
+  FeedforwardKind feedforward = FeedforwardKind::full_model;  ///< kind of feedforward that the controller
+                                                              ///< uses
   double extra_latency_s = 0;       ///< latency from a command to the output of the board [s], 0 to 1
   double tick_s = 0.005;            ///< period of tick() [s], 0.0001 to 1
   double sensor_noise = 0.05;       ///< standard deviation of a reading, in the unit of the model, > 0
@@ -202,13 +204,13 @@ struct ControlOutput {
   double command_kpa = 0;                  ///< command for the board [kPa], within the limits
   double reference = 0;                    ///< present value of the reference; NaN while no reference is
                                            ///< followed
-  double displacement = 0;                 ///< last valid reading
+  double displacement = 0;                 ///< last valid displacement reading
   double feedforward_kpa = 0;              ///< feedforward part of the command [kPa]
   double feedback_kpa = 0;                 ///< feedback part of the command [kPa]
   double residual = 0;                     ///< reading minus the reading that the model predicts
   Validity validity = Validity::none_yet;  ///< validity of the reading after the plausibility check
   bool saturated = false;                  ///< true: the request was outside the pressure range
-  bool slewing = false;                    ///< true: the slew limits changed the request
+  bool slewing = false;                    ///< true: the slew limits changed the requested pressure
   bool out_of_reach = false;               ///< true: the feedforward cannot reach the reference
 };
 

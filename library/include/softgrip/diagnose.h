@@ -47,7 +47,7 @@ struct Diagnosis {
   std::string sentence;               ///< the verdict in one sentence
   std::vector<std::string> warnings;  ///< warnings about the logs and the result
   std::vector<Cause> causes;          ///< named causes, in the order in which they were found
-  Unit unit = Unit::mm;               ///< unit of noise and errors
+  Unit unit = Unit::mm;               ///< unit of the noise and of the errors
   double noise = 0;                   ///< standard deviation of the noise of the readings
   double rmse_given = 0;              ///< root mean square error of the given model
   double rmse_refitted = 0;           ///< RMSE of the refitted model on held-out blocks
@@ -55,7 +55,7 @@ struct Diagnosis {
   double unexplained_percent = 0;     ///< share of the model error that no cause explains [%]
   Model refitted;                     ///< model of the given structure with parameters that were estimated
                                       ///< again
-  Model extended;                     ///< the refitted model with the causes
+  Model extended;                     ///< the refitted model, extended by the named causes
   std::string json;  ///< content of diagnosis.json that `softgrip diagnose` writes, without the experiment
                      ///< and the closed loop
   std::string html;  ///< content of report.html that `softgrip diagnose` writes, without the experiment and
@@ -73,11 +73,12 @@ struct Diagnosis {
 
 /// Result of diagnose_change().
 struct Change {
-  std::string verdict;   ///< "unchanged", "cause_found", "ambiguous", "partly_explained" or "unexplained"
+  std::string verdict;   ///< verdict: "unchanged", "cause_found", "ambiguous", "partly_explained" or
+                         ///< "unexplained"
   std::string sentence;  ///< the verdict in one sentence
   std::vector<std::string> warnings;  ///< warnings about the logs and the result
   std::vector<Cause> causes;          ///< causes of the change of the finger, the largest change first
-  Unit unit = Unit::mm;               ///< unit of displacements
+  Unit unit = Unit::mm;               ///< unit of all displacements in the result
   std::string json;                   ///< content of diagnosis.json that `softgrip diagnose --healthy` writes
   std::string html;                   ///< content of report.html that `softgrip diagnose --healthy` writes
 };

@@ -61,20 +61,20 @@ struct HealthAlarm {
 /// A possible cause of the active alarms.
 struct Suspect {
   std::string id;                       ///< id of the cause; the reference page "causes" lists all ids
-  std::string words;                    ///< the cause in words
+  std::string words;                    ///< name of the cause in words
   std::vector<std::string> next_steps;  ///< checks that confirm this cause, the quickest check first
 };
 
 /// Health of one finger.
 struct FingerHealth {
-  std::string finger;               ///< name of the channel
+  std::string finger;               ///< name of the finger's channel
   std::string state;                ///< state of the finger: "learning", "steady" or "alarm"
-  std::string sentence;             ///< the state in one sentence
-  Unit unit = Unit::mm;             ///< unit of displacements
-  std::size_t grips = 0;            ///< number of recordings
+  std::string sentence;             ///< the state of the finger in one sentence
+  Unit unit = Unit::mm;             ///< unit of all displacements of the finger
+  std::size_t grips = 0;            ///< number of recordings of the finger
   std::vector<std::string> points;  ///< labels of the points in the order of time: a day, or the name of a
                                     ///< recording
-  std::vector<HealthIndicator> indicators;  ///< all indicators
+  std::vector<HealthIndicator> indicators;  ///< all indicators of the finger
   std::vector<HealthAlarm> alarms;          ///< alarms in the order in which they were detected
   std::vector<Suspect> suspects;            ///< possible causes of the active alarms; the first one explains
                                             ///< the most alarms
@@ -85,7 +85,7 @@ struct FingerHealth {
 /// A recording that was not used.
 struct SkippedRecording {
   std::string recording;  ///< name of the folder of the recording
-  std::string reason;     ///< reason in words
+  std::string reason;     ///< reason why the recording was not used, in words
 };
 
 /// Result of health().

@@ -19,15 +19,15 @@ namespace softgrip {
 
 /// 95 % interval of a number, in the unit of the number.
 struct Interval {
-  double lower = 0;  ///< lower end
-  double upper = 0;  ///< upper end
+  double lower = 0;  ///< lower end of the interval
+  double upper = 0;  ///< upper end of the interval
 };
 
 /// A parameter that was estimated or kept fixed.
 struct Estimate {
   std::string name;              ///< name of the parameter, for example "kelvin_voigt.k1_kpa_per_mm"
-  std::string unit;              ///< unit of value and interval
-  double value = 0;              ///< estimated or fixed value
+  std::string unit;              ///< unit of the value and of the interval
+  double value = 0;              ///< estimated or fixed value of the parameter
   std::optional<Interval> ci95;  ///< 95 % interval; empty if the parameter is fixed, at a bound, or without
                                  ///< effect on the prediction
   bool free = false;             ///< true: the parameter was estimated; false: it was fixed
@@ -37,13 +37,13 @@ struct Estimate {
 /// Prediction of one log.
 struct Prediction {
   std::string log;                  ///< name of the log
-  Unit unit = Unit::mm;             ///< unit of prediction and errors
+  Unit unit = Unit::mm;             ///< unit of the prediction and of the errors
   std::vector<double> time_s;       ///< times of the samples [s]
   std::vector<double> prediction;   ///< predicted reading of each sample, in `unit`
   std::vector<double> error;        ///< reading minus prediction; NaN where a reading is missing
-  double rmse = 0;                  ///< root mean square error, in `unit`
+  double rmse = 0;                  ///< root mean square error of the prediction, in `unit`
   double rmse_percent_of_span = 0;  ///< RMSE divided by the range of the readings [%]
-  double largest_error = 0;         ///< largest absolute error, in `unit`
+  double largest_error = 0;         ///< largest absolute error of the prediction, in `unit`
   /// True if the prediction is not finite. Also true if its RMSE exceeds the range of the readings and its
   /// correlation with the readings is low.
   bool diverges = false;

@@ -23,9 +23,9 @@ struct Log {
   std::vector<double> displacement = {};          ///< readings in `unit`; NaN: the reading is missing
   std::vector<double> pressure_kpa = {};          ///< measured pressure [kPa], optional; NaN: the reading is
                                                   ///< missing
-  std::vector<double> temperature_c = {};         ///< temperature [degrees Celsius], optional
-  std::vector<double> supply_kpa = {};            ///< supply pressure [kPa], optional
-  Unit unit = Unit::mm;                           ///< unit of the displacement
+  std::vector<double> temperature_c = {};         ///< measured temperature [degrees Celsius], optional
+  std::vector<double> supply_kpa = {};            ///< measured supply pressure [kPa], optional
+  Unit unit = Unit::mm;                           ///< unit of the displacement readings
   std::string path = {};                          ///< path of the file of the log; empty: the log was created
                                                   ///< in memory
   std::string sha256 = {};                        ///< hash of the file; empty: the log was created in memory
@@ -67,14 +67,14 @@ enum class Drive : std::uint8_t {
 
 /// The initial state of a log.
 enum class Begin : std::uint8_t {
-  automatic,  ///< the state is determined from the log
+  automatic,  ///< the initial state is determined from the log
   rest,       ///< the finger is at rest under the first pressure
   unknown,    ///< the state is unknown and is estimated from the readings
 };
 
 /// Settings for the use of logs. They correspond to the options --drive, --begin and --held of `softgrip`.
 struct LogUse {
-  Drive drive = Drive::command;    ///< input signal of the model
+  Drive drive = Drive::command;    ///< pressure that is the input of the model
   Begin begin = Begin::automatic;  ///< initial state of each log
   bool held = false;               ///< true: the command keeps its value until the next sample; false: it is
                                    ///< linear between samples

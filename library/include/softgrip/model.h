@@ -26,11 +26,11 @@ enum class Unit : std::uint8_t {
 /// One parameter of a model.
 struct Parameter {
   std::string name;   ///< name of the parameter, for example "kelvin_voigt.k1_kpa_per_mm"
-  double value = 0;   ///< value in `unit`
+  double value = 0;   ///< value of the parameter, in `unit`
   std::string unit;   ///< unit of the parameter, for example "kPa/mm"; empty: the parameter has no unit
-  double lower = 0;   ///< smallest permitted value
-  double upper = 0;   ///< largest permitted value
-  std::string about;  ///< description in one line
+  double lower = 0;   ///< smallest permitted value of the parameter
+  double upper = 0;   ///< largest permitted value of the parameter
+  std::string about;  ///< description of the parameter in one line
 };
 
 /// Settings of Model::simulate().

@@ -16,7 +16,7 @@ namespace softgrip {
 /// Result of validate().
 struct Validation {
   std::string verdict;                  ///< assessment of the predictions in one sentence
-  std::vector<std::string> warnings;    ///< warnings about the data
+  std::vector<std::string> warnings;    ///< warnings about the logs
   std::vector<Prediction> predictions;  ///< one prediction per log
   std::string json;                     ///< content of validate.json that `softgrip validate` writes
   std::string html;                     ///< content of report.html that `softgrip validate` writes
