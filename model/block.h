@@ -89,7 +89,7 @@ enum class Inverse : std::uint8_t {
   lead,      ///< inverted with the derivative of the planned signal
   preview,   ///< inverted with the future value of the reference
   play,      ///< inverted by adding half the band in the direction of motion
-  bound,     ///< not inverted; the block limits the reference
+  bound,     ///< not inverted; the block sets a limit for the reference
   ignored,   ///< not inverted, because the effect is random or small (noise, quantisation)
 };
 
@@ -99,9 +99,9 @@ struct BlockInfo {
   Station station;
   Kind kind;
   Inverse inverse;
-  std::string_view title;     ///< title, such as "Transport delay"
+  std::string_view title;     ///< title of the block, such as "Transport delay"
   std::string_view meaning;   ///< description in one line for the reference page
-  std::string_view equation;  ///< the equation as plain text
+  std::string_view equation;  ///< equation of the block as plain text
   bool repeatable = false;    ///< true: a chain may contain the block more than once (two stops, two
                               ///< disturbances)
 };

@@ -18,7 +18,7 @@ struct BlockDescriptor {
   std::span<const ParameterSpec> parameters;  ///< parameters that do not belong to a repeated part
   std::span<const ParameterSpec> repeated;    ///< parameters of one repeated part; empty for most blocks
   std::size_t min_parts = 0;  ///< smallest number of parts; 1 if the block declares no other number
-  std::size_t max_parts = 0;  ///< largest number of parts
+  std::size_t max_parts = 0;  ///< largest number of repeated parts
   /// Returns the reason why these values are not valid together; empty if they are valid. The pointer is
   /// nullptr if all combinations of values are valid.
   std::string_view (*objection)(std::span<const double> values) = nullptr;

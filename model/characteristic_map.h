@@ -56,7 +56,7 @@ class CharacteristicMap {
 
   T curvature_;
   T span_mm_;
-  T per_mm_;  ///< curvature divided by span
+  T per_mm_;  ///< curvature of the map divided by its span
   T phi1_;    ///< phi_1(a) = (exp(a) - 1) / a for the curvature a
   T first_slope_, last_slope_;
 };

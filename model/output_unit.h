@@ -13,7 +13,7 @@ namespace softgrip::model {
 
 enum class OutputUnit {
   mm,
-  deg,  ///< bending angle in degrees
+  deg,  ///< the output is a bending angle in degrees
 };
 inline constexpr std::array all_output_units{OutputUnit::mm, OutputUnit::deg};
 inline constexpr double deg_per_rad = 180 / std::numbers::pi;

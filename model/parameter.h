@@ -14,7 +14,7 @@ namespace softgrip::model {
 struct ParameterSpec {
   std::string_view name;
   std::string_view unit;     ///< unit; "" for a number without a unit
-  std::string_view meaning;  ///< description in one line
+  std::string_view meaning;  ///< description of the parameter in one line
   double default_value = 0;  ///< value for which the block has a typical effect
   double lower = 0;          ///< smallest permitted value; the value itself is permitted
   double upper = 0;          ///< largest permitted value; the value itself is permitted

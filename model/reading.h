@@ -11,7 +11,7 @@ namespace softgrip::model {
 /// The validity of a reading: `valid`, or the reason why the reading cannot be used.
 enum class Validity : std::uint8_t {
   valid,
-  none_yet,      ///< there has been no reply yet
+  none_yet,      ///< the board has not replied yet
   out_of_range,  ///< the signal is outside the electrical range of the sensor
   sensor_error,  ///< the sensor or the board reported an error code
   jumped,        ///< the reading changed faster than a finger can move

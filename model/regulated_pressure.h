@@ -55,7 +55,7 @@ class RegulatedPressure {
       next(in);
       return;
     }
-    if (is_zero(in.duration_s)) return;  // the pressure cannot jump
+    if (is_zero(in.duration_s)) return;  // in a segment without duration, the pressure cannot change
     const double wanted = std::ceil(value_of(in.duration_s) / longest_step_s - 1e-9);
     const int steps = static_cast<int>(std::clamp(wanted, 1.0, most_steps));
     const T step_s = in.duration_s / static_cast<double>(steps);

@@ -28,9 +28,9 @@ namespace softgrip::model {
 /// of 0 has no effect.
 template <class T>
 struct BoucWenSkew {
-  T delta_per_kpa{0.0};    ///< deviation of gamma
-  T epsilon_per_kpa{0.0};  ///< deviation of eta
-  T beta_share{0.0};       ///< relative deviation of beta
+  T delta_per_kpa{0.0};    ///< deviation of the parameter gamma
+  T epsilon_per_kpa{0.0};  ///< deviation of the parameter eta
+  T beta_share{0.0};       ///< deviation of the parameter beta, divided by beta
 };
 
 /// Parameters by which the loop changes at high pressure rates.

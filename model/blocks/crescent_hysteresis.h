@@ -69,7 +69,7 @@ class CrescentHysteresis {
   T gain_;
   T bend_;
   T range_kpa_;
-  T at_{0.0};  // state c
+  T at_{0.0};  // the state c of the generalised play
   T output_{0.0};
 };
 

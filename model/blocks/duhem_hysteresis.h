@@ -79,7 +79,7 @@ class DuhemHysteresis {
   T unloading_per_kpa_;  // 1 divided by the unloading length
   T loading_per_kpa_;
   bool falling_ = false;
-  T wound_kpa_{0.0};  // state z
+  T wound_kpa_{0.0};  // the state z of the operator
   T pressure_{0.0};
   T output_{0.0};
 };

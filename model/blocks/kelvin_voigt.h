@@ -92,7 +92,7 @@ class KelvinVoigt {
  private:
   struct Branch {
     T k, c;
-    T x;  // displacement of the branch [mm]
+    T x;  // present displacement of the branch [mm]
 
     [[nodiscard]] ExponentialWeights<T> weights(const T& duration_s) const {
       return ExponentialWeights<T>::make(duration_s, T(k / c), T(1.0 / c));

@@ -66,9 +66,9 @@ class RelaxingFriction {
   }
 
   T gain_;
-  T per_kpa_;        // 1 divided by the width
-  T per_s_;          // 1 divided by tau
-  T held_kpa_{0.0};  // state z
+  T per_kpa_;        // 1 divided by the width of the hysteresis
+  T per_s_;          // 1 divided by the relaxation time tau
+  T held_kpa_{0.0};  // the state z of the friction
   T pressure_{0.0};
   T output_{0.0};
 };

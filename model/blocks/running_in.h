@@ -32,7 +32,7 @@ class RunningIn : public SurroundingsGain<RunningIn<T>, T> {
 
  private:
   T run_in_;
-  T per_s_;  // 1 divided by tau
+  T per_s_;  // 1 divided by the time constant tau
 };
 
 }  // namespace softgrip::model

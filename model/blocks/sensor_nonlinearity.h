@@ -40,8 +40,8 @@ class SensorNonlinearity {
     return y + x * (1.0 - x) * (bow_mm_ + wave_mm_ * (1.0 - 2.0 * x));
   }
 
-  T bow_mm_;   // 4 times bow
-  T wave_mm_;  // 6 sqrt(3) times wave
+  T bow_mm_;   // 4 times the parameter bow
+  T wave_mm_;  // 6 sqrt(3) times the parameter wave
   T range_mm_;
   T output_{0.0};
 };

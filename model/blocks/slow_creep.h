@@ -63,7 +63,7 @@ class SlowCreep {
   }
 
   T gain_;
-  T rate_;  // 1 divided by tau
+  T rate_;  // 1 divided by the time constant tau
   T pressure_{0.0};
   T creep_kpa_{0.0};  // low-pass filtered pressure that drives the creep
   T output_{0.0};

@@ -60,7 +60,7 @@ class Wear {
   }
 
   T gain_per_m_;
-  T way_mm_{0.0};  // total travel l [mm]
+  T way_mm_{0.0};  // total travel l of the actuator [mm]
   T input_mm_{0.0};
   MovingGain<T> gain_;
   T output_{0.0};
