@@ -53,7 +53,7 @@ struct RigFile {
   std::string path;                            ///< path of the rig file, as the user gave it
   control::RigSettings settings;               ///< settings of the controller; channels are in the order of
                                                ///< the file
-  std::vector<ValveFacts> valves;              ///< one entry per channel
+  std::vector<ValveFacts> valves;              ///< properties of the valves, one entry per channel
   std::vector<drivers::ChannelWiring> wiring;  ///< one entry per channel, for every kind of board
   std::variant<simulation::SimulatedBoardSettings, drivers::ModbusSettings, drivers::IioSettings> board;
   std::optional<std::uint64_t> seed;  ///< seed of a simulated board, as in the file; empty if the file gives

@@ -30,7 +30,7 @@ struct Context {
   std::string board_key;                            ///< key that gives the kind of the board, such as
                                                     ///< "modbus_tcp"
   std::vector<KnownModule> modules;                 ///< modules of the board; empty for a simulated board
-  std::vector<drivers::ChannelWiring> wiring;       ///< one entry per channel
+  std::vector<drivers::ChannelWiring> wiring;       ///< wiring of the channels, one entry per channel
   std::map<std::string, document::Location> names;  ///< names of the channels, with their locations in the
                                                     ///< file
   UsedTerminals inputs;

@@ -16,7 +16,7 @@ namespace softgrip::plc {
 
 /// A sequence and its parameters, which the PLC selects by a number in the recipe register.
 struct Recipe {
-  std::uint16_t number = 0;  ///< number in the recipe register, from 1
+  std::uint16_t number = 0;  ///< number of the recipe in the recipe register, from 1
   std::string sequence;
   std::string squeeze;       ///< parameter of the sequence that the register `squeeze` sets; empty: the
                              ///< register has no effect

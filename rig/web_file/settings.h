@@ -28,7 +28,7 @@ struct Settings {
   Role without_token = Role::look;
   double session_idle_s = 1800;  ///< a session ends after this time without a request and without an open
                                  ///< page [s]
-  double session_s = 43200;      ///< every session ends after this time [s]
+  double session_s = 43200;      ///< every session of the page ends after this time [s]
   std::string recordings;        ///< folder of the daemon's recordings; empty: the page shows no recordings
 };
 
