@@ -29,7 +29,8 @@ struct EmulatorSettings {
   std::vector<EmulatedModule> modules;
   Wire wire = Wire::tcp;
   std::vector<drivers::ChannelWiring> wiring;
-  std::vector<simulation::PlantSettings> plants;  ///< simulated fingers, one per channel
+  std::vector<simulation::PlantSettings> plants;  ///< settings of the simulated fingers, one entry per
+                                                  ///< channel
   std::vector<FaultSpec> faults;
 };
 

@@ -41,7 +41,7 @@ enum class FaultKind : std::uint8_t {
   stray_bytes,        ///< each reply has `before` extra bytes before it, and `behind` extra bytes after it
   disconnect,         ///< open connections are closed, and new connections are closed immediately
   // faults of the board
-  ignored_write,  ///< writes are confirmed but have no effect
+  ignored_write,  ///< the board confirms writes but does not execute them
   // faults of a channel
   sensor_stuck,         ///< the sensor repeats its last value
   sensor_jumping,       ///< in every second interval of interval_s, by_mm is added to the reading

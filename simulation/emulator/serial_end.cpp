@@ -72,7 +72,7 @@ tl::expected<void, std::string> SerialEnd::open_device() {
   modbus_t* const context = drivers::new_context(line_);
   const drivers::SerialFailure failed = drivers::open_serial(context, line_, kept_);
   end_ = Descriptor{::modbus_get_socket(context)};
-  ::modbus_free(context);  // this call does not close the descriptor
+  ::modbus_free(context);  // modbus_free() does not close the descriptor
   if (failed.what != nullptr) return failure(std::string(failed.what) + " " + line_.device, failed.error);
   pseudo_ = is_pseudo_terminal(line_.device);
   return {};

@@ -64,7 +64,7 @@ class Server {
 
   Emulator& emulator_;
   ServerSockets sockets_;
-  std::vector<modbus::Entrance> entrances_;  // one per link
+  std::vector<modbus::Entrance> entrances_;  // one entrance for each link
   modbus::Entrance control_entrance_;
   Clock::time_point start_ = Clock::now();
   std::list<Client> clients_;

@@ -48,7 +48,7 @@ Reply of_another_question(Wire wire, const Request& request, const Bytes& pdu) {
 /// Returns the number of registers that a request reads, or the number that it writes, if this is larger.
 /// Returns 0 for requests that read or write bits.
 std::size_t most_registers_in(const Bytes& pdu) noexcept {
-  constexpr std::size_t counted = 5;  // function code, address and number of registers
+  constexpr std::size_t counted = 5;  // size of function code, address and number of registers
   constexpr std::size_t counted_twice = 9;
   switch (pdu[0]) {
     case MODBUS_FC_READ_HOLDING_REGISTERS:

@@ -37,8 +37,8 @@ struct Place {
 
 struct Places {
   std::vector<Place> outputs;
-  std::vector<Place> signals;    // inputs for displacement sensors
-  std::vector<Place> pressures;  // inputs in kPa, which measure pressure directly
+  std::vector<Place> signals;    // input terminals for displacement sensors
+  std::vector<Place> pressures;  // input terminals in kPa, which measure pressure directly
 };
 
 Places places_of(std::span<const drivers::BoardMap> modules) {

@@ -76,11 +76,11 @@ struct Plant::Parts {
   std::optional<PlantObject> object;
   LineFault line;
   SensorFault sensor;
-  double command_kpa = 0;  ///< output of the board
+  double command_kpa = 0;  ///< output pressure of the board
   double applied_kpa = 0;  ///< input of the model: the command after the effect of line faults
   std::uint64_t samples = 0;
   double reading_mm = 0;
-  double pressure_kpa = 0;  ///< measured pressure
+  double pressure_kpa = 0;  ///< pressure that the pressure monitor measures
 
   void apply() noexcept {
     if (line.kind == LineFault::Kind::blocked) return;

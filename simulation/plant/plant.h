@@ -48,9 +48,9 @@ struct PlantSettings {
   double sample_time_s = 0;           ///< usual duration of a call of advance(); 0: the duration is irregular
   double displacement_noise_mm = 0;   ///< standard deviation of noise that is added to the output of the
                                       ///< model's sensor blocks
-  double pressure_noise_kpa = 0;      ///< standard deviation of the measured pressure
+  double pressure_noise_kpa = 0;      ///< standard deviation of the noise of the measured pressure
   double temperature_c = 20;          ///< ambient temperature of the finger
-  double temperature_noise_c = 0;     ///< standard deviation of the measured temperature
+  double temperature_noise_c = 0;     ///< standard deviation of the noise of the measured temperature
   std::uint64_t seed = 0;
 };
 

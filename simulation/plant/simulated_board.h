@@ -34,7 +34,7 @@ struct SimulatedEvent {
   /// Value of `channel` for an event that affects all channels.
   static constexpr std::size_t every_channel = static_cast<std::size_t>(-1);
 
-  double at_s = 0;  ///< time since the first exchange
+  double at_s = 0;  ///< time of the event since the first exchange
   Kind kind = Kind::object;
   std::size_t channel = every_channel;
   std::optional<PlantObject> object = std::nullopt;
@@ -61,7 +61,7 @@ struct SimulatedChannel {
 
 struct SimulatedBoardSettings {
   std::vector<SimulatedChannel> channels;
-  std::vector<SimulatedEvent> events;  ///< events; their order does not matter
+  std::vector<SimulatedEvent> events;  ///< events of the simulation; their order does not matter
   /// If there is no exchange for this time, the outputs change to `vented_kpa` [s]. They keep this value
   /// until connect() is called. 0: the board has no watchdog.
   double watchdog_timeout_s = 0;
