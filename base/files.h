@@ -12,7 +12,7 @@
 
 namespace softgrip {
 
-/// A regular file that is open for reading.
+/// A regular file that was opened for reading, and its size.
 struct RegularFile {
   Descriptor descriptor;
   std::size_t size = 0;  ///< size when the file was opened [bytes]

@@ -1,5 +1,5 @@
 #pragma once
-// Provides statistical functions.
+// Computes medians, noise levels, regression lines and quantiles.
 
 #include <algorithm>
 #include <cmath>
