@@ -6,7 +6,7 @@
 namespace softgrip::control {
 
 namespace {
-/// The texts in the order of RefusalCode.
+/// The texts for all refusals, in the order of RefusalCode.
 constexpr std::array<RefusalText, 13> texts{{
     {"There is no reason.", ""},
     {"A fault is latched.",

@@ -140,7 +140,7 @@ class PlannedFeedforward {
 [[nodiscard]] double plan_ahead_s(const model::Model& model, const FeedforwardSettings& settings,
                                   double tick_s);
 
-/// A feedforward of any kind.
+/// A feedforward of the kind that the settings select.
 class Feedforward {
  public:
   Feedforward(const model::Model& model, const FeedforwardSettings& settings, const LimitSettings& limits,

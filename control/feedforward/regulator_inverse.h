@@ -16,7 +16,7 @@ namespace softgrip::control {
 /// the pressure change. The next tick starts from the actual pressure and corrects this error.
 class RegulatorInverse {
  public:
-  /// @param tick_s  > 0.
+  /// @param tick_s  duration of a tick [s], > 0.
   RegulatorInverse(const model::RegulatedPressure<double>& regulated, double tick_s);
 
   /// Copies the state of `regulated`, which must have the same parameters.

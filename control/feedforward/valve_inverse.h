@@ -23,8 +23,8 @@ namespace softgrip::control {
 ///                   after them is ignored.
 class ValveInverse {
  public:
-  /// @param model  the complete model.
-  /// @param tick_s  > 0.
+  /// @param model  the complete model of the finger.
+  /// @param tick_s  duration of a tick [s], > 0.
   ValveInverse(const model::Model& model, double tick_s);
 
   /// Copies the state of `valve`, a chain of the model that valve_of() returns for the same model.

@@ -194,7 +194,7 @@ struct Sequence {
   std::string text;  ///< the file's text, for messages and for the recording's provenance
 };
 
-/// A step that was fitted to a rig.
+/// A step that was fitted to the channels and limits of a rig.
 struct PreparedStep {
   Step step;
   std::uint32_t channels = 0;      ///< bit i: channel i takes part in the step
