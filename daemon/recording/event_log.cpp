@@ -20,7 +20,7 @@ namespace {
 using control::Event;
 using Kind = control::Event::Kind;
 
-/// An event whose text contains no numbers.
+/// Kind, severity and text of an event whose text contains no numbers.
 struct Words {
   std::string_view kind;
   Severity severity;

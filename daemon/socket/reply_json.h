@@ -26,7 +26,7 @@ namespace softgrip::daemon {
 /// Describes a sequence for the reply to a start with dry_run.
 [[nodiscard]] nlohmann::ordered_json checked_json(const LoadedSequence& sequence);
 
-/// The data of a reply to hello.
+/// The data of the reply to the request `hello`.
 struct Greeting {
   std::string_view software_version;
   std::string_view started_at;  ///< start time of the daemon, UTC; event ids are unique only together with
