@@ -43,7 +43,7 @@ class MapReader {
   /// Reads a number in `range` under a key that may be absent. number() describes the result for a wrong
   /// value.
   std::optional<double> optional_number(std::string_view key, Range range);
-  /// Reads a required whole number in [lower, upper].
+  /// Reads a required whole number from `lower` to `upper`.
   std::int64_t integer(std::string_view key, std::int64_t lower, std::int64_t upper);
   std::optional<std::int64_t> optional_integer(std::string_view key, std::int64_t lower, std::int64_t upper);
   /// Reads a truth value: `true` or `false`. No other words are accepted.
