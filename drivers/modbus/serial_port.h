@@ -14,7 +14,7 @@ struct _modbus;  // NOLINT(bugprone-reserved-identifier): the name in libmodbus
 
 namespace softgrip::drivers {
 
-/// The reason why a device was not opened.
+/// The reason why a serial device could not be opened.
 struct SerialFailure {
   const char* what = nullptr;  ///< action that failed; null: the device is open
   int error = 0;               ///< errno; 0: the device accepted the settings, but does not have them
