@@ -42,7 +42,7 @@ struct DiagnoseOptions {
 
 /// Result of diagnose().
 struct Diagnosis {
-  /// "adequate", "recalibrate", "cause_found", "ambiguous", "partly_explained" or "unexplained".
+  /// Verdict: "adequate", "recalibrate", "cause_found", "ambiguous", "partly_explained" or "unexplained".
   std::string verdict;
   std::string sentence;               ///< the verdict in one sentence
   std::vector<std::string> warnings;  ///< warnings about the logs and the result

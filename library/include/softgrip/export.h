@@ -1,6 +1,6 @@
 #pragma once
 /// @file
-/// Visibility of the public symbols.
+/// Determines which symbols the shared library exports.
 
 /// Marks the symbols that the shared library exports.
 #define SOFTGRIP_API __attribute__((visibility("default")))

@@ -1,6 +1,6 @@
 #pragma once
 /// @file
-/// All public headers.
+/// Includes all public headers of the library.
 
 #include <softgrip/board.h>     // IWYU pragma: export
 #include <softgrip/control.h>   // IWYU pragma: export
