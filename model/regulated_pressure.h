@@ -212,7 +212,7 @@ class RegulatedPressure {
     const double way = value_of(gap) != 0 ? value_of(gap) : value_of(slope);
     const double sign = way > 0 ? 1 : -1;
     if (value_of(n_.full_open_kpa) > 0 && std::abs(value_of(gap)) > value_of(most)) {
-      // In this case, the port is fully open.
+      // The gap is so large that the port is fully open.
       const T rate = sign * most / tau;
       open_s = step_s;
       if (sign * (value_of(rate) - value_of(slope)) > 0) {

@@ -6,7 +6,7 @@
 
 namespace softgrip::model {
 
-/// p = min(command, limit).
+/// The pressure is p = min(command, limit).
 template <class T>
 class PressureSaturation {
  public:
