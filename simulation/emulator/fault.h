@@ -24,7 +24,7 @@
 namespace softgrip::simulation {
 
 enum class FaultKind : std::uint8_t {
-  // faults of the transmission
+  // the following kinds are faults of the transmission
   lost_request,       ///< the request is lost: it is neither executed nor answered
   no_reply,           ///< the request is executed, but not answered
   late_reply,         ///< the reply is delayed by delay_s, so it may arrive after the replies to later
@@ -40,9 +40,9 @@ enum class FaultKind : std::uint8_t {
   few_registers,      ///< a request for more than `most` registers gets exception 3
   stray_bytes,        ///< each reply has `before` extra bytes before it, and `behind` extra bytes after it
   disconnect,         ///< open connections are closed, and new connections are closed immediately
-  // faults of the board
+  // the following kind is a fault of the board
   ignored_write,  ///< the board confirms writes but does not execute them
-  // faults of a channel
+  // the following kinds are faults of a channel
   sensor_stuck,         ///< the sensor repeats its last value
   sensor_jumping,       ///< in every second interval of interval_s, by_mm is added to the reading
   sensor_out_of_range,  ///< the sensor gives no valid reading
