@@ -119,7 +119,7 @@ class Pid:
     """
 
     def __init__(self, settings: PidSettings, tick: float) -> None:
-        """tick: period of `step()` [s]."""
+        """Creates a PID controller. tick: period of `step()` [s]."""
         self._core = _core.Pid(_instance("settings", settings, PidSettings)._values(), _number("tick", tick, "s"))
 
     def align(self, command: float) -> None:
@@ -266,7 +266,7 @@ class SimulatedBoard(Board):
     """
 
     def __init__(self, fingers: Sequence[SimulatedFinger], tick: float = 0.005) -> None:
-        """fingers: one per channel, 1 to 16. tick: usual time between two calls of `exchange()` [s]."""
+        """Creates a board. fingers: one per channel, 1 to 16. tick: usual time between two calls of `exchange()` [s]."""
         try:
             values = [_instance("fingers", one, SimulatedFinger)._values() for one in fingers]
         except TypeError as error:
