@@ -24,9 +24,10 @@ enum class BindingLimit : std::uint8_t {
 /// `none`.
 [[nodiscard]] std::string_view words_of(BindingLimit limit) noexcept;
 
-/// Reports a limit after limits have restricted a command for `moment_s`. Reports another limit after this
-/// other limit has restricted the command for `moment_s`. Reports the end of the restriction. Interruptions
-/// shorter than `gap_s` are ignored, because noise can move a command across a limit repeatedly.
+/// Reports the limit that restricts a command when limits have restricted the command for `moment_s`. If
+/// another limit then restricts the command for `moment_s`, reports this limit. Also reports when no limit
+/// restricts the command any more. Interruptions shorter than `gap_s` are ignored, because noise can move a
+/// command across a limit repeatedly.
 class LimitWatch {
  public:
   static constexpr double moment_s = 0.5;

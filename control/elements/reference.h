@@ -50,8 +50,8 @@ class Reference {
   /// acceleration. A feedforward with preview has already used the reference up to now + preview. To change
   /// the reference without a step of the command, cut it at now + preview.
   void cut(double time_s) noexcept;
-  /// Removes segments that ended before `time_s`, to make space for new ones. For times before the remaining
-  /// segments, the reference then has the start value of the first of them.
+  /// Removes segments that ended before `time_s`, to make space for new ones. For times before the first
+  /// remaining segment, the reference then has the start value of this segment.
   void forget_before(double time_s) noexcept;
 
   [[nodiscard]] ReferencePoint at(double time_s) const noexcept;
