@@ -135,8 +135,8 @@ class SOFTGRIP_API Model {
 class SOFTGRIP_API Simulator {
  public:
   /// Creates a finger at rest under 0 kPa.
+  /// @param model          model of the finger
   /// @param sample_time_s  usual duration of a step [s]; 0: the duration is irregular
-  /// @param sample_time_s  usual duration of a step [s]; 0: irregular
   /// @param seed           seed of the noise of the model's sensor
   explicit Simulator(const Model& model, double sample_time_s = 0, std::uint64_t seed = 1);
   ~Simulator();
