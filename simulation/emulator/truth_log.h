@@ -4,7 +4,7 @@
 //
 //   time_s,channel,pressure_command_kpa,displacement_mm,pressure_kpa,reading_mm,object,watchdog_tripped
 //
-// displacement_mm and pressure_kpa are true values without noise. reading_mm is the reading of the sensor. It
+// displacement_mm and pressure_kpa are true values without noise. reading_mm is the sensor reading; its cell
 // is empty if there is no valid reading.
 
 #include <cstdint>
