@@ -9,11 +9,12 @@
 namespace softgrip::sysid::health {
 namespace {
 
-/// Share of `pause_learning`. If the CUSUM was beyond it before a single value raises the alarm, the start of
-/// the CUSUM is the start of the change. Otherwise the change starts at that value.
+/// Start of the change if a single value raises the alarm: if the CUSUM before this value exceeded this share
+/// of `pause_learning`, the change starts where the CUSUM starts. Otherwise the change starts at this value.
 constexpr double on_its_way_share = 0.6;
 
-/// Returns the limit that a standard normal value exceeds, on either side, once in `once_in` values.
+/// Returns the limit of the magnitude of a standard normal value. On average, one of `once_in` values exceeds
+/// it.
 double two_sided_limit(double once_in) {
   double lower = 0, upper = 40;
   for (int i = 0; i < 80; ++i) {

@@ -2,36 +2,38 @@
 // A self-starting control chart: detects a change of the values of a healthy finger without a given
 // reference.
 //
-// The chart compares every value with the earlier values (running_reference.h), in units of their standard
-// deviation. It transforms the resulting Student's t value to a standard normal value. For independent normal
-// values, the results are independent and standard normal from the third value on, for any mean and standard
-// deviation (Hawkins, The Statistician 36, 1987; Quesenberry, Journal of Quality Technology 23, 1991). If the
-// values depend significantly on a recorded temperature, the chart compares them with their regression line
-// over the temperature (control charts of regression-adjusted variables: Hawkins, Technometrics 33, 1991).
-// Two tests use the results: a two-sided CUSUM (Page, Biometrika 41, 1954) for lasting shifts, and a limit
-// for single large values (Lucas, Journal of Quality Technology 14, 1982). Each test receives half of the
-// specified false alarm rate.
+// The chart compares every value with the mean of the earlier values (running_reference.h), in units of the
+// standard deviation of these values. The chart transforms the resulting Student's t value to a standard
+// normal value. For independent normal values, the results are independent and standard normal from the third
+// value on, for any mean and standard deviation (Hawkins, The Statistician 36, 1987; Quesenberry, Journal of
+// Quality Technology 23, 1991). If the values depend significantly on a recorded temperature, the chart
+// compares them with their regression line over the temperature, as in a control chart of regression-adjusted
+// variables (Hawkins, Technometrics 33, 1991). Two tests use the results: a two-sided CUSUM (Page, Biometrika
+// 41, 1954) for lasting shifts, and a limit for single large values (Lucas, Journal of Quality Technology 14,
+// 1982). Each test receives half of the specified false alarm rate.
 //
 // While a CUSUM exceeds `pause_learning`, the chart adds no values to the reference. Otherwise a change soon
-// after the start would become part of the reference before it is detected. All values that are compared with
-// the same few reference values share the error of this reference. While learning is paused, the allowance is
-// therefore larger by one standard deviation divided by the square root of the number of reference values.
-// After an alarm, the chart removes the values since the change from the reference.
+// after the start would become part of the reference before it is detected. The mean of a few reference
+// values has an error, and this error shifts all values that are compared with the mean. While learning is
+// paused, the allowance of the CUSUM is therefore larger. The increase is one standard deviation divided by
+// the square root of the number of reference values. After an alarm, the chart removes the values since the
+// change from the reference.
 //
-// Weather lasts for days, so the values are correlated, and the CUSUM of correlated values drifts farther
-// than that of independent values. The chart estimates the correlation (lag one, minus half its standard
-// error). It scales the values of the CUSUM by the standard deviation of a mean over many values with this
-// correlation, after Johnson and Bagshaw (Technometrics 16, 1974). 4000 charts with 90 healthy values each
-// were simulated. With a correlation of 0.5, 4.4 % of the charts alarmed (24 % without this correction); with
-// 0.7, 15 % (65 %). The stated rate applies to independent values.
+// The weather lasts for days, so the values of neighbouring days are correlated. A CUSUM of correlated values
+// drifts farther than a CUSUM of independent values. The chart therefore estimates the lag-one correlation of
+// the values and subtracts half the standard error of this estimate. It divides the values of the CUSUM by
+// the factor by which this correlation increases the standard deviation of a mean of many values (Johnson and
+// Bagshaw, Technometrics 16, 1974). 4000 charts with 90 healthy values each were simulated. With a
+// correlation of 0.5, 4.4 % of the charts alarmed (24 % without this correction); with 0.7, 15 % alarmed (65
+// % without the correction). The specified false alarm rate applies to independent values.
 //
-// 200,000 charts of independent values were simulated for a mean of 32850 values between two false alarms.
-// Within the first 90 values, 1.2 times as many of them alarmed as this rate implies. These charts did not
-// estimate the correlation; the estimate reduces the number of alarms. The charts detected a shift by 3
-// standard deviations within 30 values in 59 of 100 cases if it came after 8 healthy values. After 20 healthy
-// values, they detected it in 95 of 100 cases, with a mean delay of 10 values. All charts detected a shift by
-// 6 standard deviations after 8 values (delay: 9 values) and a shift by 5 standard deviations after 20 values
-// (delay: 4 values).
+// 200,000 charts of independent values were simulated, with limits for a mean of 32850 values between two
+// false alarms. Within the first 90 values, 1.2 times as many charts alarmed as these limits imply. These
+// charts did not estimate the correlation. With the estimate, fewer charts alarm. A shift by 3 standard
+// deviations after 8 healthy values was detected within 30 values in 59 of 100 cases. A shift by 3 standard
+// deviations after 20 healthy values was detected in 95 of 100 cases, with a mean delay of 10 values. All
+// charts detected a shift by 6 standard deviations after 8 values (delay: 9 values) and a shift by 5 standard
+// deviations after 20 values (delay: 4 values).
 
 #include <cstddef>
 #include <map>
@@ -56,7 +58,8 @@ struct ChartLimits {
 
 /// Value of an indicator, and the temperature at which it was measured.
 struct ChartValue {
-  /// Holds a value. @param at_c  [degC]; not given: the temperature is unknown.
+  /// Stores a value. @param at_c  temperature [degC]; if this argument is missing, the temperature is
+  /// unknown.
   ChartValue(double number, double at_c = RunningReference::no_temperature)
       : value(number), temperature_c(at_c) {}
 
@@ -64,8 +67,9 @@ struct ChartValue {
   double temperature_c;
 };
 
-/// Values of one point in time. Only values with the same key are comparable: the recipe, or, for differences
-/// from peer fingers, the recipe and the names of these fingers.
+/// Values of an indicator at one point in time. Only values with the same key are compared with each other.
+/// The key is the recipe. For differences from peer fingers, the key also contains the names of these
+/// fingers.
 using ChartValues = std::map<std::string, ChartValue>;
 
 struct ChartAlarm {
@@ -75,15 +79,15 @@ struct ChartAlarm {
 };
 
 /// Control chart of one indicator of one finger. If a point has values of several recipes, each value is
-/// compared with the reference of its recipe, and the mean of the results is the result of the point. If the
-/// recipes do not change together, the mean is conservative.
+/// compared with the reference of its recipe. The result of the point is the mean of these comparisons. If a
+/// change affects only some of the recipes, this mean understates the change.
 class ControlChart {
  public:
   /// @param least_spread  lower limit of the standard deviation that is used, > 0.
   ControlChart(ChartLimits limits, double least_spread) : limits_(limits), least_spread_(least_spread) {}
 
-  /// Adds the next point. Returns its standard normal value, or nothing if no reference has at least two
-  /// values.
+  /// Adds the next point. Returns its deviation from the reference as a standard normal value. Returns
+  /// nullopt if no recipe of the point has a reference with at least two values.
   std::optional<double> add(const ChartValues& values);
 
   /// Takes over an alarm that another chart has raised. Does nothing if this chart has an earlier alarm.
@@ -94,7 +98,7 @@ class ControlChart {
   /// Returns the number of points that were compared with a reference.
   [[nodiscard]] std::size_t judged() const { return judged_; }
   [[nodiscard]] const std::optional<ChartAlarm>& alarm() const { return alarm_; }
-  /// Returns the mean deviation of a point from the expected values, over its values that have a reference.
+  /// Returns the mean deviation of a point from its expected values. Values without a reference are left out.
   [[nodiscard]] std::optional<double> excess(std::size_t point) const { return excess_of(history_[point]); }
   [[nodiscard]] double up() const { return up_; }
   [[nodiscard]] double down() const { return down_; }
@@ -102,18 +106,18 @@ class ControlChart {
 
  private:
   [[nodiscard]] std::optional<double> excess_of(const ChartValues& values) const;
-  /// Updates both tests. @param count, persistence  of the references of the point, averaged over its
-  /// recipes.
+  /// Updates both tests. @param count, persistence  number of reference values and their lag-one correlation,
+  /// averaged over the recipes of the point.
   void judge(double z, double count, double persistence);
   void learn(const ChartValues& values);
   void measure_change();
-  /// Computes the references again from the points before `point`.
+  /// Computes the references from the points before `point` only.
   void forget_since(std::size_t point);
 
   ChartLimits limits_;
   double least_spread_;
   std::map<std::string, RunningReference> references_;
-  std::vector<ChartValues> history_, waiting_;  ///< all points; the points that are not yet in the references
+  std::vector<ChartValues> history_, waiting_;  ///< all points; the points that are not in the references
   std::optional<ChartAlarm> alarm_;
   double up_ = 0, down_ = 0;
   std::size_t up_since_ = 0, down_since_ = 0;

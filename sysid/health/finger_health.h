@@ -1,10 +1,11 @@
 #pragma once
 // Describes the health of a finger: its recorded grips as points in time, the reference of every indicator,
-// and the significant changes. judge_rig() (rig_health.h) computes it.
+// and the significant changes. judge_rig() (rig_health.h) computes this description.
 //
-// A point is one day (UTC) of a finger and holds the median of the runs of each recipe. Changes within a day,
-// mainly of the temperature, therefore do not count as random variation between grips. A run without a known
-// time is a point of its own. A repair restarts all charts of the finger.
+// A point is one day (UTC) of a finger and holds, for each recipe, the median of the runs of this day.
+// Changes within a day, mainly of the temperature, therefore do not count as random variation between grips.
+// A run without a known time is a point of its own. After a repair, all charts of the finger start without a
+// reference.
 
 #include <array>
 #include <cstddef>
@@ -21,7 +22,7 @@ namespace softgrip::sysid::health {
 struct HealthOptions {
   /// Mean number of points of a healthy finger between two false alarms of any of its charts; at least 20.
   double false_alarm_points = 3650;
-  bool by_day = true;  ///< false: every run is a point
+  bool by_day = true;  ///< true: all runs of a day are one point; false: every run is a point
 
   [[nodiscard]] ChartLimits limits() const {
     return ChartLimits::for_run_length(false_alarm_points * static_cast<double>(sysid::health_numbers));
@@ -29,11 +30,13 @@ struct HealthOptions {
 };
 
 struct HealthPoint {
-  std::string label;                                      ///< "2026-11-22", or the run's name
-  std::size_t grips = 0;                                  ///< runs
-  std::size_t epoch = 0;                                  ///< number of earlier maintenance records
-  std::array<ChartValues, sysid::health_numbers> values;  ///< medians by recipe
-  std::array<std::optional<double>, sysid::health_numbers> judged{};  ///< as standard normal values
+  /// The day, such as "2026-11-22", or the name of the run.
+  std::string label;
+  std::size_t grips = 0;                                  ///< number of runs in this point
+  std::size_t epoch = 0;                                  ///< number of maintenance records before this point
+  std::array<ChartValues, sysid::health_numbers> values;  ///< median of each indicator for each recipe
+  /// Deviation of each indicator from its reference, as a standard normal value.
+  std::array<std::optional<double>, sysid::health_numbers> judged{};
   /// Difference from the peer fingers in the same runs, minus the reference of this difference. Absent if the
   /// finger has no peer fingers.
   std::array<std::optional<double>, sysid::health_numbers> beside{};
@@ -46,32 +49,33 @@ struct HealthAlarm {
   std::size_t epoch = 0;
   std::size_t noticed = 0;  ///< index of the point at which the alarm was raised
   std::size_t since = 0;    ///< index of the first changed point
-  double change = 0;        ///< in the unit of the indicator
+  double change = 0;        ///< size of the change, in the unit of the indicator
   std::size_t grips = 0;    ///< number of grips from the change to its detection
-  /// Peer fingers, if the alarm concerns the difference from them; empty if the alarm concerns the finger's
-  /// own values.
+  /// Names of the peer fingers if the difference of the finger from them has changed. The list is empty if
+  /// the finger's own values have changed.
   std::vector<std::string> beside;
-  /// Index of the point at which the change of the difference was first reported without an assigned finger.
-  /// Equal to `noticed` if there was no such report.
+  /// Index of the point at which the change of the difference was first reported, before it was attributed to
+  /// a finger. Equal to `noticed` if there was no such report.
   std::size_t warned = 0;
 };
 
 /// Reference of an indicator since the last maintenance record.
 struct HealthReference {
-  std::string recipe;  ///< the recipe with the most points
+  std::string recipe;  ///< recipe that has the most points
   double mean = 0;
   double spread = 0;
   std::size_t points = 0;
-  std::optional<TemperatureSlope> slope;  ///< absent: no dependence on the temperature is known
+  /// Absent: the indicator does not depend significantly on the temperature.
+  std::optional<TemperatureSlope> slope;
 
-  /// Returns the expected value of the indicator. @param temperature_c  absent: not recorded
+  /// Returns the expected value of the indicator. @param temperature_c  [degC]; absent: not recorded
   [[nodiscard]] double at(std::optional<double> temperature_c) const {
     return slope && temperature_c ? slope->at(*temperature_c) : mean;
   }
 };
 
 enum class FingerState : std::uint8_t {
-  learning,  ///< too few points since the last maintenance record to judge any indicator
+  learning,  ///< since the last maintenance record, too few points to judge any indicator
   steady,
   alarm,
 };
@@ -82,17 +86,19 @@ struct FingerHealth {
   FingerState state = FingerState::learning;
   model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of the indicators that are listed in mm
   std::vector<HealthPoint> points;
-  std::vector<HealthAlarm> alarms;  ///< of all epochs, in the order in which they were noticed
-  /// Changed differences from the peer fingers since the last maintenance record that are not attributed to a
-  /// finger.
+  std::vector<HealthAlarm> alarms;  ///< alarms of the whole history, ordered by the time of detection
+  /// Differences from the peer fingers that have changed since the last maintenance record and whose change
+  /// is not attributed to a finger.
   std::vector<HealthAlarm> unclear;
   std::array<std::optional<HealthReference>, sysid::health_numbers> references{};
-  std::vector<std::pair<std::size_t, Note>> notes;  ///< index of the first point after the record
+  /// Maintenance records, each with the index of the first point after it.
+  std::vector<std::pair<std::size_t, Note>> notes;
 
   /// Returns the alarms that are still active.
   [[nodiscard]] std::vector<HealthAlarm> standing() const;
   [[nodiscard]] std::size_t epoch() const { return points.empty() ? 0 : points.back().epoch; }
-  /// Returns the median of an indicator at the last point that has it; empty if no point has it.
+  /// Returns the median of an indicator at the last point that has this indicator; nullopt if no point has
+  /// it.
   [[nodiscard]] std::optional<double> latest(sysid::HealthNumber number) const;
 };
 

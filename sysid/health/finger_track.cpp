@@ -9,7 +9,7 @@
 namespace softgrip::sysid::health {
 namespace {
 
-constexpr std::size_t day_letters = 10;  // of "2026-11-22T14:30:00Z"
+constexpr std::size_t day_letters = 10;  // number of characters of the date in "2026-11-22T14:30:00Z"
 
 std::size_t epoch_of(const ScoredRun& run, const std::vector<Note>& notes) {
   if (run.started_at.empty()) return 0;
@@ -89,7 +89,7 @@ FingerTrack track_of(const std::string& finger, const std::vector<ScoredRun>& ru
 }
 
 std::size_t place_in_time(std::vector<FingerTrack>& tracks) {
-  std::map<std::string, std::pair<std::string, std::size_t>> begins;  // by label: start time, order
+  std::map<std::string, std::pair<std::string, std::size_t>> begins;  // for each label: start time and order
   std::size_t order = 0;
   for (const FingerTrack& track : tracks) {
     for (const RunGroup& group : track.groups) {

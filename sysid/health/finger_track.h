@@ -12,34 +12,36 @@
 
 namespace softgrip::sysid::health {
 
-/// The runs of one point.
+/// The runs that form one point of the control charts.
 struct RunGroup {
   std::string label;
   std::size_t epoch = 0;
   std::vector<const ScoredRun*> runs;
-  std::size_t moment = 0;  ///< index of the label among the labels of all fingers, in order of time
+  std::size_t moment = 0;  ///< index of this label in the time-ordered list of the labels of all fingers
 };
 
-/// A run, and the number of earlier maintenance records of its finger.
+/// A run, and the number of maintenance records of its finger before this run.
 struct PlacedRun {
   const ScoredRun* run = nullptr;
   std::size_t epoch = 0;
 };
 
-/// Working data of a finger for the charts. The runs are stored elsewhere and must outlive it.
+/// Working data of a finger for the control charts. The object refers to runs that the caller owns; the runs
+/// must outlive it.
 struct FingerTrack {
-  FingerHealth health;  ///< points and notes; NumberWatch adds the rest
+  FingerHealth health;  ///< track_of() sets the points and notes; NumberWatch adds alarms and references
   ScoreBase base;
-  std::vector<RunGroup> groups;             ///< one per point
-  std::map<std::string, PlacedRun> by_run;  ///< by the run's name
+  std::vector<RunGroup> groups;             ///< runs of each point
+  std::map<std::string, PlacedRun> by_run;  ///< runs by their name
 };
 
-/// Groups the runs of a finger into points and assigns the maintenance records.
-/// @param runs  of one finger, sorted by time. They must outlive the track. @param notes  of all fingers.
+/// Groups the runs of a finger into points, and assigns each maintenance record to the first point after it.
+/// @param runs  runs of one finger, sorted by time. They must outlive the track. @param notes  records of all
+/// fingers.
 [[nodiscard]] FingerTrack track_of(const std::string& finger, const std::vector<ScoredRun>& runs,
                                    const std::vector<Note>& notes, const ScoreBase& base, bool by_day);
 
-/// Sets `moment` of every group. Returns the number of moments.
+/// Sets `moment` of every group. Returns the number of different moments of all fingers.
 std::size_t place_in_time(std::vector<FingerTrack>& tracks);
 
 }  // namespace softgrip::sysid::health

@@ -8,9 +8,9 @@ namespace {
 
 constexpr double moving_share = 0.005;
 constexpr double same_command_share = 0.02;
-/// Contact is reported only after the object has held the finger back for a while. A released finger leaves
-/// the object at an unknown point. The finger is clear of the object if its reading is this much below the
-/// reading at contact.
+/// Distance below which a finger counts as clear of the object. Contact is reported some time after the
+/// finger has touched the object, and a released finger leaves it at an unknown displacement. The finger is
+/// therefore clear of the object only if its reading is below the reading at contact by this distance.
 constexpr double away_mm = 1.0;
 constexpr double away_share = 0.1;
 
@@ -18,7 +18,7 @@ double away_from(double touch_mm) {
   return touch_mm - std::max(away_mm, away_share * touch_mm);
 }
 
-/// Phase of the channel after its next event.
+/// Phase of the grip of one channel between two events.
 enum class Phase : std::uint8_t { free, touching, holding, releasing, lost };
 
 Phase after(const RecordedEvent& event, Phase phase) {
@@ -31,8 +31,8 @@ Phase after(const RecordedEvent& event, Phase phase) {
   return Phase::lost;
 }
 
-/// Returns the start of the step that ended in HOLDING, because its samples may not be free motion if no
-/// contact was reported. If a contact was reported before `holding_s`, returns `holding_s`.
+/// Returns the time from which samples before HOLDING may not be free motion [s]. If a contact was reported
+/// before `holding_s`, this is `holding_s`. Otherwise it is the start of the step that ended in HOLDING.
 double unsure_from(const std::vector<RecordedEvent>& events, const std::string& channel, double holding_s) {
   double step_s = 0;
   for (const RecordedEvent& event : events) {
@@ -54,8 +54,8 @@ void note_times(const std::vector<RecordedEvent>& events, const std::string& cha
   }
 }
 
-/// Marks the samples before a contact as `neither`, back to the last sample that was clearly away from the
-/// object.
+/// Marks samples before a contact as `neither`. The marked range starts after the last sample at which the
+/// finger was clear of the object.
 void forget_approach(const sysid::Log& log, double contact_s, std::vector<Part>& at) {
   std::size_t i = 0;
   while (i + 1 < log.size() && log.time_s[i] < contact_s) ++i;
@@ -64,14 +64,15 @@ void forget_approach(const sysid::Log& log, double contact_s, std::vector<Part>&
     at[i - 1] = Part::neither;
 }
 
-/// Classifies the samples of one channel in order of time, with the events of this channel.
+/// Assigns the samples of one channel to parts of the grip, in order of time, from the events of this
+/// channel.
 class Walk {
  public:
   Walk(const Recording& recording, const sysid::Log& log, double full_kpa)
       : events_(recording.events), log_(log), full_kpa_(full_kpa) {}
 
-  /// Returns the part of sample i; must be called for all samples in order. Samples from `unsure_s` to
-  /// `holding_s` are `neither`.
+  /// Returns the part of the grip to which sample i belongs. Must be called for all samples in order. Samples
+  /// from `unsure_s` to `holding_s` are `neither`.
   [[nodiscard]] Part next(std::size_t i, double predicted_mm, double unsure_s, double holding_s) {
     const double t = log_.time_s[i];
     for (; event_ < events_.size() && events_[event_].time_s <= t; ++event_) {

@@ -1,6 +1,6 @@
 #pragma once
-// Divides a recorded grip into rest, free motion and holding. Free motion gives the indicators of the finger,
-// and holding gives those of its pressure line. Samples that belong to none of these parts are not scored.
+// Divides a recorded grip into rest, free motion and holding. The indicators of the finger are computed from
+// free motion, and those of its pressure line from holding. All other samples are not scored.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,21 +16,21 @@ enum class Part : std::uint8_t {
             ///< or after a fault
   rest,     ///< vented, before the first motion
   free,
-  held,  ///< HOLDING, while the command is the same as at the start of HOLDING
+  held,  ///< HOLDING with the command that was active at the start of HOLDING
 };
 
 struct GripParts {
-  std::vector<Part> at;  ///< part of each sample
+  std::vector<Part> at;  ///< part of the grip to which each sample belongs
   /// Times of events [s]; NaN if the recording has no such event.
-  double began_s = std::numeric_limits<double>::quiet_NaN();    ///< first step
-  double contact_s = std::numeric_limits<double>::quiet_NaN();  ///< first contact
-  double holding_s = std::numeric_limits<double>::quiet_NaN();  ///< first HOLDING
+  double began_s = std::numeric_limits<double>::quiet_NaN();    ///< time of the first step
+  double contact_s = std::numeric_limits<double>::quiet_NaN();  ///< time of the first contact
+  double holding_s = std::numeric_limits<double>::quiet_NaN();  ///< time of the first HOLDING
 };
 
 /// Assigns each sample of a channel to a part of the grip.
 /// @param predicted_mm  predicted free motion of each sample.
 /// @param full_kpa  full pressure of the finger, > 0. The finger is at rest until the command has risen by
-/// 0.5 % of it. During HOLDING, a command change by up to 2 % of it is ignored.
+/// 0.5 % of `full_kpa`. During HOLDING, a command change by up to 2 % of `full_kpa` is ignored.
 [[nodiscard]] GripParts parts_of(const Recording& recording, std::size_t channel,
                                  const std::vector<double>& predicted_mm, double full_kpa);
 

@@ -18,36 +18,38 @@ namespace {
 
 using sysid::HealthNumber;
 
-/// Smallest range [share of the displacement at full pressure] and smallest RMS speed [the same per second]
-/// of a motion from which gain and lag can be computed.
+/// Gain and lag are computed only if the motion has at least this range [share of the displacement at full
+/// pressure] and this RMS speed [share of the displacement at full pressure, per second].
 constexpr double least_motion = 0.1;
 constexpr double least_speed_per_s = 0.02;
-/// Smallest speed that defines a direction of motion [share of the displacement at full pressure per second].
+/// A motion has a direction only if its speed is at least this value [share of the displacement at full
+/// pressure, per second].
 constexpr double still_per_s = 0.01;
-/// Smallest speed of a return that gives the loop width [share of the displacement at full pressure per
-/// second]. The limit excludes the slow creep to rest.
+/// The loop width is computed only from a return with at least this speed [share of the displacement at full
+/// pressure, per second]. Slower samples are creep towards rest.
 constexpr double returning_per_s = 0.05;
-/// Smallest duration of the samples that give an indicator [s].
+/// An indicator is computed only if its samples cover at least this time [s].
 constexpr double least_rest_s = 0.1;
 constexpr double least_motion_s = 0.5;
 constexpr double least_return_s = 0.03;
 constexpr double least_still_s = 0.5;
 constexpr double least_hold_s = 1.0;
-/// The readings within this time after contact [s] give the contact indicator.
+/// The contact indicator is computed from the readings up to this time after contact [s].
 constexpr double touch_window_s = 0.1;
-/// The command is constant while it changes by at most this share of full pressure.
+/// The command counts as constant while it changes by at most this share of full pressure.
 constexpr double still_command_share = 0.02;
-/// Time [s] that is excluded after the command has become constant, because the valve is still settling.
+/// Time after the last change of the command that is not evaluated, because the valve is still settling [s].
 constexpr double settling_s = 0.3;
-/// The loop width is computed between these shares of the predicted free stroke.
+/// The loop width is computed where the predicted displacement is between these shares of the free stroke.
 constexpr double loop_lower = 0.15, loop_upper = 0.85;
 
-/// A run and the prediction of the baseline model, for each sample.
+/// Samples of a run, and the prediction of the baseline model for each sample.
 struct Compared {
   const sysid::Log& log;
   std::vector<double> predicted_mm, speed_mm_per_s;
   GripParts parts;
-  std::vector<int> direction;  ///< of the last predicted motion: 1 up, -1 down, 0 none yet
+  /// Direction of the last predicted motion: 1 up, -1 down, 0 if there was no motion before.
+  std::vector<int> direction;
   double interval_s = 0;
 
   [[nodiscard]] bool is_read(std::size_t i) const { return std::isfinite(log.displacement_mm[i]); }
@@ -92,10 +94,10 @@ double zero_of(const Compared& c) {
   return median_or_nan(std::move(zeros), least_rest_s / c.interval_s);
 }
 
-/// Least-squares fit of the readings of free motion: offset + gain * prediction - lag * predicted speed.
+/// Least-squares fit to the readings of free motion: offset + gain * prediction - lag * predicted speed.
 struct FreeFit {
   double offset_mm = 0, gain = 1, lag_s = 0;
-  double way_mm = 0;  ///< range of the prediction
+  double way_mm = 0;  ///< range of the predicted displacement [mm]
   double speed_rms_mm_per_s = 0;
   double seconds = 0;
 
@@ -143,7 +145,7 @@ double loop_of(const Compared& c, const FreeFit& fit, double full_mm) {
   return median_or_nan(std::move(higher), least_return_s / c.interval_s);
 }
 
-/// Samples [first, last) of one part of a grip, with a constant command.
+/// Consecutive samples [first, last) that belong to the same part of a grip and have a constant command.
 struct Stretch {
   std::size_t first = 0, last = 0;
 };
@@ -152,7 +154,8 @@ double length_s(const Compared& c, const Stretch& stretch) {
   return stretch.last > stretch.first ? c.log.time_s[stretch.last - 1] - c.log.time_s[stretch.first] : 0;
 }
 
-/// Returns the longest segment of a part with a constant command, without its first `settling_s`.
+/// Returns the longest segment of a part of the grip with a constant command. The first `settling_s` of the
+/// segment are left out.
 Stretch longest_still(const Compared& c, Part part, double full_kpa) {
   Stretch best;
   for (std::size_t begin = 0; begin < c.log.size();) {
@@ -173,8 +176,9 @@ Stretch longest_still(const Compared& c, Part part, double full_kpa) {
   return best;
 }
 
-/// Returns the creep relative to the prediction, from the first to the last fifth of the longest segment with
-/// a constant command. It is positive in the direction of the motion before this segment.
+/// Returns the creep that the prediction does not contain. This is the change of the residual from the first
+/// fifth to the last fifth of the longest segment with a constant command. It is positive in the direction of
+/// the motion before this segment.
 double creep_of(const Compared& c, const FreeFit& fit, double full_kpa) {
   const Stretch still = longest_still(c, Part::free, full_kpa);
   const double nothing = std::numeric_limits<double>::quiet_NaN();

@@ -1,10 +1,10 @@
 #pragma once
-// Computes indicators of one recorded grip of a finger, relative to its baseline from commissioning.
+// Computes the indicators of one recorded grip of a finger, relative to its baseline from commissioning.
 //
-// Free motion before the first contact gives gain and lag, by least squares of the readings on the prediction
-// of the baseline model and its rate. The free part of the return gives the loop width. The longest segment
-// of free motion with a constant command gives the creep. An indicator is absent if the recording lacks the
-// samples for it.
+// Gain and lag are computed from free motion before the first contact, by least squares of the readings on
+// the prediction of the baseline model and its rate. The loop width is computed from the part of the return
+// that is free motion. The creep is computed from the longest segment of free motion with a constant command.
+// An indicator is absent if the recording lacks the samples for this indicator.
 
 #include <array>
 #include <limits>
@@ -19,14 +19,15 @@ namespace softgrip::sysid::health {
 
 /// The baseline of a finger.
 struct ScoreBase {
-  model::Model model;   ///< driven by the command, without noise
+  model::Model model;   ///< baseline model; its input is the command, and it contains no noise
   double full_kpa = 0;  ///< largest command of the healthy logs
   double full_mm = 0;   ///< displacement of the model at `full_kpa`
 };
-/// Returns the baseline for the scores. @param model  of the baseline. @param full_kpa  > 0.
+/// Returns the baseline for the scores. @param model  baseline model. @param full_kpa  full pressure, > 0
+/// [kPa].
 [[nodiscard]] ScoreBase score_base(const model::Model& model, double full_kpa);
 
-/// Indicators of a run, indexed by HealthNumber. NaN: the recording does not give the indicator.
+/// Indicators of a run, indexed by HealthNumber. NaN: the indicator cannot be computed from the recording.
 struct GripScore {
   GripScore() { values.fill(std::numeric_limits<double>::quiet_NaN()); }
 
@@ -38,11 +39,12 @@ struct GripScore {
   std::array<double, sysid::health_numbers> values{};
 };
 
-/// Computes the indicators of one channel of a recording. A single log without events counts as one free
+/// Computes the indicators of one channel of a recording. A recording without events counts as one free
 /// motion.
 [[nodiscard]] GripScore score_of(const Recording& recording, std::size_t channel, const ScoreBase& base);
 
-/// Returns the smallest relevant difference of an indicator, regardless of the spread of the runs.
+/// Returns the smallest difference of an indicator that counts as a change, however small the standard
+/// deviation of the runs is.
 [[nodiscard]] double least_difference(sysid::HealthNumber number, const ScoreBase& base);
 
 }  // namespace softgrip::sysid::health

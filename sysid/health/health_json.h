@@ -1,6 +1,6 @@
 #pragma once
-// Writes health.json, the last state of all fingers, for programs of users, `softgrip status`, `softgrip
-// doctor` and Prometheus. docs/how-to/watch-a-finger.md lists the keys.
+// Writes health.json, the current state of all fingers. User programs, `softgrip status`, `softgrip doctor`
+// and Prometheus read this file. docs/how-to/watch-a-finger.md lists its keys.
 
 #include <string>
 #include <vector>
@@ -12,12 +12,12 @@
 
 namespace softgrip::sysid::health {
 
-/// File name in the output folder.
+/// Name of the file in the output folder.
 inline constexpr const char* health_file = "health.json";
 
-/// Returns the JSON of one finger.
+/// Returns the JSON object of one finger.
 [[nodiscard]] nlohmann::ordered_json json_of(const FingerHealth& health, const Suspicion& suspicion);
-/// Returns the JSON of a change that all fingers share.
+/// Returns the JSON object of a change that several fingers share.
 [[nodiscard]] nlohmann::ordered_json json_of(const SharedChange& shared);
 
 }  // namespace softgrip::sysid::health

@@ -17,7 +17,7 @@ constexpr std::size_t most_recipes = 4;
 constexpr sysid::Colour recipe_colours[most_recipes] = {sysid::Colour::measured, sysid::Colour::other,
                                                         sysid::Colour::error, sysid::Colour::muted};
 
-/// Returns the day that a label states; empty if the label is not a day.
+/// Returns the day that a label contains, such as "2026-11-22"; nullopt if the label is the name of a run.
 std::optional<std::chrono::sys_days> day_of(const std::string& label) {
   if (label.size() != 10) return std::nullopt;
   const auto year = to_number(label.substr(0, 4)), month = to_number(label.substr(5, 2)),
@@ -33,7 +33,8 @@ bool has_days(const FingerHealth& health) {
                      [](const HealthPoint& point) { return day_of(point.label).has_value(); });
 }
 
-/// Returns the days since the first point if both labels are days, otherwise the index of the point.
+/// Returns the horizontal position of a point in the charts: the days since the first point if both labels
+/// are days, otherwise the index of the point.
 double place_of(const FingerHealth& health, std::size_t point) {
   const auto first = day_of(health.points.front().label), now = day_of(health.points[point].label);
   if (!first || !now) return static_cast<double>(point);
@@ -114,7 +115,7 @@ std::optional<sysid::Chart> chart_of(const FingerHealth& health, std::size_t num
   return chart;
 }
 
-/// Returns the chart of the difference from the peer fingers, relative to its reference.
+/// Returns the chart of the difference from the peer fingers, minus the reference of this difference.
 std::optional<sysid::Chart> chart_beside(const FingerHealth& health, std::size_t number) {
   const sysid::HealthNumberInfo& info = sysid::health_number_infos[number];
   sysid::Series series;

@@ -1,6 +1,6 @@
 #pragma once
-// Writes the page of a finger: its state, the candidate faults and remedies, and every indicator over time
-// with the repairs.
+// Writes the report page of a finger: its state, the candidate faults and remedies, and every indicator over
+// time with the repairs.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace softgrip::sysid::health {
 
-/// Data that the page of a finger states besides the health of this finger.
+/// Data that the page of a finger shows in addition to the health of this finger.
 struct HealthSource {
   std::string baseline;  ///< folder of the baseline
   ScoreBase base;
@@ -22,7 +22,8 @@ struct HealthSource {
 [[nodiscard]] sysid::Page health_page(const FingerHealth& health, const Suspicion& suspicion,
                                       const HealthSource& source);
 
-/// Returns the command line that diagnoses a repeated commissioning experiment, to confirm a candidate fault.
+/// Returns the command line that diagnoses a new recording of the commissioning experiment, to confirm a
+/// candidate fault.
 [[nodiscard]] std::string settling_command(const std::string& baseline);
 
 }  // namespace softgrip::sysid::health

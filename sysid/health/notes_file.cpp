@@ -10,7 +10,7 @@
 namespace softgrip::sysid::health {
 namespace {
 
-/// Returns true if the text has this shape, in which '0' represents any digit.
+/// Returns true if the text has the given pattern, in which '0' represents any digit.
 bool looks_like(const std::string& text, std::string_view shape) {
   return text.size() == shape.size() &&
          std::equal(text.begin(), text.end(), shape.begin(), [](char have, char want) {
@@ -18,7 +18,7 @@ bool looks_like(const std::string& text, std::string_view shape) {
          });
 }
 
-/// Returns the action of a note, also from the key `mended`, its deprecated name.
+/// Returns the action of a note from the key `action`, or from its deprecated name `mended`.
 std::string action_of(document::MapReader& reader) {
   const std::optional<std::string> deprecated = reader.optional_text("mended");
   if (!deprecated) return reader.text("action");

@@ -18,16 +18,16 @@ namespace softgrip::sysid::health {
 struct Note {
   std::string date;    ///< UTC, "2026-11-03" (start of the day) or "2026-11-03T14:30:00Z"
   std::string finger;  ///< empty: the note applies to all fingers
-  std::string action;  ///< what was done, in a few words
+  std::string action;  ///< maintenance action, in a few words
 };
 
-/// Returns the notes in order of their dates, or nothing if the text has problems. All problems are added to
-/// `problems`.
+/// Returns the notes in order of their dates. Returns nullopt if the text has problems, and adds all of them
+/// to `problems`.
 [[nodiscard]] std::optional<std::vector<Note>> read_notes(const std::string& path, std::string text,
                                                           document::Problems& problems);
 
-/// Reads the file and its notes. The error is a sentence if the file cannot be read. It is empty if the text
-/// has problems, which are all added to `problems`.
+/// Reads the file and returns its notes. The error is a sentence if the file cannot be read. The error is
+/// empty if the text has problems, which are all added to `problems`.
 [[nodiscard]] tl::expected<std::vector<Note>, std::string> load_notes(const std::string& path,
                                                                       document::Problems& problems);
 

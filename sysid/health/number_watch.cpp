@@ -9,15 +9,17 @@
 namespace softgrip::sysid::health {
 namespace {
 
-/// Log likelihood ratio from which a change of the difference is attributed to a finger: odds of 20 to 1.
+/// Smallest log likelihood ratio with which a change of the difference is attributed to a finger: odds of 20
+/// to 1.
 const double sure = std::log(20.0);
-/// A change is shared if the mean change of the peer fingers is at least this share of it.
+/// A change is shared if the mean change of the peer fingers is at least this share of the finger's own
+/// change.
 constexpr double alike = 0.5;
-/// Maximum number of values of a finger that are averaged since a change and before it. The latest ones are
-/// used.
+/// Maximum number of a finger's values that are averaged since a change, and before it. The most recent
+/// values are used.
 constexpr std::size_t points_since = 3, points_before = 10;
-/// Smallest number of values for an estimate of their correlation. With fewer values, the variance of a mean
-/// is taken as that of a single value.
+/// Smallest number of values from which their correlation is estimated. With fewer values, averaging is
+/// assumed not to reduce the variance.
 constexpr std::size_t least_for_averaging = 15;
 
 const RunningReference* longest(const ControlChart& chart) {
@@ -157,8 +159,8 @@ ChartValues NumberWatch::difference_at(std::size_t finger, std::size_t point,
   return values;
 }
 
-/// Compares all points of the finger since its last maintenance record again, with `peers` as its peer
-/// fingers.
+/// Repeats the comparison of the finger with other fingers for all points since its last maintenance record,
+/// with `peers` as the peer fingers.
 void NumberWatch::compare_again(std::size_t finger, PeerFingers peers) {
   note_differences(finger);
   Watched& watched = watched_[finger];
@@ -177,7 +179,7 @@ void NumberWatch::add_beside(std::size_t finger, std::size_t moment) {
   Watched& watched = watched_[finger];
   PeerFingers peers = peers_of(finger);
   if (peers != watched.peers) {
-    // The comparison that raised an alarm must not change afterwards.
+    // After an alarm, the comparison that raised the alarm is kept.
     if (!watched.alarm) compare_again(finger, std::move(peers));
     return;
   }
@@ -364,7 +366,7 @@ void NumberWatch::close(std::size_t finger) {
     }
   }
   if (!watched.alarm) return;
-  // The size of the change includes all points since its detection.
+  // The size of the change also includes the points after its detection.
   const auto& now = watched.alarm->beside.empty() ? watched.own.alarm() : watched.beside.alarm();
   if (now) watched.alarm->change = now->change;
   health.alarms.push_back(*watched.alarm);

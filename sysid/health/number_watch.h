@@ -1,5 +1,5 @@
 #pragma once
-// Watches one indicator of all fingers of a rig: updates the control charts, and decides which finger has
+// Watches one indicator of all fingers of a rig: updates the control charts, and determines which finger has
 // changed.
 
 #include <cstddef>
@@ -20,23 +20,26 @@ class NumberWatch {
   /// object, which adds alarms, references and standard normal values to them.
   NumberWatch(std::size_t number, std::vector<FingerTrack>& tracks, const HealthOptions& options);
 
-  /// Processes all moments and returns the shared changes. Must be called only once.
+  /// Processes all points of all fingers in order of time and returns the shared changes. Must be called only
+  /// once.
   [[nodiscard]] std::vector<SharedChange> run(std::size_t moments);
 
  private:
-  /// The peer fingers of a finger: index of each and number of its earlier maintenance records.
+  /// The peer fingers of a finger. Each has its index and the number of its maintenance records so far.
   using PeerFingers = std::vector<std::pair<std::size_t, std::size_t>>;
 
   struct Watched {
     ControlChart own, beside;
-    std::vector<std::size_t> own_at{}, beside_at{};  ///< index of each chart point in the finger
+    /// Index in the health of the finger of each point in the own chart and in the difference chart.
+    std::vector<std::size_t> own_at{}, beside_at{};
     PeerFingers peers{};
     std::size_t epoch = 0;
-    std::size_t next = 0;  ///< index of the next point to be added
+    std::size_t next = 0;  ///< index of the next point of the finger to be added
     std::optional<HealthAlarm> alarm{};
-    std::optional<std::size_t> shared{};  ///< index of the last shared change of this epoch
-    /// Temperature slopes by recipe, and largest standard deviation, since the last maintenance record. A
-    /// shared change does not reset them.
+    /// Index of the last shared change since the last maintenance record.
+    std::optional<std::size_t> shared{};
+    /// Temperature slope of each recipe since the last maintenance record, and largest standard deviation in
+    /// this time. A shared change does not reset these values.
     std::map<std::string, double> per_c{};
     double widest_spread = 0;
   };
@@ -44,13 +47,14 @@ class NumberWatch {
   void add_own(std::size_t finger, std::size_t moment);
   void add_beside(std::size_t finger, std::size_t moment);
   void decide(std::size_t moment);
-  /// Returns the finger to which a change of the difference is attributed with the highest odds; nothing if
+  /// Returns the finger to which a change of the difference is attributed with the highest odds; nullopt if
   /// the odds of all fingers are below 20 to 1.
   [[nodiscard]] std::optional<std::size_t> changed_finger() const;
   [[nodiscard]] bool is_shared(std::size_t finger) const;
   void raise(std::size_t finger, bool beside);
   void share(std::size_t finger);
-  /// Ends an epoch of a finger: stores its differences and its alarm in the health of the finger.
+  /// Ends the time between two maintenance records of a finger: stores its differences and its alarm in the
+  /// health of the finger.
   void close(std::size_t finger);
   [[nodiscard]] HealthAlarm alarm_of(std::size_t finger, bool beside) const;
 
@@ -58,18 +62,20 @@ class NumberWatch {
   [[nodiscard]] std::vector<std::string> names_of(const PeerFingers& peers) const;
   [[nodiscard]] ChartValues difference_at(std::size_t finger, std::size_t point,
                                           const PeerFingers& peers) const;
-  /// Stores the deviations of the differences from their reference in the points of the finger.
+  /// Stores, for each point of the finger, the deviation of its difference from the reference of the
+  /// difference.
   void note_differences(std::size_t finger);
   void compare_again(std::size_t finger, PeerFingers peers);
 
-  /// Returns the change of the finger's own values without the effect of the temperature: the mean of the
-  /// latest values since `from_moment` minus the mean of the last values before.
+  /// Returns the change of the finger's own values, corrected for the temperature: the mean of the latest
+  /// values since `from_moment` minus the mean of the last values before `from_moment`.
   [[nodiscard]] std::optional<double> moved(std::size_t finger, std::size_t from_moment) const;
   [[nodiscard]] std::optional<double> peers_moved(std::size_t finger, std::size_t from_moment) const;
-  /// Returns the variance of moved() for a finger that has not changed.
+  /// Returns the variance of the result of moved() for a finger that has not changed.
   [[nodiscard]] double usual_variance(std::size_t finger) const;
   [[nodiscard]] std::size_t moment_of(std::size_t finger, std::size_t point) const;
-  /// Returns the processed points of the finger since its last maintenance record that have the indicator.
+  /// Returns the processed points of the finger that follow its last maintenance record and have the
+  /// indicator.
   [[nodiscard]] std::vector<std::size_t> points_of(std::size_t finger) const;
   [[nodiscard]] ControlChart new_chart(std::size_t finger) const;
 
@@ -78,7 +84,8 @@ class NumberWatch {
   ChartLimits limits_;
   std::vector<Watched> watched_;
   std::vector<SharedChange> shared_;
-  std::vector<std::vector<std::size_t>> have_runs_in_common_;  ///< possible peers of each finger
+  /// For each finger, the fingers that can be its peers.
+  std::vector<std::vector<std::size_t>> have_runs_in_common_;
 };
 
 }  // namespace softgrip::sysid::health

@@ -23,8 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Version of the score computation, as a prefix of the baseline id. A new version makes all earlier scores
-/// obsolete.
+/// Version of the score computation. It is a prefix of the id of the baseline, so scores of earlier versions
+/// are not used.
 constexpr const char* scoring = "1-";
 constexpr std::size_t id_letters = 12;
 
@@ -95,7 +95,7 @@ void judge(const std::vector<ScoredRun>& runs, const HealthQuestion& question, B
   }
 }
 
-/// Returns the indicators that have changed at all fingers, or of which a shared change is active.
+/// Returns the indicators that have changed at all fingers, and the indicators with an active shared change.
 std::vector<HealthNumber> shared_numbers(const RecordedHealth& rig) {
   std::vector<const FingerHealth*> all;
   for (const JudgedFinger& finger : rig.fingers) all.push_back(&finger.health);

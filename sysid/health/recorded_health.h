@@ -1,6 +1,6 @@
 #pragma once
 // Computes the result of `softgrip health`: scores recordings relative to the baselines of their fingers, and
-// judges all scores.
+// judges each finger by all its scores.
 
 #include <functional>
 #include <string>
@@ -17,14 +17,15 @@
 namespace softgrip::sysid::health {
 
 struct HealthQuestion {
-  std::vector<std::string> recordings;  ///< recordings, or folders of recordings
+  std::vector<std::string> recordings;  ///< paths of recordings, or of folders that contain recordings
   /// Folder that `softgrip baseline` wrote. If it contains a folder FINGER with a baseline, that baseline is
   /// used for the finger.
   std::string baseline;
   std::vector<Note> notes;
   HealthOptions options;
-  std::string scores;  ///< text of earlier scores; their recordings are not read again
-  std::function<void(const std::string&)> progress = {};  ///< called with the progress as text; may be empty
+  std::string scores;  ///< scores from an earlier call, as text; the recordings in it are not read
+  /// Called with a text that states the progress; may be empty.
+  std::function<void(const std::string&)> progress = {};
 };
 
 /// The result for one finger of the rig.
@@ -37,31 +38,31 @@ struct JudgedFinger {
 struct RecordedHealth {
   std::string baseline;
   HealthOptions options;
-  std::vector<JudgedFinger> fingers;  ///< by name; empty: no recording can be compared with the baseline
+  std::vector<JudgedFinger> fingers;  ///< sorted by name; empty: no recording can be compared with a baseline
   std::vector<SharedChange> shared;
   std::vector<SkippedRun> skipped;
-  std::string scores;  ///< text of the earlier scores and of the scores of the new recordings
+  std::string scores;  ///< text of the earlier scores, followed by the scores of the new recordings
 
   /// Returns true if an alarm of a finger is active.
   [[nodiscard]] bool alarm() const;
 };
 
-/// Reason why a baseline is refused.
+/// Folder of a baseline that cannot be used, and the reason.
 struct RefusedBaseline {
-  std::string why;              ///< a sentence; empty: the problems state the reason
-  document::Problems problems;  ///< problems of its model or its logs
-  bool unreadable = false;      ///< a file cannot be opened
+  std::string why;              ///< reason as a sentence; empty: `problems` state the reason
+  document::Problems problems;  ///< problems of the baseline's model or logs
+  bool unreadable = false;      ///< true: a file of the baseline cannot be opened
 };
 
-/// Scores the recordings that are not in `question.scores`, and judges all fingers. The error contains at
-/// least one refused baseline.
+/// Scores the recordings whose scores are not in `question.scores`, and judges all fingers. The error
+/// contains at least one refused baseline.
 [[nodiscard]] tl::expected<RecordedHealth, std::vector<RefusedBaseline>> recorded_health(
     const HealthQuestion& question);
 
 /// Returns warnings about shared changes and about changes that are not attributed to a finger.
 [[nodiscard]] std::vector<std::string> warnings_of(const RecordedHealth& health);
 
-/// Returns the content of health.json. @param now  creation time that the file states.
+/// Returns the content of health.json. @param now  creation time that is written to the file.
 [[nodiscard]] nlohmann::ordered_json json_of(const RecordedHealth& health, Nanoseconds now);
 /// Returns the text of health.json, without a line break at the end.
 [[nodiscard]] std::string health_json_text(const nlohmann::ordered_json& json);

@@ -23,8 +23,8 @@ RigHealth judge_rig(std::vector<FingerRuns> fingers, const std::vector<Note>& no
     for (SharedChange& shared : NumberWatch(i, tracks, options).run(moments))
       rig.shared.push_back(std::move(shared));
   }
-  // A change of one finger changes the time to grip of all fingers, so an alarm of a finger explains this
-  // shared change.
+  // A change of one finger changes the time to grip of all fingers. If a finger has an alarm, a shared change
+  // of the time to grip is therefore only its consequence.
   const bool alarm = std::any_of(tracks.begin(), tracks.end(), [](const FingerTrack& track) {
     return track.health.state == FingerState::alarm;
   });

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the name of the folder or file, also for "runs/" and "runs/.".
+/// Returns the name of the folder or file to which a path leads.
 std::string name_of(const std::string& path) {
   return fs::path(path).lexically_normal().filename().string();
 }
@@ -27,8 +27,8 @@ bool is_run(const fs::path& path) {
   return !fs::is_directory(path, ignored) || fs::exists(path / "run.csv", ignored);
 }
 
-/// Returns the median temperature of a run. One value suffices, because the temperature of a finger hardly
-/// changes during a grip.
+/// Returns the median temperature of a run. One value per run is enough, because the temperature of a finger
+/// hardly changes during a grip.
 double temperature_of(const sysid::Log& log) {
   std::vector<double> known;
   for (const double temperature_c : log.temperature_c) {
@@ -49,8 +49,8 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
     scores.skipped.push_back({name, "it is not finished"});
     return;
   }
-  // A recording of a fault or of a whole day belongs to no sequence, so no other recording is comparable with
-  // it.
+  // A recording of a fault or of a whole day belongs to no sequence, so there are no recordings with which it
+  // can be compared.
   if (recording->recipe.empty() && !recording->software_version.empty()) {
     scores.skipped.push_back({name,
                               "it does not belong to a sequence (with `mode: sequences`, the recorder writes "

@@ -1,5 +1,5 @@
 #pragma once
-// Finds the recordings that the arguments select and computes their indicators.
+// Finds the recordings that the paths select, and computes their indicators.
 
 #include <functional>
 #include <optional>
@@ -10,11 +10,11 @@
 
 namespace softgrip::sysid::health {
 
-/// Returns the recordings that the paths select. A folder with a run.csv is a recording, and so is a file.
-/// Any other folder selects the recordings in it, sorted by name.
+/// Returns the recordings that the paths select. A path to a file or to a folder with a run.csv is a
+/// recording. A path to any other folder selects all recordings in this folder, sorted by name.
 [[nodiscard]] std::vector<std::string> find_runs(const std::vector<std::string>& paths);
 
-/// The baseline of a finger, and its id in the scores.
+/// The baseline of a finger, and the id by which the scores refer to the baseline.
 struct FingerBase {
   ScoreBase base;
   std::string id;
@@ -26,16 +26,18 @@ struct SkippedRun {
   std::string run, why;
 };
 
-/// Called before each recording is read, with its index (from 1) and the number of recordings to read.
+/// Called before each recording is read. @param index  of this recording, from 1. @param count  of all
+/// recordings to read.
 using OnRecording = std::function<void(std::size_t index, std::size_t count)>;
 
 struct RunScores {
-  std::vector<ScoredRun> runs;  ///< one per run and finger
+  std::vector<ScoredRun> runs;  ///< one element for each finger of each run
   std::vector<SkippedRun> skipped;
 };
 
-/// Scores the recordings that have no scores by the current baselines in `known`. A recording that cannot be
-/// used or is not finished is added to `skipped`. A cancelled computation ends before the next recording.
+/// Scores each recording for which `known` contains no scores with the current baselines. An unusable or
+/// unfinished recording is added to `skipped`. If the computation is cancelled, it ends before the next
+/// recording.
 /// @param on_recording  may be empty
 [[nodiscard]] RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_of,
                                    const std::vector<ScoredRun>& known, const OnRecording& on_recording = {});

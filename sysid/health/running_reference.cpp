@@ -6,18 +6,19 @@
 namespace softgrip::sysid::health {
 namespace {
 
-/// Smallest number of values for an estimate of the persistence. With fewer values, a change that is not yet
-/// detected would appear as persistence.
+/// Smallest number of values from which the persistence (lag-one correlation) is estimated. With fewer
+/// values, an undetected change would increase the estimate.
 constexpr double least_for_persistence = 15;
-/// The estimate of the persistence is reduced by this number of standard errors.
+/// The estimate of the persistence is reduced by this multiple of its standard error.
 constexpr double surely = 0.5;
 constexpr double most_persistence = 0.95;
-/// Smallest number of values, and smallest standard deviation of their temperatures, that determine a slope.
+/// A temperature slope is estimated only from at least this number of values, and if their temperatures have
+/// at least this standard deviation.
 constexpr double least_for_slope = 6;
 constexpr double least_temperature_spread_c = 0.3;
 constexpr double slope_significance = 3;
-/// Standard deviation of the extrapolated part of the line outside the temperatures of the earlier values, as
-/// a share of this part.
+/// Relative standard deviation of the part of the line that is extrapolated beyond the temperatures of the
+/// earlier values.
 constexpr double extrapolation_uncertainty = 0.5;
 
 double persistence_of(const SerialSums& sums, double slope) {
@@ -75,8 +76,8 @@ double SerialSums::left(double slope) const {
 double SerialSums::correlation(double slope) const {
   const double squares = left(slope);
   if (!(squares > 0)) return 0;
-  // Returns the sum of the products of neighbouring values, each minus its mean. The first value is 0: see
-  // add().
+  // Returns the sum of the products of neighbouring values after subtraction of their mean. The formula
+  // relies on add(), which makes the first value 0.
   const auto together = [&](double products, double now, double before, double last_before) {
     return products - now * (before - last_before) / n_ - before * now / n_ +
            (n_ - 1) * now * before / n_ / n_;

@@ -1,6 +1,7 @@
 #pragma once
-// Stores the indicators of each finger in each recorded run as one line of a file. Lines are only added. The
-// indicators therefore remain available after a recording has been deleted, and no recording is read twice.
+// Stores the indicators of each finger in each recorded run as one line of a file. Existing lines are not
+// changed. The indicators therefore remain available after a recording has been deleted, and each recording
+// is read once.
 
 #include <cstddef>
 #include <limits>
@@ -15,26 +16,29 @@
 namespace softgrip::sysid::health {
 
 struct ScoredRun {
-  std::string run;         ///< name of the recording's folder
-  std::string finger;      ///< name of the channel
-  std::string started_at;  ///< UTC; empty: not known
+  std::string run;         ///< name of the folder of the recording
+  std::string finger;      ///< name of the finger's channel
+  std::string started_at;  ///< UTC; empty: the start time is not known
   std::string recipe;      ///< only runs of the same recipe are compared
-  std::string baseline;    ///< id of the baseline that the scores refer to
+  std::string baseline;    ///< id of the baseline relative to which the run was scored
   GripScore score;
-  double temperature_c = std::numeric_limits<double>::quiet_NaN();  ///< median of the run; NaN: not recorded
+  /// Median temperature of the run [degC]; NaN: not recorded.
+  double temperature_c = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Largest file that health reads [bytes].
+/// Largest size of a file that `softgrip health` reads [bytes].
 inline constexpr std::size_t largest_health_file = std::size_t{512} << 20U;
-/// File name in the output folder.
+/// Name of the file of the scores in the output folder.
 inline constexpr const char* scores_file = "health-scores.jsonl";
 
-/// Returns the text of this file, or "" if there is none. The error is a sentence: an existing file that
-/// cannot be read holds the scores of earlier days, so it must not be replaced.
+/// Returns the text of the file of the scores, or "" if the file does not exist. If the file exists but
+/// cannot be read, the error is a sentence. The caller must then keep the file, because it holds the scores
+/// of earlier days.
 [[nodiscard]] tl::expected<std::string, std::string> earlier_scores(const std::string& path);
-/// Reads the lines of this file. An incomplete line, for example after a power failure, is skipped.
+/// Reads the lines of the file of the scores. A line that is incomplete, for example after a power failure,
+/// is skipped.
 [[nodiscard]] std::vector<ScoredRun> read_scores(std::string_view text);
-/// Returns the line of a run, with its line break.
+/// Returns the scores of a run as one line of the file, with a line break at the end.
 [[nodiscard]] std::string line_of(const ScoredRun& run);
 
 }  // namespace softgrip::sysid::health

@@ -15,13 +15,14 @@ using sysid::HealthNumber;
 using sysid::HealthSign;
 using sysid::Moves;
 
-/// Penalties in the score of a cause, relative to 1 for a sign that is present: for a missing sign, and for
-/// an alarm that the cause does not explain.
+/// Penalties in the score of a cause: one for each of its signs that is missing, and one for each alarm that
+/// the cause does not explain. Each sign that is present adds 1 to the score.
 constexpr double missing_sign = 0.25;
 constexpr double unexplained_alarm = 0.75;
-/// Penalty of a cause that requires an additional column, because recordings of grips may lack this column.
+/// Penalty of a cause that can be diagnosed only with an additional column, because recordings of grips may
+/// lack this column.
 constexpr double lacks_column = 0.05;
-/// Largest difference from the best score at which a cause is still a candidate.
+/// A cause is a candidate only if its score is at most this much below the best score.
 constexpr double as_much = 0.1;
 constexpr std::size_t most_suspects = 4;
 
@@ -30,8 +31,9 @@ bool agrees(Moves moves, double change) {
   return moves == (change > 0 ? Moves::up : Moves::down);
 }
 
-/// Returns the changes of the indicators in alarm, with the shared changes that started no later. The time to
-/// grip is included only if no other indicator has changed, because every change affects it.
+/// Returns the changes of the indicators in alarm, and the shared changes that started no later than the
+/// latest of these alarms. Every change affects the time to grip. It is therefore included only if no other
+/// indicator has changed.
 std::map<HealthNumber, double> changes_of(const FingerHealth& health,
                                           const std::vector<SharedChange>& shared) {
   std::map<HealthNumber, double> changes;
@@ -47,8 +49,8 @@ std::map<HealthNumber, double> changes_of(const FingerHealth& health,
   return changes;
 }
 
-/// Returns the score of a cause with these signs: the number of present signs minus the penalties; 0 if no
-/// sign is present.
+/// Returns the score of a cause that has these signs: the number of present signs minus the penalties.
+/// Returns 0 if no sign is present.
 double explained(const sysid::HealthSigns& signs, const std::map<HealthNumber, double>& changes,
                  const FingerHealth& health) {
   double worth = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// Finds the candidate causes of an alarm, whose signs (sysid/diagnosis/causes/) match the alarm best, and the
-// steps that confirm one of them.
+// Finds the candidate causes of an alarm, and the checks that confirm one of them. A candidate is a cause
+// whose signs (sysid/diagnosis/causes/) match the alarm best.
 
 #include <string>
 #include <string_view>
@@ -12,20 +12,22 @@
 namespace softgrip::sysid::health {
 
 struct Suspect {
-  std::string id;                       ///< id of the cause
-  std::string words;                    ///< "the pressure falls while it should be constant"
-  std::vector<std::string> next_steps;  ///< checks for the operator, the quicker one first
+  std::string id;  ///< id of the cause
+  /// The cause as text: "the pressure falls while it should be constant".
+  std::string words;
+  std::vector<std::string> next_steps;  ///< checks for the operator; the quickest check comes first
 };
 
 struct Suspicion {
-  std::vector<Suspect> suspects;    ///< the best one first; the others are about equally good
-  std::vector<std::string> advice;  ///< how to distinguish the candidates
+  /// Candidate causes; the best one comes first, and the others have nearly the same score.
+  std::vector<Suspect> suspects;
+  std::vector<std::string> advice;  ///< checks that distinguish the candidates from each other
 };
 
 /// Returns the candidate causes of the active alarms. The list is empty if there is no alarm, or if no cause
-/// has signs that match.
-/// @param shared  shared changes of the rig. Those that started no later than the latest alarm also count as
-/// signs.
+/// has matching signs.
+/// @param shared  shared changes of the rig. A shared change that started no later than the latest alarm also
+/// counts as a sign.
 [[nodiscard]] Suspicion suspicion_of(const FingerHealth& health,
                                      const std::vector<SharedChange>& shared = {});
 
