@@ -8,7 +8,8 @@ namespace {
 struct Reason {
   std::string_view word;
   std::string_view text;
-  bool lost;  ///< false: the user requested to leave the row out, or the row has no content
+  /// False: the user requested to leave the row out, or the row has no content; true: another reason.
+  bool lost;
 };
 constexpr std::array<Reason, left_out_count> reasons{{
     {"other_channel", "of another channel", false},

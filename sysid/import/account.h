@@ -1,6 +1,6 @@
 #pragma once
-// Row counts of an imported file: each row is either used in the log or counted with the reason for which it
-// is left out.
+// Counts the rows of an imported file. Each row is either used in the log, or counted with the reason for
+// which it is left out.
 
 #include <array>
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// The reason why a row is not in the log.
+/// Reason for which a row is left out of the log.
 enum class LeftOut : std::uint8_t {
   other_channel,
   outside_stretch,
@@ -24,31 +24,33 @@ enum class LeftOut : std::uint8_t {
 };
 inline constexpr std::size_t left_out_count = 9;
 
-/// Returns the identifier of a reason in JSON.
+/// Returns the identifier of a reason in the JSON output.
 [[nodiscard]] std::string_view word_of(LeftOut reason);
 
-/// Share of lost rows above which the import warns.
+/// The import adds a warning if the share of lost rows exceeds this value.
 inline constexpr double warned_share = 0.05;
-/// Share of lost rows above which the import refuses the file.
+/// The import refuses the file if the share of lost rows exceeds this value.
 inline constexpr double refused_share = 0.8;
 
-/// Numbers of rows. If a file has two time columns, each row counts twice, once per time.
+/// Row counts of an imported file. If the file has two time columns, each row is counted twice, once per time
+/// column.
 struct RowAccount {
   std::size_t rows = 0;    ///< all rows of the file
   std::size_t used = 0;    ///< rows that became samples of the log
-  std::size_t joined = 0;  ///< rows whose values were added to the sample of another row at the same time
+  std::size_t joined = 0;  ///< rows whose values were added to the sample of another row with the same time
   std::array<std::size_t, left_out_count> left_out{};
 
   void leave_out(LeftOut reason, std::size_t count = 1) {
     left_out[static_cast<std::size_t>(reason)] += count;
   }
-  /// Returns true if each row is used, joined or left out.
+  /// Returns true if the numbers of used, joined and left-out rows add up to the number of all rows.
   [[nodiscard]] bool balanced() const;
   /// Returns the number of rows that were left out for a reason that the user did not request.
   [[nodiscard]] std::size_t lost() const;
   /// Returns lost() divided by the number of rows that the user did not exclude.
   [[nodiscard]] double lost_share() const;
-  /// Returns, for example, "1500 rows: 600 used, 900 left out (900 at the time of the row before)".
+  /// Returns the counts as a sentence, for example "1500 rows: 600 used, 900 left out (900 at the time of the
+  /// row before)".
   [[nodiscard]] std::string sentence() const;
 };
 

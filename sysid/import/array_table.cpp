@@ -22,7 +22,7 @@ void ArrayCollector::add(const std::string& name, const std::string& unit, std::
   if (values.size() != rows * columns || values.size() < 2) return;
   values_ += values.size();
   const bool is_vector = rows == 1 || columns == 1;
-  // A matrix with more columns than rows has one signal in each row.
+  // If a matrix has more columns than rows, each row is taken as one signal.
   const bool lies = !is_vector && columns > rows;
   const std::size_t count = is_vector ? 1 : std::min(rows, columns);
   const std::size_t length = values.size() / count;

@@ -7,8 +7,8 @@
 
 namespace softgrip::sysid {
 
-/// Reads little-endian values one after the other. After an attempt to read beyond the end, each value is 0
-/// or empty, and good() returns false.
+/// Reads little-endian values one after the other. If a read would pass the end of the data, it returns 0 or
+/// an empty text, and good() returns false from then on.
 class ByteScanner {
  public:
   explicit ByteScanner(std::string_view bytes) : bytes_(bytes) {}
@@ -26,7 +26,8 @@ class ByteScanner {
     const char* const at = skip(size);
     return at == nullptr ? std::string_view{} : std::string_view(at, size);
   }
-  /// Skips `size` bytes and returns a pointer to the first of them. Returns nullptr if fewer bytes are left.
+  /// Skips `size` bytes and returns a pointer to the first skipped byte. Returns nullptr if fewer than `size`
+  /// bytes are left.
   const char* skip(std::uint64_t size) {
     good_ = good_ && size <= bytes_.size();
     if (!good_) return nullptr;

@@ -1,5 +1,5 @@
 #pragma once
-// Interpretation of one cell of an imported text file: number, missing value, time or other text.
+// Interprets one cell of an imported text file as a number, a missing value, a time or another text.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,19 +19,22 @@ struct CellValue {
   double number = 0;            ///< value of a number; finite
   Nanoseconds moment = 0;       ///< value of a timestamp
   bool dated = false;           ///< the timestamp has a date
-  bool short_clock = false;     ///< the timestamp has two fields
+  bool short_clock = false;     ///< the timestamp has two fields only, such as "12:34"
   bool surely_minutes = false;  ///< the two fields are minutes and seconds
-  int missing_word = -1;        ///< index of the word in `missing` that the cell contains; -1: none
-  bool with_comma = false;      ///< the number has a decimal comma
-  bool with_point = false;      ///< the number has a decimal point
+  /// Index of the word in `missing` that the cell contains; -1: the cell contains no such word.
+  int missing_word = -1;
+  bool with_comma = false;  ///< the number has a decimal comma
+  bool with_point = false;  ///< the number has a decimal point
 };
 
-/// Interprets a cell. A comma before digits is a decimal comma. A cell with a comma and a point is not a
-/// number: 1.234,5. Missing values are an empty cell, NaN, NA, null, inf and similar words, and the words in
-/// `missing` (in lower case; numbers are compared by value).
+/// Interprets a cell. A comma followed by digits is a decimal comma. A cell with a comma and a point
+/// ("1.234,5") is not a number. A cell is a missing value if it is empty or contains NaN, NA, null, inf or a
+/// similar word. A cell with a word of `missing` (in lower case) is a missing value too; numbers in `missing`
+/// are compared by value.
 [[nodiscard]] CellValue cell_value(std::string_view cell, const std::vector<std::string>& missing);
 
-/// Returns the value of a text that consists of decimal digits only; nullopt for another text.
+/// Returns the value of a text that consists of decimal digits only; nullopt if the text contains another
+/// character.
 [[nodiscard]] std::optional<std::size_t> whole_number(std::string_view text);
 
 }  // namespace softgrip::sysid

@@ -12,16 +12,18 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double day_s = 86400;
-/// If the step across an overflow exceeds this number of usual steps, rows may be missing, so the overflow is
-/// not accepted.
+/// Largest time step across an overflow, as a multiple of the usual step of the clock. Across a larger step,
+/// rows may be missing, so the overflow is not corrected.
 constexpr double longest_step = 3;
-/// Two clocks with different origins count as one if their difference varies by at most this share of the
-/// usual step.
+/// Two clocks with different origins count as one clock if their difference varies by at most this share of
+/// the usual time step.
 constexpr double wandering_share = 0.5;
-/// Two clocks with the same origin count as one if they differ by at most this share of the usual step.
+/// Two clocks with the same origin count as one clock if they differ by at most this share of the usual time
+/// step.
 constexpr double equal_share = 0.05;
 constexpr double rising_share = 0.9;
-/// Two columns can be the same clock only if at most this share of the rows has a time in one of them alone.
+/// Two time columns can count as one clock only if at most this share of the rows has a time in just one of
+/// the two columns.
 constexpr double apart_share = 0.01;
 
 std::vector<double> steps_of(const std::vector<double>& clock) {
@@ -55,8 +57,8 @@ Extent finite_extent(const std::vector<double>& values) {
   return extent;
 }
 
-/// Returns true if an overflow after `period` explains every backward step. `step` is the usual step of the
-/// clock.
+/// Returns true if a clock that overflows after `period` explains every backward step of `clock`. @param step
+/// usual time step of the clock.
 bool explains(const std::vector<double>& clock, double period, double step) {
   const Extent extent = finite_extent(clock);
   const bool counts_from_0 = extent.lowest >= 0 && extent.highest <= period;
@@ -88,7 +90,7 @@ std::string time_unit(const ForeignTable& table, const Mapping& mapping, std::si
   return own.empty() ? epoch_unit(column) : own;
 }
 
-/// Returns the tokens of a name without the words for time and the units of time.
+/// Splits a column name into words and returns them without words for time and units of time.
 std::vector<std::string> telling_tokens(const std::string& name) {
   std::vector<std::string> tokens = tokens_of(name);
   const auto silent = [](const std::string& token) {
@@ -98,8 +100,8 @@ std::vector<std::string> telling_tokens(const std::string& name) {
   return tokens;
 }
 
-/// Returns true if the name of a time column contains a word of the role or a word of `column_name`, the name
-/// of a value column.
+/// Returns true if the name of a time column contains a word that identifies the role, or a word of
+/// `column_name`. @param column_name  name of a value column.
 bool names_its_role(const std::string& time_name, Role role, const std::string& column_name) {
   const std::vector<std::string> theirs = tokens_of(column_name);
   const std::vector<std::string> tokens = telling_tokens(time_name);
@@ -108,7 +110,8 @@ bool names_its_role(const std::string& time_name, Role role, const std::string& 
   });
 }
 
-/// Returns the index of the first column of each role; the number of columns if a role has none.
+/// Returns, for each role, the index of its first column. If a role has no column, its element is the number
+/// of columns.
 std::array<std::size_t, role_count> columns_of_roles(const ForeignTable& table, const Mapping& mapping) {
   std::array<std::size_t, role_count> columns{};
   columns.fill(table.columns.size());

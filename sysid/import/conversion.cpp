@@ -17,7 +17,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// The columns of one role, and the conversion of their values: factor * value + offset.
+/// Columns of one role and the conversion of their values. The value in the log is factor * value + offset.
 struct Source {
   std::vector<std::size_t> columns;
   double factor = 1;
@@ -143,7 +143,8 @@ class Converter {
   }
 
   void find_unit(const RoleSpec& spec, const ColumnMapping& mapped, Source& source) {
-    if (spec.role == Role::time && source.columns.size() > 1) return;  // samples_by_times() converts each
+    // Samples_by_times() converts the time columns one by one.
+    if (spec.role == Role::time && source.columns.size() > 1) return;
     if (spec.role == Role::time && !find_clock(table_.columns[source.columns.front()], mapped, source))
       return;
     const bool moments = table_.columns[source.columns.front()].moments > 0;
@@ -182,7 +183,7 @@ class Converter {
     return codes;
   }
 
-  /// Returns the unit of an angle if --scale is given together with --unit displacement=deg or rad.
+  /// Returns the unit of the angle if the options contain --scale and --unit displacement=deg or rad.
   static std::optional<Unit> angle_of_scale(const RoleSpec& spec, const ColumnMapping& mapped) {
     if (spec.role != Role::displacement || !mapped.scale || mapped.unit.empty()) return std::nullopt;
     auto unit = unit_named(mapped.unit, spec.quantity);
@@ -190,8 +191,8 @@ class Converter {
     return unit;
   }
 
-  /// Determines the meaning of times with two fields. "12:34" is ambiguous, so the unit of the column decides
-  /// between hh:mm and mm:ss.
+  /// Determines how times with two fields are read. "12:34" can be hh:mm or mm:ss, so the unit of the column
+  /// decides.
   bool find_clock(const TableColumn& column, const ColumnMapping& mapped, Source& source) {
     if (column.short_clocks == 0) return true;
     const std::string unit = lower_case(unit_text(table_, mapped, Quantity::time));
@@ -233,8 +234,8 @@ class Converter {
     return by_times ? samples_by_times(rows) : samples_of_rows(rows);
   }
 
-  /// Removes the rows in which no used column has a value. In a recording, these are the messages of other
-  /// topics.
+  /// Removes the rows without a value in any used column. In an MCAP recording, these rows are messages of
+  /// unused topics.
   void leave_out_unused(std::vector<std::size_t>& rows) {
     const auto unused = [&](std::size_t row) {
       return std::none_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
@@ -268,8 +269,8 @@ class Converter {
     return samples;
   }
 
-  /// Corrects the overflows of a clock and adds a note.
-  /// @param rows  rows of the table, one for each time.
+  /// Corrects the overflows of a clock and adds a note about them.
+  /// @param rows  row of the table for each time.
   void continue_clock(std::vector<double>& time, double unit_s, const std::vector<std::size_t>& rows) {
     const auto overflow = continue_overflows(time, unit_s);
     if (!overflow) return;
@@ -282,15 +283,15 @@ class Converter {
                              ": the clock is corrected");
   }
 
-  /// The time of one of several time columns in one row.
+  /// A time in one of several time columns.
   struct Entry {
     double time_s = 0;
     std::size_t clock = 0;
     std::size_t row = 0;
   };
 
-  /// Returns one sample for each row and time column. The sample contains only the values that belong to this
-  /// time column. The samples are in the order of time.
+  /// Returns one sample for each row and time column, sorted by time. Each sample contains only the values
+  /// that belong to its time column.
   ForeignSamples samples_by_times(const std::vector<std::size_t>& rows) {
     const std::vector<std::size_t>& clocks = sources_[static_cast<std::size_t>(Role::time)].columns;
     const auto of_roles = times_of_roles(table_, mapping_, clocks);
@@ -303,7 +304,7 @@ class Converter {
     ForeignSamples samples;
     if (!good) return samples;
     remarks_.account.rows += (clocks.size() - 1) * table_.rows();
-    // A skipped line counts once per time column. The account already contains the first count.
+    // A skipped line counts once per time column. Its first count is already in the account.
     remarks_.account.leave_out(LeftOut::bad_line, (clocks.size() - 1) * (table_.rows() - rows.size()));
     leave_out_empty(*of_roles, entries);
     std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
@@ -353,8 +354,8 @@ class Converter {
     return !apart;
   }
 
-  /// Removes entries without a time and without values. They occur because a shorter time column ends with
-  /// empty cells.
+  /// Removes entries that have neither a time nor a value. They occur because a time column that ends earlier
+  /// than another one continues with empty cells.
   void leave_out_empty(const std::array<std::size_t, role_count>& of_roles, std::vector<Entry>& entries) {
     const auto empty = [&](const Entry& entry) {
       if (std::isfinite(entry.time_s)) return false;
@@ -371,8 +372,8 @@ class Converter {
     entries.erase(kept, entries.end());
   }
 
-  /// Checks that each row is either used or counted as left out, and that the share of lost rows is within
-  /// its bounds.
+  /// Checks that each row is either used or counted as left out, and that the share of lost rows is not too
+  /// large.
   void check_account(std::size_t samples) {
     RowAccount& account = remarks_.account;
     account.used = samples;
@@ -415,7 +416,8 @@ class Converter {
     }
   }
 
-  /// Refuses a table whose rows belong to several fingers if a column of numbers identifies the finger.
+  /// Refuses a table that contains rows of several fingers, if a column of numbers identifies the finger of
+  /// each row.
   void refuse_rows_of_fingers() {
     for (std::size_t i = 0; i < table_.columns.size() && !table_.is_text; ++i) {
       const TableColumn& column = table_.columns[i];
@@ -456,7 +458,7 @@ class Converter {
     remarks_.warnings.push_back(option + " has no effect: " + why);
   }
 
-  /// Adds warnings about options that have no effect.
+  /// Adds a warning for each option that has no effect on this file.
   void name_idle_options() {
     for (const RoleSpec& spec : roles) {
       const ColumnMapping& mapped = mapping_[spec.role];
@@ -558,7 +560,7 @@ std::optional<ImportedLog> convert(const ForeignTable& table, const Mapping& map
   if (!result) return std::nullopt;
   result->log.path = table.file;
   result->log.channel = mapping.channel;
-  // A log that the other commands would refuse must not be written.
+  // The import does not write a log that the other commands would refuse.
   document::Problems refused;
   LogOptions options;
   options.channel = mapping.channel;

@@ -1,5 +1,5 @@
 #pragma once
-// Conversion of a table and a mapping into a log.
+// Converts a table into a log with a mapping.
 
 #include <optional>
 #include <string>
@@ -21,14 +21,14 @@ struct ImportedLog {
   RowAccount account;
 };
 
-/// Returns the number in a word of `missing`, or nullopt if the word is not a number.
+/// Returns the number that a word of `missing` contains, or nullopt if the word is not a number.
 [[nodiscard]] std::optional<double> missing_number(const std::string& word);
 
-/// Converts the table to a log by the rules of samples.h. Each row of the table is either in the log or
-/// counted in `account` with a reason. A share of lost rows above refused_share is a problem, and a share
-/// above warned_share is a warning. Columns and options without effect are reported. It is a problem if
-/// parse_log() would refuse the log. All problems are added to `problems`, and their texts name the options
-/// of `softgrip import`.
+/// Converts the table into a log by the rules of samples.h. Each row of the table is either in the log or
+/// counted in `account` with a reason. A share of lost rows above refused_share is a problem; a share above
+/// warned_share gives a warning. Columns and options without effect are reported. A log that parse_log()
+/// would refuse is a problem too. All problems are added to `problems`, and their texts name the options of
+/// `softgrip import`.
 [[nodiscard]] std::optional<ImportedLog> convert(const ForeignTable& table, const Mapping& mapping,
                                                  document::Problems& problems);
 

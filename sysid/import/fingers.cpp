@@ -34,14 +34,14 @@ bool fits_a_displacement(const TableColumn& column) {
   return fitness_for(column, Role::displacement) > 0;
 }
 
-/// Returns the words that distinguish the names of two or more columns of a kind. The rest of these names is
-/// equal.
+/// Returns the words that distinguish column names of one kind. Two names differ in such a word and are equal
+/// in all other words.
 template <class OfKind>
 std::set<std::string> words_apart(const ForeignTable& table, OfKind of_kind) {
   std::map<std::string, std::set<std::string>> by_pattern;
   for (const TableColumn& column : table.columns) {
     if (!of_kind(column)) continue;
-    // Remove the unit first, because 'A' may be a finger or the unit ampere.
+    // Remove the unit before the split into words, because 'A' may be a finger or the unit ampere.
     const std::vector<std::string> tokens = tokens_of(split_unit(column.name).name);
     for (std::size_t k = 0; k < tokens.size(); ++k) {
       if (is_role_word(tokens[k])) continue;
@@ -73,7 +73,7 @@ std::set<std::string> finger_set(const ForeignTable& table) {
     if (is_finger_word(word)) known.insert(word);
   }
   if (known.size() > 1) return known;
-  // The table may have the pressures of two fingers and the displacement of one.
+  // The table may contain the pressures of two fingers but the displacement of one finger only.
   for (const TableColumn& column : table.columns) {
     if (!fits_a_displacement(column)) continue;
     for (const std::string& token : tokens_of(column.name)) {

@@ -25,7 +25,8 @@ constexpr std::size_t largest_file_bytes = std::size_t{1} << 30;
 constexpr const char* too_long_hint = "split it into several files";
 constexpr std::string_view hdf5_signature{"\x89HDF\r\n\x1a\n"};
 
-/// Returns true for HDF5 data. The format begins at byte 0, or after a user block of 512, 1024, ... bytes.
+/// Returns true if the bytes are HDF5 data. HDF5 data begin at byte 0 or after a user block of 512, 1024, ...
+/// bytes.
 bool is_hdf5(std::string_view bytes) {
   if (bytes.starts_with(hdf5_signature)) return true;
   for (std::size_t at = 512; at < bytes.size(); at *= 2) {
@@ -34,8 +35,8 @@ bool is_hdf5(std::string_view bytes) {
   return false;
 }
 
-/// Returns true for MATLAB version 4, which has no signature: its header has five small numbers and a name
-/// that ends with a NUL byte.
+/// Returns true if the bytes are a MATLAB file of version 4. Such a file has no signature. Its header has
+/// five small numbers and a name that ends with a NUL byte.
 bool is_matlab_4(std::string_view bytes) {
   constexpr std::size_t header = 20;
   if (bytes.size() < header) return false;
@@ -48,7 +49,7 @@ bool is_matlab_4(std::string_view bytes) {
          bytes[header] > ' ';
 }
 
-/// Returns the name of a known format that softgrip does not read; empty for all other data.
+/// Returns the name of the file format if it is known but not supported; empty for all other data.
 std::string_view known_but_unread(std::string_view bytes) {
   constexpr std::string_view encrypted{"E\0n\0c\0r\0y\0p\0t\0e\0d\0P\0a\0c\0k\0a\0g\0e", 31};
   if (bytes.starts_with("\xd0\xcf\x11\xe0"))
@@ -63,15 +64,15 @@ std::string_view known_but_unread(std::string_view bytes) {
   return {};
 }
 
-/// Reads a text: a LabVIEW measurement, or a table in any dialect.
+/// Reads a text file: a LabVIEW measurement, or a table with any separator.
 std::optional<ForeignTable> read_text(const std::string& path, std::string_view bytes,
                                       const TableOptions& options, document::Problems& problems) {
   return is_lvm(bytes) ? read_lvm(path, bytes, options, problems)
                        : parse_text_table(path, bytes, options, problems);
 }
 
-/// Reads the file in the format that its bytes show. `opened` is a path to the file from which `bytes` were
-/// read, even if `path` has been replaced since.
+/// Reads the file in the format that its first bytes indicate. @param opened  path that leads to the file
+/// from which `bytes` were read, even if the file at `path` has been replaced since.
 std::optional<ForeignTable> read_bytes(const std::string& path, const std::string& opened,
                                        std::string_view bytes, const TableOptions& options,
                                        document::Problems& problems) {
@@ -118,7 +119,7 @@ tl::expected<std::string, std::string> gunzipped(std::string_view bytes, std::si
     stream.avail_out = static_cast<uInt>(chunk.size());
     state = inflate(&stream, Z_NO_FLUSH);
     text.append(chunk, 0, chunk.size() - stream.avail_out);
-    // A gzip file can contain several members. Their texts are joined.
+    // A gzip file can contain several members; their texts are concatenated.
     if (state == Z_STREAM_END && stream.avail_in > 0) state = inflateReset(&stream);
   }
   inflateEnd(&stream);

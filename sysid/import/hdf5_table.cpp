@@ -53,7 +53,8 @@ std::string text_of(hid_t attribute, hid_t type) {
   return text.substr(0, text.find('\0'));
 }
 
-/// Returns the text of an attribute. Returns "" if the object has no text attribute of this name.
+/// Returns the text of an attribute of an object. Returns "" if the object has no text attribute with this
+/// name.
 std::string attribute_text(hid_t object, const char* name) {
   if (H5Aexists(object, name) <= 0) return {};
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
@@ -71,8 +72,8 @@ std::string unit_of(hid_t dataset) {
   return {};
 }
 
-/// Returns true for the MATLAB classes that contain numbers. MATLAB also stores other classes, such as texts,
-/// as numbers.
+/// Returns true for the MATLAB classes of numbers. MATLAB stores other classes, such as texts, as numbers
+/// too; for them, the result is false.
 bool is_matlab_number(const std::string& kind) {
   return kind.empty() || kind == "double" || kind == "single" || kind == "logical" ||
          kind.find("int") != std::string::npos;
@@ -115,15 +116,15 @@ void collect_members(hid_t dataset, hid_t type, const std::string& name, std::si
   }
 }
 
-/// Returns the number of bytes that libhdf5 decompresses to read one value. Returns 0 for a dataset without
-/// chunks.
+/// Returns the number of bytes that libhdf5 has to decompress before it can read one value of a dataset.
+/// Returns 0 for a dataset without chunks.
 std::size_t chunk_bytes(hid_t dataset, hid_t type) {
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
   std::array<hsize_t, 2> chunk{1, 1};
   if (H5Pget_layout(creation.get()) != H5D_CHUNKED || H5Pget_chunk(creation.get(), 2, chunk.data()) < 0)
     return 0;
-  // The library stores both sizes in 32 bits, so their product does not overflow. The size in bytes does not
-  // overflow either, because it is computed only for small products.
+  // libhdf5 stores both sizes in 32 bits, so their product does not overflow 64 bits. The size in bytes is
+  // computed only for small products, so it does not overflow.
   const hsize_t values = chunk[0] * chunk[1];
   return values > most_chunk_bytes ? values : values * H5Tget_size(type);
 }
@@ -157,7 +158,8 @@ void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arr
   }
 }
 
-/// Returns a sentence if the values of a dataset are stored in another file, otherwise an empty text.
+/// Returns an error sentence if another file contains the values of the dataset; otherwise returns an empty
+/// text.
 std::string foreign_storage(hid_t dataset) {
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
   if (H5Pget_external_count(creation.get()) > 0) return "its values are in another file (external storage)";
@@ -166,7 +168,7 @@ std::string foreign_storage(hid_t dataset) {
   return {};
 }
 
-/// State of the iteration over all groups of a file.
+/// State of the loop over all groups and datasets of a file.
 struct Walk {
   ArrayCollector& arrays;
   char separator = '/';
@@ -186,7 +188,8 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* data) 
   Walk& walk = where.walk;
   if (name[0] == '#') return 0;  // internal objects of MATLAB
   const std::string path = where.prefix + name;
-  // Limit the number of objects, because groups can link to each other in a cycle.
+  // The number of objects is limited, because groups that link to each other in a cycle would otherwise be
+  // read without end.
   if (++walk.objects > most_objects) {
     walk.refused = "it has more than " + std::to_string(most_objects) + " objects";
   } else if (info->type != H5L_TYPE_HARD && info->type != H5L_TYPE_SOFT) {
@@ -212,8 +215,8 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* data) 
   return walk.refused.empty() ? 0 : 1;
 }
 
-/// Refuses an external link, so that libhdf5 does not open another file. Soft links within the file are
-/// followed.
+/// Refuses an external link, so that libhdf5 does not open another file. Links to objects of the same file
+/// are followed.
 herr_t refuse_external_link(const char* /*parent_file*/, const char* /*parent_group*/, const char* /*file*/,
                             const char* /*object*/, unsigned* /*flags*/, hid_t /*access*/, void* /*data*/) {
   return -1;
@@ -223,7 +226,7 @@ herr_t refuse_external_link(const char* /*parent_file*/, const char* /*parent_gr
 
 std::optional<ForeignTable> read_hdf5_table(const std::string& path, const std::string& opened, bool matlab,
                                             document::Problems& problems) {
-  // libhdf5 must not print errors, because the problem below reports them
+  // libhdf5 must not print errors, because the problem below reports them.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const Handle file(H5Fopen(opened.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file) {

@@ -28,7 +28,7 @@ std::vector<std::string> cells_of(std::string_view line, char separator) {
   return texts;
 }
 
-/// The lines "KEY value value ..." of a header.
+/// Lines "KEY value value ..." of a header: the values of each key.
 using Header = std::map<std::string, std::vector<std::string>>;
 
 class LvmReader {
@@ -77,8 +77,8 @@ class LvmReader {
     return found == header.end() || found->second.empty() ? std::string() : found->second.front();
   }
 
-  /// Returns the value of each channel for a key of the header. If each channel has an X column, the cells in
-  /// the X columns of this line are empty and are skipped.
+  /// Returns the values that the header contains for a key, one per channel. If each channel has its own X
+  /// column, the header line also has an empty cell per X column; these cells are skipped.
   [[nodiscard]] std::vector<std::string> of_channels(const Header& header, const std::string& key) const {
     const auto found = header.find(key);
     if (found == header.end()) return {};
@@ -91,7 +91,7 @@ class LvmReader {
     return values;
   }
 
-  /// Returns the start time of each channel. For a channel without a start time, returns that of the first
+  /// Returns the start time of each channel. A channel without a start time gets the start time of the first
   /// channel.
   [[nodiscard]] std::vector<Nanoseconds> starts_of(const Header& section) const {
     const std::vector<std::string> dates = of_channels(section, "Date");
@@ -105,8 +105,8 @@ class LvmReader {
     return starts;
   }
 
-  /// Checks that the channels have equal X0, Delta_X and start times if they share one X column. All of them
-  /// have the times of the first channel.
+  /// If the channels share one X column, checks that they have equal X0, Delta_X and start times, because all
+  /// of them get the times of the first channel.
   bool has_one_clock(const Header& section, std::size_t line) {
     if (x_columns_ == "multi") return true;
     for (const char* const key : {"Delta_X", "X0"}) {
@@ -131,8 +131,8 @@ class LvmReader {
     return true;
   }
 
-  /// Adds the start time of each channel, relative to that of the first channel, to the X values of the
-  /// channel.
+  /// Adds to the X values of each channel the difference between the start times of this channel and the
+  /// first channel.
   void shift_starts(const Header& section, std::size_t begin) {
     const std::vector<Nanoseconds> starts = starts_of(section);
     for (std::size_t k = 1; k < starts.size() && x_columns_ == "multi"; ++k) {
@@ -195,8 +195,9 @@ class LvmReader {
     place(section, begin, delta);
   }
 
-  /// Shifts the X values of a section if they begin again at an earlier value. The section then begins at the
-  /// time in its header. If the header has no time, it begins one step after the last value.
+  /// Shifts the X values of a section if they start at or below the last X value of the section before. The
+  /// shifted section begins at the time in its header. If this time is missing or too early, the section
+  /// begins one step after the last X value.
   void place(const Header& section, std::size_t begin, double delta) {
     const auto moment = moment_of(first_of(section, "Date") + " " + first_of(section, "Time"));
     if (begin == 0 && moment) first_moment_ = moment->time;
@@ -242,7 +243,8 @@ class LvmReader {
 
   void add_row(std::string_view line, std::size_t number_of_line, double counted_x) {
     ++table_.account.rows;
-    // Only the last line of a file may have too few cells, because a recording can be interrupted.
+    // Only the last line of a file may have too few cells, because the recording may have been interrupted
+    // there.
     if (short_line_ != 0 && !options_.skip_bad_lines) {
       refuse(short_line_, "too few cells; leave out such lines with --skip-bad-lines");
       return;
@@ -259,7 +261,7 @@ class LvmReader {
 
   void add_cell(std::size_t i, const std::string& text, std::size_t line, double counted_x) {
     TableColumn& column = table_.columns[i];
-    // If a channel has ended before the others, the cells of its X column are empty.
+    // If a channel has ended before another channel, the remaining cells of its X column are empty.
     const bool may_count = x_columns_ == "no" || (text.empty() && x_columns_ != "multi");
     const bool counts = may_count && column.name.starts_with("X_Value");
     const CellValue cell = cell_value(pointed(text), options_.missing);
@@ -280,8 +282,9 @@ class LvmReader {
   char separator_ = '\t';
   char decimal_ = '.';
   Nanoseconds first_moment_ = 0;
-  std::size_t lines_ = 1;       ///< number of lines in the file
-  std::size_t short_line_ = 0;  ///< number of the first line with too few cells; 0: none
+  std::size_t lines_ = 1;  ///< number of lines in the file
+  /// Number of the first line that has too few cells; 0: all lines are complete.
+  std::size_t short_line_ = 0;
   bool good_ = true;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Reader of LabVIEW measurement files (.lvm), which are tables of text.
+// Reads LabVIEW measurement files (.lvm), which are tables of text.
 
 #include <optional>
 #include <string>
@@ -12,10 +12,10 @@ namespace softgrip::sysid {
 
 [[nodiscard]] bool is_lvm(std::string_view text);
 
-/// Returns the table of an .lvm file within the bounds of table.h. The sections of the file follow one after
-/// the other. The header states the separator and the decimal mark, and Y_Unit_Label states the units. If the
-/// file has no X column, the times are computed from X0 and Delta_X. The column of comments is left out. It
-/// is a problem if the columns of a section differ from those of the first section.
+/// Returns the table of an .lvm file; the bounds of table.h apply. The rows of all sections are concatenated.
+/// The header states the separator, the decimal mark and, as Y_Unit_Label, the units. If the file has no X
+/// column, the times are computed from X0 and Delta_X. The column of comments is left out. It is a problem if
+/// the columns of a section differ from the columns of the first section.
 [[nodiscard]] std::optional<ForeignTable> read_lvm(const std::string& file, std::string_view bytes,
                                                    const TableOptions& options, document::Problems& problems);
 

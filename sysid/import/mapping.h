@@ -1,5 +1,5 @@
 #pragma once
-// Assignment of the columns of an external file to the columns of a log, with the conversion of units.
+// Assigns the columns of an external file to the columns of a log and converts their units.
 
 #include <array>
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace softgrip::sysid {
 
-/// The quantity in a column of a log.
+/// Quantity of a column of a log.
 enum class Role : std::uint8_t { time, command, pressure, displacement, temperature, supply };
 inline constexpr std::size_t role_count = 6;
 
@@ -24,7 +24,7 @@ struct RoleSpec {
   Role role;
   std::string_view word;  ///< name in options and mapping files
   Quantity quantity;
-  std::string_view unit;  ///< unit in the log, as written in options; a displacement may be in deg
+  std::string_view unit;  ///< unit in the log, as written in options; a displacement can be in deg instead
   std::vector<double> Log::*values;
 };
 inline constexpr std::array<RoleSpec, role_count> roles{{
@@ -39,17 +39,17 @@ inline constexpr std::array<RoleSpec, role_count> roles{{
   return roles[static_cast<std::size_t>(role)];
 }
 
-/// Source of the values of a role. The value in the log is (value - zero), converted from `unit` or
-/// multiplied by `scale`.
+/// Source of the values of a role. The value in the log is (value - zero), converted from `unit` to the unit
+/// of the log or multiplied by `scale`.
 struct ColumnMapping {
   std::vector<std::string>
       columns;       ///< names, or numbers from 1; several columns are averaged, but each of several time
                      ///< columns belongs to its own values (clock.h); empty: the file does not have the role
-  std::string unit;  ///< empty: the unit that the column itself states
+  std::string unit;  ///< empty: the unit that the header of the column states
   std::optional<double> scale;  ///< log units per unit of the column, instead of the factor of a unit; if
                                 ///< `unit` is an angle, `scale` of a displacement gives that unit
-  std::optional<double> zero;   ///< subtracted before the conversion, in the column's unit
-  bool zero_first = false;      ///< subtract the first value
+  std::optional<double> zero;   ///< value that is subtracted before the conversion, in the unit of the column
+  bool zero_first = false;      ///< true: the first value is subtracted
 
   [[nodiscard]] bool given() const noexcept { return !columns.empty(); }
   bool operator==(const ColumnMapping&) const = default;
@@ -57,29 +57,29 @@ struct ColumnMapping {
 
 struct Mapping {
   std::array<ColumnMapping, role_count> columns;
-  std::optional<double> rate_hz;  ///< samples per second if the file has no times
+  std::optional<double> rate_hz;  ///< sampling rate; used if the file contains no times
   char separator = 0;             ///< 0: detected automatically
   std::vector<std::string> missing;
   std::string channel;
-  std::string sheet;            ///< name of the sheet in a workbook
-  bool skip_bad_lines = false;  ///< lines that cannot be read are left out and counted
-  double from_s = 0;            ///< first time that is used, relative to the first sample [s]
+  std::string sheet;            ///< name of the sheet of a workbook
+  bool skip_bad_lines = false;  ///< true: lines that cannot be read are left out and counted
+  double from_s = 0;            ///< start of the log, relative to the first sample of the file [s]
   double to_s = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] ColumnMapping& operator[](Role role) { return columns[static_cast<std::size_t>(role)]; }
   [[nodiscard]] const ColumnMapping& operator[](Role role) const {
     return columns[static_cast<std::size_t>(role)];
   }
-  /// Returns true if time, displacement, and command or pressure are assigned.
+  /// Returns true if the mapping assigns time, displacement, and at least one of command and pressure.
   [[nodiscard]] bool complete() const;
   bool operator==(const Mapping&) const = default;
 };
 
-/// Returns the equivalent options of `softgrip import`, quoted for a shell: "--time 'Time (s)' --unit
-/// pressure=psi".
+/// Returns the options of `softgrip import` that give this mapping, quoted for a shell: "--time 'Time (s)'
+/// --unit pressure=psi".
 [[nodiscard]] std::string options_of(const Mapping& mapping);
 
-/// Returns the separator that a word names: "comma", "tab" or a character; 0 for another word.
+/// Returns the separator for a word: "comma", "tab" or the character itself. Returns 0 for any other word.
 [[nodiscard]] char separator_named(std::string_view word);
 /// Returns the name of a separator; the inverse of separator_named().
 [[nodiscard]] std::string_view word_of_separator(char separator);

@@ -41,7 +41,7 @@ std::string column_yaml(const ColumnMapping& column) {
   return text + "}";
 }
 
-/// Returns a comment of one line, even if `text` has line breaks.
+/// Returns `text` as a YAML comment on one line; line breaks are replaced.
 std::string comment(std::string_view text) {
   return "# " + document::shown(text, 400) + "\n";
 }

@@ -10,7 +10,7 @@
 namespace softgrip::sysid {
 namespace {
 
-// Types of data elements and classes of arrays: "MAT-File Format", MathWorks, version 5.
+// Codes of data elements and of array classes, from "MAT-File Format", MathWorks, version 5.
 constexpr std::uint32_t type_matrix = 14;
 constexpr std::uint32_t type_compressed = 15;
 constexpr std::uint32_t first_numeric_class = 6;
@@ -37,7 +37,8 @@ class ElementSource {
     if (compressed_) inflateEnd(&stream_);
   }
 
-  /// Reads bytes to `to`. Returns false at the end of the element, or if `budget_` bytes have been read.
+  /// Reads `count` bytes to `to`. Returns false at the end of the element, or if `budget_` bytes have been
+  /// read.
   bool read(char* to, std::size_t count) {
     if (count > budget_) count = budget_ = 0;
     budget_ -= count;
@@ -89,7 +90,7 @@ bool read_tag(ElementSource& source, bool big_endian, Tag& tag) {
   std::array<char, tag_bytes> raw{};
   if (!source.read(raw.data(), raw.size())) return false;
   tag = {word(raw.data(), big_endian), word(raw.data() + 4, big_endian)};
-  // A small element holds its data in the tag.
+  // If the data of an element are small, they are stored in the tag.
   if (tag.type >> 16U != 0) tag = {tag.type & 0xffffU, 0};
   return true;
 }
@@ -99,7 +100,8 @@ class Counter {
   Counter(bool big_endian, std::size_t most_parts, std::size_t most_bytes)
       : big_endian_(big_endian), parts_left_(most_parts), bytes_left_(most_bytes) {}
 
-  /// Counts one top-level element. Returns false if it has too many parts or bytes.
+  /// Counts the parts of one top-level element. Returns false if the number of parts or bytes exceeds its
+  /// bound.
   bool take(std::string_view bytes, bool compressed) {
     ElementSource source(bytes, compressed, bytes_left_);
     Tag tag;
@@ -109,8 +111,8 @@ class Counter {
     if (!source.skip(tag_bytes) || !source.read(flags.data(), flags.size())) return bytes_left_ > 0;
     const std::uint32_t kind = word(flags.data(), big_endian_) & 0xffU;
     if (kind >= first_numeric_class && kind <= last_numeric_class) return true;
-    // The tags of nested parts follow the tag of their parent, and there is no end mark. So one loop over the
-    // tags visits all parts.
+    // The tags of nested parts directly follow the tag of their parent, without an end mark. Therefore one
+    // loop over the tags visits all parts.
     while (read_tag(source, big_endian_, tag)) {
       if (parts_left_-- == 0) return false;
       constexpr std::size_t alignment = 8;
@@ -136,7 +138,7 @@ bool mat_elements_within(std::string_view file, std::size_t most_parts, std::siz
   while (file.size() >= tag_bytes) {
     const std::uint32_t type = word(file.data(), big_endian);
     const bool compressed = type == type_compressed;
-    // A compressed element has no padding. The tag of an uncompressed element is counted too.
+    // A compressed element has no padding. The size of an uncompressed element includes its tag.
     const std::size_t size = word(file.data() + 4, big_endian);
     if (!counter.take(file.substr(compressed ? tag_bytes : 0, compressed ? size : size + tag_bytes),
                       compressed))

@@ -25,7 +25,7 @@ std::vector<double> as_doubles(const matvar_t& variable, std::size_t count) {
   return {data, data + count};
 }
 
-/// Returns the values of a real array; empty for any other variable.
+/// Returns the values of an array of real numbers; empty for any other variable.
 std::vector<double> values_of(const matvar_t& variable, std::size_t count) {
   if (variable.data == nullptr || variable.isComplex != 0 || variable.data_size <= 0 ||
       variable.nbytes / static_cast<std::size_t>(variable.data_size) < count)
@@ -93,7 +93,7 @@ Shape shape_of(const matvar_t& variable) {
   return flat ? Shape{variable.dims[0], variable.dims[1]} : Shape{};
 }
 
-/// Returns the ASCII characters of a text; empty if the variable is not a text.
+/// Returns the text that a variable contains, in ASCII characters; empty if the variable is not a text.
 std::string text_of(mat_t* file, matvar_t* variable) {
   if (variable == nullptr || variable->class_type != MAT_C_CHAR) return {};
   const Shape shape = shape_of(*variable);
@@ -106,14 +106,14 @@ std::string text_of(mat_t* file, matvar_t* variable) {
   return text;
 }
 
-/// Collects the arrays in the variables, structures and cells of a file.
+/// Collects the arrays that the variables, structures and cells of a file contain.
 class MatCollector {
  public:
   MatCollector(mat_t* file, ArrayCollector& arrays) : file_(file), arrays_(arrays) {}
 
-  /// Reads the values of an array, and those in structures, arrays of structures and cells. For all other
-  /// variables and for arrays that are too large, libmatio reads only the header, because a compressed
-  /// variable of some bytes can hold some gigabytes.
+  /// Adds the values of an array. For a structure, an array of structures or a cell, adds the arrays in it.
+  /// Of other variables and too large arrays, libmatio reads only the header, because a compressed variable
+  /// of a few bytes can expand to gigabytes.
   void collect(matvar_t& variable, const std::string& name, const std::string& unit, int depth) {
     const Shape shape = shape_of(variable);
     const bool nests =
@@ -152,8 +152,8 @@ class MatCollector {
     }
   }
 
-  /// Adds a structure that contains a name and values, in the form of dSPACE (Name, Data, Unit) or of
-  /// Simulink (label, values). Returns false for any other structure.
+  /// Adds the values of a structure that contains a signal and its name, in the form of dSPACE (Name, Data,
+  /// Unit) or of Simulink (label, values). Returns false for any other structure.
   bool named_signal(matvar_t& variable, const std::string& here, std::size_t index, int depth) {
     constexpr std::array<std::pair<const char*, const char*>, 2> kinds{
         {{"Name", "Data"}, {"label", "values"}}};
@@ -177,8 +177,8 @@ class MatCollector {
 
 std::optional<ForeignTable> read_mat_table(const std::string& path, const std::string& opened,
                                            document::Problems& problems) {
-  // libmatio must not print errors, because the problem below reports them. Only on Debian 13, the message is
-  // const.
+  // libmatio must not print errors, because the problem below reports them. The parameter `message` is const
+  // on Debian 13 only.
   Mat_LogInitFunc("softgrip", [](int /*level*/, auto* /*message*/) {});
   const MatFile file{Mat_Open(opened.c_str(), MAT_ACC_RDONLY), Mat_Close};
   if (!file) {

@@ -1,5 +1,6 @@
 #pragma once
-// Reader of MATLAB files of versions 4, 5 and 7; uses libmatio. Files of version 7.3 are HDF5 (hdf5_table.h).
+// Reads MATLAB files of versions 4, 5 and 7. Uses libmatio. Files of version 7.3 are HDF5 files
+// (hdf5_table.h).
 
 #include <optional>
 #include <string>
@@ -9,11 +10,11 @@
 
 namespace softgrip::sysid {
 
-/// Reads variables of real numbers, fields of structures as "name.field", elements of arrays of structures as
-/// "name(2).field", and cells as "name{2}". A structure with Name and Data (dSPACE) or with label and values
-/// (Simulink) becomes a column of that name. Objects (timetable, timeseries, table, duration) are skipped
-/// because only MATLAB can read them. Complex numbers are skipped too. A note names all skipped variables.
-/// `path` names the file in messages; libmatio opens `opened`.
+/// Reads variables with real numbers. Fields of structures are named "name.field", elements of arrays of
+/// structures "name(2).field", and cells "name{2}". A structure with Name and Data (dSPACE) or with label and
+/// values (Simulink) becomes a column of that name. Complex numbers are skipped. Objects (timetable,
+/// timeseries, table, duration) are skipped too, because only MATLAB can read them. A note names all skipped
+/// variables. `path` names the file in messages; libmatio opens `opened`.
 [[nodiscard]] std::optional<ForeignTable> read_mat_table(const std::string& path, const std::string& opened,
                                                          document::Problems& problems);
 

@@ -29,8 +29,8 @@ constexpr std::size_t largest_message = std::size_t{1} << 20U;
 constexpr std::size_t deepest_object = 8;
 constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
 
-/// Largest difference of the offsets of two topics that still have one clock [s]. The offset is the time in
-/// the messages minus the time of the recording.
+/// Two topics have a common clock if their offsets differ by at most this time [s]. The offset of a topic is
+/// the time in its messages minus the time of the recording.
 constexpr double clock_tolerance_s = 1;
 
 /// A topic with its messages. Element i of a column belongs to message i of the topic.
@@ -38,18 +38,19 @@ struct McapTopic {
   std::string name;
   std::vector<TableColumn> columns;
   std::map<std::string, std::size_t> places;  ///< index of the column of each key
-  std::vector<std::size_t> rows;              ///< row of the table for each message
+  std::vector<std::size_t> rows;              ///< for each message, the row of the table that contains it
 
   [[nodiscard]] bool offers(Role role) const {
     return std::any_of(columns.begin(), columns.end(), [&](const TableColumn& column) {
       return names_role(column.name, role) && fitness_for(column, role) > 0;
     });
   }
-  /// Returns true if the topic alone describes a finger: it has a displacement, and a command or a pressure.
+  /// Returns true if the messages of this topic alone describe a finger: they contain a displacement, and a
+  /// command or a pressure.
   [[nodiscard]] bool is_finger() const {
     return offers(Role::displacement) && (offers(Role::command) || offers(Role::pressure));
   }
-  /// Returns the column of a key if each message has a finite time in it, otherwise nullptr.
+  /// Returns the column of a key if this column contains a finite time for each message, otherwise nullptr.
   [[nodiscard]] const TableColumn* time(const std::string& key) const {
     const auto found = std::find_if(columns.begin(), columns.end(),
                                     [&](const TableColumn& column) { return column.name == key; });
@@ -117,8 +118,8 @@ class McapReader {
     refused_ = true;
   }
 
-  /// Searches for a topic with the name of the channel. If there is none, the channel may be a finger whose
-  /// name is a part of the names of several topics.
+  /// Searches for a topic whose name is the requested channel. If there is no such topic, the channel may be
+  /// a finger whose name is a part of several topic names.
   void find_topic(std::string_view bytes) {
     if (options_.channel.empty()) return;
     looks_for_topics_ = true;
@@ -144,7 +145,8 @@ class McapReader {
     }
   }
 
-  /// Counts a record whose end is missing. If it is a chunk, its complete records are read.
+  /// Counts a record that ends after the end of the file. If this record is a chunk, the complete records in
+  /// it are read.
   void cut_off(McapOpcode kind, std::string_view bytes, std::string_view content, bool in_chunk) {
     if (kind == McapOpcode::chunk && !in_chunk) return chunk(content, false);
     if (looks_for_topics_) return;
@@ -276,7 +278,7 @@ class McapReader {
     return missing_value;
   }
 
-  /// Merges topics that each describe a finger. Columns with the same key become one column.
+  /// Combines topics that each describe a finger into one table. Columns with the same key become one column.
   void join_fingers() {
     for (McapTopic& topic : read_) {
       for (TableColumn& column : topic.columns) place(topic, std::move(column), rows_);
@@ -288,7 +290,7 @@ class McapReader {
     if (!has_time) table_.columns.push_back(log_time_column());
   }
 
-  /// Adds the values of a topic's column to the table's column of the same name.
+  /// Copies the values of a topic's column to the column of the same name in the table.
   void place(const McapTopic& topic, TableColumn column, std::size_t rows) {
     auto found = std::find_if(table_.columns.begin(), table_.columns.end(),
                               [&](const TableColumn& other) { return other.name == column.name; });
@@ -316,14 +318,15 @@ class McapReader {
     return column;
   }
 
-  /// Returns the column name for a topic of one signal: "/pressure" with {"data": 1} gives "pressure".
+  /// Returns the column name of a topic that contains one signal. "/pressure" with {"data": 1} gives
+  /// "pressure".
   static std::string signal_name(const McapTopic& topic, const std::string& key) {
     std::string name = topic.name;
     std::replace(name.begin(), name.end(), '/', '.');
     return key == "data" || key == "value" ? name : name + "." + key;
   }
 
-  /// Returns true if no topic alone describes a finger, but all topics together describe one.
+  /// Returns true if no single topic describes a finger, but all topics together do.
   [[nodiscard]] bool has_topics_of_signals() const {
     if (has_channel_ || read_.size() < 2 ||
         std::any_of(read_.begin(), read_.end(), [](const McapTopic& topic) { return topic.is_finger(); }))
@@ -338,7 +341,7 @@ class McapReader {
     return all.is_finger();
   }
 
-  /// Returns the key of a time that each message of each topic has; empty if there is none.
+  /// Returns the key of a time that every message of every topic contains; empty if no key does.
   [[nodiscard]] std::string common_time() const {
     for (const TableColumn& column : read_.front().columns) {
       const bool common = std::all_of(read_.begin(), read_.end(), [&](const McapTopic& topic) {
@@ -376,8 +379,8 @@ class McapReader {
     table_.has_rows_of_signals = true;
   }
 
-  /// Refuses the file if the times of the topics are not of one clock. The times are compared with those of
-  /// the recording.
+  /// Refuses the file if the topics have different clocks. To find this, compares the times of each topic
+  /// with the times of the recording.
   void check_clocks(const TableColumn& time) {
     const std::string name = time.unit.empty() ? split_unit(time.name, Quantity::time).unit : time.unit;
     const auto unit = unit_named(name.empty() ? epoch_unit(time) : name, Quantity::time);
@@ -400,8 +403,8 @@ class McapReader {
            "write the times of one clock, or no times: then log_time is used");
   }
 
-  /// Sorts the rows by time. If the times of a topic decrease, the rows are not sorted, so that
-  /// order_in_time() reports the backward step.
+  /// Sorts the rows by time. If the times of a single topic decrease, the order is kept, and order_in_time()
+  /// reports the backward step.
   void sort_rows(std::vector<double>& time) {
     for (const McapTopic& topic : read_) {
       for (std::size_t i = 1; i < topic.rows.size(); ++i) {
@@ -428,9 +431,9 @@ class McapReader {
   document::Problems& problems_;
   ForeignTable table_;
   std::map<std::uint16_t, Topic> topics_;
-  /// Topics whose messages are rows of the table.
+  /// Topics whose messages become rows of the table.
   std::vector<McapTopic> read_;
-  /// Per skipped topic: encoding and number of messages.
+  /// Encoding and number of messages of each skipped topic.
   std::map<std::string, std::pair<std::string, std::size_t>> passed_over_;
   std::set<std::string> arrays_;
   std::vector<std::uint64_t> log_times_;
@@ -439,7 +442,7 @@ class McapReader {
   std::size_t messages_ = 0;
   std::size_t cut_off_bytes_ = 0;
   bool looks_for_topics_ = false;
-  bool has_channel_ = false;  ///< a topic has the name of the channel
+  bool has_channel_ = false;  ///< true: a topic has the name of the requested channel
   bool refused_ = false;
 };
 

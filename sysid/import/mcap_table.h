@@ -1,6 +1,6 @@
 #pragma once
-// Reader of JSON messages in MCAP recordings (https://mcap.dev/spec, version 0), as `softgrip export` writes
-// them.
+// Reads JSON messages from MCAP recordings (https://mcap.dev/spec, version 0). `softgrip export` writes such
+// recordings.
 
 #include <cstdint>
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace softgrip::sysid {
 
-/// The first and the last bytes of a file.
+/// Byte sequence at the beginning and at the end of an MCAP file.
 inline constexpr std::string_view mcap_magic{"\x89MCAP0\r\n"};
 
 /// Kinds of records.

@@ -30,7 +30,7 @@ class Scanner {
     left_.remove_prefix(1);
     return true;
   }
-  /// Reads a word of ASCII letters and returns it in lower case; empty if there is none.
+  /// Reads a word of ASCII letters and returns it in lower case. Returns an empty text if no letter follows.
   std::string word() {
     std::string text;
     while (!left_.empty() && std::isalpha(static_cast<unsigned char>(left_.front())) != 0) {
@@ -45,7 +45,8 @@ class Scanner {
   [[nodiscard]] char last() const { return last_; }
   [[nodiscard]] bool done() const { return left_.empty(); }
 
-  /// Reads the digits of a fraction of a second [ns]. Digits beyond 1 ns are ignored.
+  /// Reads the digits after the decimal mark of a second. @param value  receives the fraction [ns]; digits
+  /// beyond 1 ns are ignored.
   bool fraction(Nanoseconds& value) {
     value = 0;
     Nanoseconds unit = ns_per_s;
@@ -61,8 +62,8 @@ class Scanner {
   char last_ = 0;
 };
 
-/// Converts the hours of a 12-hour clock if "PM", "a.m." or a similar word follows. Otherwise returns the
-/// hours unchanged.
+/// Converts the hours of a 12-hour clock to 24 hours if "PM", "a.m." or a similar word follows. Otherwise
+/// returns the hours unchanged.
 std::optional<std::int64_t> with_half_of_day(Scanner& scan, std::int64_t hours) {
   Scanner ahead = scan;
   ahead.marks(" ");
@@ -75,7 +76,7 @@ std::optional<std::int64_t> with_half_of_day(Scanner& scan, std::int64_t hours) 
   return hours % 12 + (half == "pm" ? 12 : 0);
 }
 
-/// Reads an optional fraction of a second after a point or comma, or 3 digits after a colon.
+/// Reads an optional fraction of a second: digits after a point or comma, or 3 digits after a colon.
 bool fraction_of(Scanner& scan, Nanoseconds& fraction) {
   std::int64_t milliseconds = 0;
   if (scan.mark(".,")) return scan.fraction(fraction);
@@ -98,8 +99,8 @@ std::optional<Nanoseconds> time_of_day(Scanner& scan) {
   return (3600 * *of_day + 60 * minutes + seconds) * ns_per_s + fraction;
 }
 
-/// Reads minutes and seconds ("00:59.5"). If the first field is at most 23 and there is no fraction, the
-/// fields can also be hours and minutes.
+/// Reads two fields ("00:59.5") as minutes and seconds. If the first field is at most 23 and the text has no
+/// fraction, the fields may be hours and minutes instead.
 std::optional<Moment> two_fields(std::string_view text) {
   Scanner scan(text);
   std::int64_t minutes = 0;
@@ -112,7 +113,7 @@ std::optional<Moment> two_fields(std::string_view text) {
   return Moment{(60 * minutes + seconds) * ns_per_s + fraction, false, true, has_fraction || minutes > 23};
 }
 
-/// Reads the offset from UTC: "Z", "+02:00", "-0500". A missing offset means UTC.
+/// Reads the offset from UTC, such as "Z", "+02:00" or "-0500". If there is no offset, the time is in UTC.
 std::optional<Nanoseconds> zone(Scanner& scan) {
   if (scan.done() || scan.mark("Z")) return 0;
   if (!scan.mark("+-")) return std::nullopt;
@@ -135,7 +136,8 @@ std::optional<Nanoseconds> days_of(std::int64_t year, std::int64_t month, std::i
   return std::chrono::sys_days(day).time_since_epoch().count() * Nanoseconds{86400} * ns_per_s;
 }
 
-/// Returns 1 to 12 for the English or German name of a month or its first three letters; otherwise 0.
+/// Returns the number of a month, 1 to 12, from its English or German name or the first three letters of this
+/// name. Returns 0 for another word.
 std::int64_t month_named(const std::string& word) {
   constexpr std::array<std::string_view, 12> english{"january",   "february", "march",    "april",
                                                      "may",       "june",     "july",     "august",
@@ -154,7 +156,7 @@ std::int64_t month_named(const std::string& word) {
   return 0;
 }
 
-/// Reads 31-May-2024, 31 May 2024, May 31, 2024 or 2024-May-31.
+/// Reads a date with the name of a month: 31-May-2024, 31 May 2024, May 31, 2024 or 2024-May-31.
 std::optional<Nanoseconds> date_with_month_name(Scanner& scan) {
   constexpr std::string_view between = "-/., ";
   std::int64_t first = 0;
@@ -173,7 +175,7 @@ std::optional<Nanoseconds> date_with_month_name(Scanner& scan) {
   return first > 31 ? days_of(first, month, second) : days_of(second, month, first);
 }
 
-/// Reads 2024-05-31, 2024/05/31 or 31.05.2024. Returns the time since 1970.
+/// Reads 2024-05-31, 2024/05/31 or 31.05.2024. Returns the start of this day, as time since 1970.
 std::optional<Nanoseconds> date(Scanner& scan) {
   std::array<std::int64_t, 3> parts{};
   if (!scan.digits(1, 4, parts[0]) || !scan.mark("-/.")) return std::nullopt;

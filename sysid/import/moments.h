@@ -1,5 +1,5 @@
 #pragma once
-// Parser of dates and times of day in the formats that people and data loggers write.
+// Parses dates and times of day in the formats that people and data loggers write.
 
 #include <optional>
 #include <string_view>
@@ -8,10 +8,11 @@
 
 namespace softgrip::sysid {
 
-/// A point in time. Only differences between points are meaningful.
+/// A point in time. Its origin varies, so only the difference of two such points is meaningful.
 struct Moment {
-  Nanoseconds time = 0;         ///< since 1970 in UTC, or since midnight
-  bool dated = false;           ///< false: a time of day alone
+  /// Time since 1970 in UTC if the text has a date, otherwise time since midnight.
+  Nanoseconds time = 0;
+  bool dated = false;           ///< true: the text has a date; false: the text has a time of day only
   bool short_clock = false;     ///< the text has two fields ("12:34"), read as minutes and seconds
   bool surely_minutes = false;  ///< the text has two fields that cannot be hours and minutes
 };

@@ -19,7 +19,7 @@ namespace {
 /// Words that identify a role, in lower case. They include German words, as some data loggers write them.
 struct Words {
   Role role;
-  /// A name that contains one of these words as a part has the role.
+  /// If a name contains one of these words as a part, its column has the role.
   std::initializer_list<std::string_view> surely;
 };
 const std::array<Words, role_count>& words() {
@@ -73,7 +73,7 @@ bool names_role(std::string_view name, Role role) {
 
 namespace {
 
-/// Returns the unit of a column, regardless of its quantity.
+/// Returns the unit that a column states, of any quantity.
 std::string open_unit(const TableColumn& column) {
   return column.unit.empty() ? split_unit(column.name).unit : column.unit;
 }
@@ -83,7 +83,7 @@ std::string open_unit(const TableColumn& column) {
 int fitness_for(const TableColumn& column, Role role) {
   const RoleSpec& spec = spec_of(role);
   const bool time = spec.role == Role::time;
-  // A column with up to 10 % bad cells keeps its role, so that the cells are reported.
+  // A column with at most 10 % bad cells can have a role, so that these cells are reported.
   if (column.is_part_of_time) return 0;
   if (column.bad_count * 10 > column.values.size() || (column.moments > 0 && !time)) return 0;
   const std::string unit = column.unit.empty() ? split_unit(column.name, spec.quantity).unit : column.unit;
@@ -99,11 +99,11 @@ int fitness_for(const TableColumn& column, Role role) {
   const bool elsewhere = !of_quantity && !anywhere.empty() && !is_raw_unit(anywhere) && carried;
   if (elsewhere) return 0;
   if (time && column.moments > 0) return 4;
-  // A column of commanded pressure or of supply pressure must not get the role of the measured pressure.
+  // A column of commanded pressure or of supply pressure must not be assigned as the measured pressure.
   const bool pressure = spec.role == Role::pressure;
   if (pressure && (names_role(bare, Role::command) || names_role(bare, Role::supply))) return 0;
   if (spec.role == Role::command && names_role(bare, Role::displacement) && !of_quantity) return 0;
-  // A displacement in mm is preferred to an angle.
+  // A column of a displacement in mm gets a higher score than a column of an angle.
   if (named) return !of_quantity ? 3 : angle ? 4 : 5;
   const bool by_unit_alone = pressure || spec.role == Role::displacement || time;
   return !of_quantity || !by_unit_alone ? 0 : angle ? 1 : 2;
@@ -124,8 +124,8 @@ std::string epoch_unit(const TableColumn& column) {
   const auto first =
       std::find_if(column.values.begin(), column.values.end(), [](double v) { return std::isfinite(v); });
   if (first == column.values.end() || column.moments > 0) return {};
-  constexpr double earliest_s = 6e8;  // 1989
-  constexpr double latest_s = 4e9;    // 2096
+  constexpr double earliest_s = 6e8;  // [s] since 1970; year 1989
+  constexpr double latest_s = 4e9;    // [s] since 1970; year 2096
   double factor = 1;
   for (const char* unit : {"s", "ms", "us", "ns"}) {
     if (*first >= earliest_s * factor && *first <= latest_s * factor) return unit;
@@ -136,8 +136,8 @@ std::string epoch_unit(const TableColumn& column) {
 
 namespace {
 
-/// The fingers to which the columns belong, and the selected finger. `meant` is empty if there is only one
-/// finger or if no finger was selected.
+/// The fingers to which the columns belong, and the finger that the user selected. `meant` is empty if the
+/// table has only one finger or if the user selected none.
 struct FingerChoice {
   std::vector<std::string> fingers;
   std::string meant;
@@ -152,7 +152,7 @@ std::string quoted(const std::vector<std::string>& names) {
   return with_commas(names, [](const std::string& name) { return "'" + document::shown(name) + "'"; });
 }
 
-/// Returns the fingers to which the columns in the mapping belong.
+/// Returns the fingers whose columns are in the mapping.
 std::vector<std::string> given_fingers(const ForeignTable& table, const Mapping& mapping,
                                        const std::vector<std::string>& fingers) {
   std::vector<std::string> given;
@@ -166,7 +166,7 @@ std::vector<std::string> given_fingers(const ForeignTable& table, const Mapping&
   return given;
 }
 
-/// Returns the fingers that have a column for a displacement.
+/// Returns the fingers that have a displacement column.
 std::vector<std::string> read_fingers(const ForeignTable& table, const std::vector<std::string>& fingers) {
   std::vector<std::string> read;
   for (const TableColumn& column : table.columns) {
@@ -217,8 +217,8 @@ FingerChoice choose_finger(const ForeignTable& table, const Mapping& given, Prop
   return choice;
 }
 
-/// If the table has time columns with different times, assigns each to its own value columns, or adds a
-/// question.
+/// If the time columns of the table contain different times, assigns each time column to its value columns.
+/// If the assignment is not clear, adds a question for the user.
 void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposal& proposal) {
   ColumnMapping& time = proposal.mapping[Role::time];
   if (!time.given() || time.columns.size() > 1) return;
@@ -234,8 +234,7 @@ void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposa
   std::vector<std::string> words;
   for (const std::size_t index : times) words.push_back(word_of(table, index));
   const auto of_roles = times_of_roles(table, proposal.mapping, times);
-  // The chosen column has the name of a time, so it must not be dropped because of the order of the columns
-  // alone.
+  // The chosen column has the name of a time, so the order of the columns alone is no reason to leave it out.
   if (!of_roles || std::find(of_roles->begin(), of_roles->end(), chosen) == of_roles->end()) {
     proposal.questions.push_back(
         {"the times of the columns " + quoted(words) + " differ",
@@ -250,7 +249,7 @@ void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposa
   }
 }
 
-/// Treats codes such as 999 in the mapped columns as missing values.
+/// Interprets codes such as 999 in the mapped columns as missing values.
 void choose_codes(const ForeignTable& table, Proposal& proposal) {
   if (!proposal.mapping.missing.empty()) return;
   for (const RoleSpec& spec : roles) {
@@ -295,8 +294,8 @@ void choose(const ForeignTable& table, const RoleSpec& spec, const FingerChoice&
   proposal.guessed.push_back(spec.role);
 }
 
-/// Returns a text about the first time column that has a cell in an unknown format. Returns "" if there is
-/// none.
+/// Returns a text about the first time column that contains a time in an unknown format. Returns "" if there
+/// is no such column.
 std::string unread_time(const ForeignTable& table) {
   for (const TableColumn& column : table.columns) {
     if (!column.bad.empty() && names_role(column.name, Role::time))
@@ -318,7 +317,7 @@ void say_what_is_missing(const ForeignTable& table, Proposal& proposal) {
     proposal.missing.emplace_back("a displacement or a bending angle: --displacement COLUMN");
 }
 
-/// Returns the values at the beginning, in the middle and at the end of a column as a text.
+/// Returns some values of a column as text: from its beginning, its middle and its end.
 std::string glimpse(const TableColumn& column) {
   std::string text;
   const std::size_t rows = column.values.size();
@@ -347,8 +346,8 @@ Proposal propose(const ForeignTable& table, const Mapping& given, bool optional_
   Proposal proposal{given, {}, {}, {}, {}};
   const FingerChoice choice = choose_finger(table, given, proposal);
   const auto open = [&](Role role) { return !proposal.mapping[role].given(); };
-  // Assign the command before the measured pressure. Otherwise any pressure column could be taken as the
-  // measured pressure.
+  // Assign the command before the measured pressure. In the opposite order, the column of the command could
+  // be assigned as the measured pressure.
   for (const Role role :
        {Role::time, Role::displacement, Role::supply, Role::command, Role::pressure, Role::temperature}) {
     const bool needed = (role == Role::time && !given.rate_hz) || role == Role::displacement ||

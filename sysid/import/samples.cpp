@@ -20,7 +20,7 @@ std::string counted(std::size_t count, const char* what) {
   return std::to_string(count) + (count == 1 ? " sample " : " samples ") + what;
 }
 
-/// Keeps the samples with these indices, in this order.
+/// Reduces the samples to those with the given indices, in the given order.
 void keep(ForeignSamples& samples, const std::vector<std::size_t>& kept) {
   if (kept.size() == samples.size()) return;
   const auto of = [&](const auto& all) {
@@ -41,8 +41,9 @@ void keep_range(ForeignSamples& samples, std::size_t first, std::size_t last) {
   keep(samples, kept);
 }
 
-/// Returns the resolution of times up to `largest_s` as a power of 10 [s], at least 1e-9 s. For seconds since
-/// 1970, neighbouring doubles differ by 0.24 us, so smaller digits of a time difference are rounding errors.
+/// Returns the resolution of times up to `largest_s` as a power of 10 [s], at least 1e-9 s. Times in seconds
+/// since 1970 are stored as doubles in steps of 0.24 us, so smaller digits of a time difference are rounding
+/// errors.
 double resolution_s(double largest_s) {
   const double step = std::nextafter(largest_s, 2 * largest_s + 1) - largest_s;
   return std::max(finest_s, std::pow(10.0, std::ceil(std::log10(step) - 1e-9)));
@@ -53,7 +54,7 @@ double rounded(double value, double step) {
   return step < 1 ? std::round(value * per_second) / per_second : value;
 }
 
-/// Makes the times relative to the first sample.
+/// Subtracts the time of the first sample from all times.
 void from_zero(std::vector<double>& time_s, std::vector<std::string>& notes) {
   const double first = time_s.front();
   double largest = 0;
@@ -75,8 +76,7 @@ double usual_interval_s(const std::vector<double>& time_s) {
   return median_of(std::span<double>(steps));
 }
 
-/// Returns true if no role has a value in both samples, so that they can be merged. Both samples are at the
-/// same time.
+/// Returns true if two samples with the same time can be merged: no role has a value in both samples.
 bool complete_each_other(const ForeignSamples& samples, std::size_t a, std::size_t b) {
   return std::all_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
     const std::vector<double>& values = samples[spec.role];
@@ -91,7 +91,8 @@ void join(ForeignSamples& samples, std::size_t into, std::size_t from) {
   }
 }
 
-/// Returns a sentence about repeated times: their number, the step of the time stamps, and the remedy.
+/// Returns a sentence about repeated times. It states how many rows repeat a time, the step of the time
+/// stamps, and the remedy.
 std::string about_repeats(const std::vector<double>& time_s, std::size_t repeated) {
   std::vector<double> steps;
   std::vector<std::size_t> changes;
@@ -103,7 +104,8 @@ std::string about_repeats(const std::vector<double>& time_s, std::size_t repeate
   if (steps.empty())
     return "all rows have the same time; use --rate-hz R in place of --time to derive the times from the row "
            "numbers";
-  // The first and the last time stamp may have fewer rows than the others, so they are not used for the rate.
+  // The first and the last time stamp may occur in fewer rows than the others. The rate is therefore computed
+  // without them.
   const std::size_t rows = changes.size() > 1 ? changes.back() - changes.front() : time_s.size() - 1;
   const double rows_s =
       changes.size() > 1 ? time_s[changes.back()] - time_s[changes.front()] : time_s.back() - time_s.front();

@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 7> nanosecond_words{"nanosec", "nanosecs"
 
 struct LastWord {
   std::string before;  ///< text before the last word, without the separator
-  std::string word;    ///< last word, lower-case
+  std::string word;    ///< last word, in lower case
 };
 
 /// Splits off the last word of a name: "header.stamp.sec" gives "header.stamp" and "sec".
@@ -39,7 +39,7 @@ bool is_one_of(const Words& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Returns true if all values are whole numbers in [0, end).
+/// Returns true if all values of the column are whole numbers from 0 to below `end`.
 bool whole_below(const TableColumn& column, double end) {
   bool any = false;
   for (const double value : column.values) {
@@ -50,7 +50,7 @@ bool whole_below(const TableColumn& column, double end) {
   return any && column.bad_count == 0 && column.moments == 0;
 }
 
-/// Returns the index of the column with the nanoseconds that belong to the column `seconds`.
+/// Returns the index of the column that contains the nanoseconds for the column `seconds`.
 std::optional<std::size_t> rest_of_seconds(const std::vector<TableColumn>& columns, std::size_t seconds) {
   constexpr double latest_s = 1e11;
   const LastWord name = last_word(columns[seconds].name);

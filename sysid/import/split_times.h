@@ -1,6 +1,6 @@
 #pragma once
-// Combines times that are split into two columns, as in a header of ROS: whole seconds, and the remaining
-// nanoseconds.
+// Combines a time that is split into two columns, whole seconds and remaining nanoseconds, as in a ROS
+// message header.
 
 #include <string>
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace softgrip::sysid {
 
-/// Adds the nanoseconds of one column to the seconds of another if the names of the columns differ only in
-/// their last word: "stamp.sec" and "stamp.nanosec", "secs" and "nsecs". Both columns must contain whole
-/// numbers, and nanoseconds must be from 0 to below 1e9. The column of the nanoseconds is marked as used.
-/// `notes` names each pair.
+/// Adds the nanoseconds of one column to the seconds of another column if the column names differ only in
+/// their last word: "stamp.sec" and "stamp.nanosec", or "secs" and "nsecs". Both columns must contain whole
+/// numbers, and the nanoseconds must be from 0 to below 1e9. The column of the nanoseconds is marked as used.
+/// `notes` names each pair of columns.
 void combine_split_times(std::vector<TableColumn>& columns, std::vector<std::string>& notes);
 
 }  // namespace softgrip::sysid

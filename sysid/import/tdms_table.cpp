@@ -20,12 +20,12 @@ static_assert(std::endian::native == std::endian::little, "the values are copied
 
 constexpr std::size_t lead_in_bytes = 28;
 constexpr std::size_t most_channels = 10'000;
-/// Largest number of steps for all segments together. It is needed because a segment of 28 bytes can repeat a
-/// long list of channels.
+/// Largest number of processing steps for all segments together. This limit is necessary because a segment of
+/// 28 bytes can repeat a long list of channels.
 constexpr std::size_t most_steps = 100'000'000;
 constexpr std::size_t longest_label = 1000;
 constexpr const char* has_daqmx = "has raw values of DAQmx, which need its scales";
-/// Value of the length field of a segment that was not finished.
+/// Value of the length field of a segment whose recording was not finished.
 constexpr std::uint64_t no_length = ~std::uint64_t{0};
 
 // Flags of a segment.
@@ -54,7 +54,7 @@ enum class TdmsType : std::uint32_t {
   time = 0x44
 };
 
-/// Returns the size of one value of this type [bytes]. Returns 0 for a text or an unknown type.
+/// Returns the size of one value of this type [bytes]; 0 for a text or an unknown type.
 std::size_t size_of(TdmsType type) {
   switch (type) {
     case TdmsType::i8:
@@ -88,7 +88,7 @@ T copied(const char* at) {
   return value;
 }
 
-/// A time stamp, counted from 1904. It is stored in two parts, because one double would lose digits.
+/// A time stamp since 1904, stored in two parts, because a single double has too few digits.
 struct Stamp {
   std::int64_t seconds = 0;
   double fraction = 0;
@@ -97,7 +97,8 @@ Stamp stamp_at(const char* at) {
   return {copied<std::int64_t>(at + 8), std::ldexp(static_cast<double>(copied<std::uint64_t>(at)), -64)};
 }
 double between(const Stamp& from, const Stamp& to) {
-  // A damaged file can contain any number of seconds. Subtracting them as doubles cannot overflow.
+  // A damaged file can contain any number of seconds. The difference of two doubles cannot overflow, but the
+  // difference of two integers can.
   return (static_cast<double>(to.seconds) - static_cast<double>(from.seconds)) +
          (to.fraction - from.fraction);
 }
@@ -135,9 +136,9 @@ struct TdmsChannel {
   std::string name;
   std::string unit;
   TdmsType type = TdmsType::f64;
-  bool has_index = false;   ///< a segment has stated how the values are stored
-  std::uint64_t count = 0;  ///< number of values in a chunk
-  std::uint64_t bytes = 0;  ///< size of the values in a chunk
+  bool has_index = false;   ///< true: a segment has stated how the values are stored
+  std::uint64_t count = 0;  ///< number of values of this channel in a chunk
+  std::uint64_t bytes = 0;  ///< size of the values of this channel in a chunk
   std::vector<double> values;
   std::optional<Stamp> first;  ///< first value of a channel of time stamps
   double increment_s = 0;      ///< sampling interval of a waveform; 0: not a waveform
@@ -147,7 +148,7 @@ struct TdmsChannel {
   std::size_t cut_off = 0;  ///< number of values in the incomplete chunk at the end of the file
 };
 
-/// Converts a path: "/'group'/'channel'" gives "group/channel".
+/// Converts a TDMS path to a name: "/'group'/'channel'" gives "group/channel".
 std::string name_in(std::string_view path) {
   std::string name;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -166,7 +167,8 @@ class TdmsReader {
  public:
   TdmsReader(std::string_view bytes, ArrayCollector& arrays) : bytes_(bytes), arrays_(arrays) {}
 
-  /// Reads all segments. Returns false if the file is refused; `refused` then contains a sentence.
+  /// Reads all segments. If the file is refused, returns false and stores the reason as a sentence in
+  /// `refused`.
   bool read() {
     std::size_t at = 0;
     while (at < bytes_.size() && refused.empty()) {
@@ -180,7 +182,7 @@ class TdmsReader {
     return refused.empty();
   }
 
-  /// Returns the number of rows that have a value in the incomplete chunk at the end of the file.
+  /// Returns the number of rows that have at least one value in the incomplete chunk at the end of the file.
   [[nodiscard]] std::size_t cut_off_rows(const ForeignTable& table) const {
     std::size_t rows = 0;
     for (const TdmsChannel& channel : channels_) {
@@ -192,7 +194,7 @@ class TdmsReader {
   std::string refused;
 
  private:
-  /// Reads the segment at byte `at`. Returns the position of the next segment.
+  /// Reads the segment that begins at byte `at`. Returns the position of the next segment.
   std::size_t segment(std::size_t at) {
     ByteScanner lead(bytes_.substr(at, lead_in_bytes));
     const bool signed_so = std::string_view(lead.skip(4), 4) == "TDSm";
@@ -201,7 +203,8 @@ class TdmsReader {
     const auto next = lead.value<std::uint64_t>();
     const auto raw = lead.value<std::uint64_t>();
     const std::string_view rest = bytes_.substr(at + lead_in_bytes);
-    // If the recording was interrupted, the length is missing, or it exceeds the number of remaining bytes.
+    // If the recording was interrupted, the length field is not set, or it exceeds the number of remaining
+    // bytes.
     const std::uint64_t size = std::min<std::uint64_t>(next, rest.size());
     if (!signed_so) refuse(at, "does not begin with TDSm");
     if ((flags & is_big_endian) != 0) refuse(at, "is big-endian");
@@ -226,7 +229,7 @@ class TdmsReader {
     if (refused.empty()) refused = "the segment at byte " + std::to_string(at) + " " + why;
   }
   static std::string quoted(std::string_view name) { return "'" + document::shown(name, 40) + "'"; }
-  /// Stores the reason why valid metadata is not supported. Returns false.
+  /// Stores the reason why the file's metadata are valid but not supported. Always returns false.
   bool unread(const std::string& why) {
     if (unread_.empty()) unread_ = why;
     return false;
@@ -236,7 +239,7 @@ class TdmsReader {
                   ", which is not supported");
   }
 
-  /// Reports a segment whose end is missing and leaves it out. The number of its rows is unknown.
+  /// Reports a segment whose end is missing, and skips it. The number of rows in this segment is unknown.
   void leave_out_segment(std::size_t at, const std::string& where) {
     arrays_.note("the segment at byte " + std::to_string(at) + " is cut off " + where + ": its " +
                  std::to_string(bytes_.size() - at) + " bytes are left out");
@@ -350,7 +353,8 @@ class TdmsReader {
     return refused.empty();
   }
 
-  /// Reads interleaved values: one value of each channel, then the next value of each.
+  /// Reads interleaved values: the first value of every channel, then the second value of every channel, and
+  /// so on.
   void rows(std::string_view piece, std::uint64_t row) {
     const std::size_t complete = piece.size() / row;
     const std::size_t rest = piece.size() % row;
@@ -364,7 +368,7 @@ class TdmsReader {
     cut_off_bytes_ += rest;
   }
 
-  /// Reads contiguous values: all values of a channel, then those of the next channel.
+  /// Reads contiguous values: all values of the first channel, then all values of the next channel.
   void blocks(std::string_view piece) {
     for (const std::size_t i : listed_) {
       TdmsChannel& channel = channels_[i];
@@ -376,8 +380,8 @@ class TdmsReader {
     }
   }
 
-  /// Leaves out an incomplete chunk. If it were read, the first channels would have more values than the
-  /// others.
+  /// Leaves out an incomplete chunk. Otherwise the first channels in the chunk would have more values than
+  /// the last channels.
   void leave_out_blocks(std::string_view piece) {
     cut_off_bytes_ += piece.size();
     for (const std::size_t i : listed_) {
@@ -445,10 +449,10 @@ class TdmsReader {
   std::vector<std::size_t> listed_;  ///< the channels with values in this segment
   std::size_t steps_ = 0;
   std::size_t values_ = 0;
-  /// Number of bytes that the last segment states but that are not in the file.
+  /// Number of bytes that the header of the last segment states but that are missing in the file.
   std::uint64_t missing_bytes_ = 0;
   std::size_t cut_off_bytes_ = 0;
-  std::string unread_;  ///< reason why valid metadata is refused
+  std::string unread_;  ///< reason why the file is refused although its metadata are valid
 };
 
 }  // namespace

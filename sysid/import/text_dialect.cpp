@@ -11,16 +11,16 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::array separators{',', ';', '\t', '|', ' '};
-/// Number of lines from which the separator is determined: this number in the middle of the text and this
-/// number at the end.
+/// The separator is determined from this number of lines in the middle of the text and this number of lines
+/// at its end.
 constexpr std::size_t looked_at = 40;
-/// Largest number of lines of content above the first row of numbers.
+/// Largest number of lines above the first row of numbers; empty lines and comments are not counted.
 constexpr std::size_t longest_preamble = 1000;
 
 struct Row {
   std::size_t cells = 0;
-  std::size_t values = 0;   ///< numbers, timestamps and missing values
-  std::size_t numbers = 0;  ///< numbers and timestamps
+  std::size_t values = 0;   ///< number of cells with a number, a timestamp or a missing value
+  std::size_t numbers = 0;  ///< number of cells with a number or a timestamp
 };
 
 Row row_of(std::string_view line, char separator, const TableOptions& options, std::vector<Cell>& cells) {
@@ -35,13 +35,14 @@ Row row_of(std::string_view line, char separator, const TableOptions& options, s
   return row;
 }
 
-/// Returns true if a line is a row of the table: it has `width` cells, at least one of them is a number, and
-/// more than half are values.
+/// Returns true if a line is a row of the table. Such a row has `width` cells. At least one cell is a number
+/// or a timestamp, and more than half of the cells are values.
 bool is_data(const Row& row, std::size_t width) {
   return row.cells == width && row.numbers > 0 && 2 * row.values > row.cells;
 }
 
-/// The row width with the most values for a separator, and the number of values in the rows of this width.
+/// For one separator, the number of cells per row with which the text has the most values, and the number of
+/// these values.
 struct Fit {
   std::size_t values = 0;
   std::size_t width = 0;
@@ -80,8 +81,8 @@ std::vector<std::string> texts_of(const std::vector<Cell>& cells) {
   return texts;
 }
 
-/// Returns true if the texts are units, with or without brackets. "-" and an empty text mean that a column
-/// has no unit, but at least one text must be a unit.
+/// Returns true if all texts are units, with or without brackets. "-" or an empty text means that the column
+/// has no unit. At least one text must be a unit.
 bool are_units(const std::vector<std::string>& texts) {
   bool any = false;
   for (const std::string& text : texts) {
@@ -152,8 +153,8 @@ class Heading {
     return true;
   }
 
-  /// Splits the line of names. If the columns are separated by blanks and a name contains a blank, the names
-  /// must be separated by two blanks.
+  /// Splits the line of the column names. If blanks separate the columns and a name contains a blank, the
+  /// names must be separated by two blanks or a tab.
   std::vector<std::string> split_names(const TextLine& line) const {
     std::vector<Cell> cells;
     split_line(line.text, dialect_.separator, cells);
@@ -168,7 +169,7 @@ class Heading {
     return texts.size() == dialect_.width ? texts : texts_of(cells);
   }
 
-  /// Reads the names from a comment: numpy.savetxt writes "# time, pressure".
+  /// Reads the column names from a comment. For example, numpy.savetxt writes "# time, pressure".
   void from_comment() {
     const int first = lines_.content[dialect_.first_row].number;
     const TextLine* last = nullptr;
@@ -218,7 +219,7 @@ TextLines text_lines(std::string_view text) {
     const std::string_view said = trimmed(line);
     if (said.empty()) continue;
     const bool comment = said.front() == '#' || said.front() == '%' || said.starts_with("//");
-    // "#N/A" is a cell, not the beginning of a comment.
+    // A line that begins with "#N/A" is a row, because "#N/A" is a cell and not the beginning of a comment.
     const bool cell = said.starts_with("#N/A") || said.starts_with("#n/a");
     (comment && !cell ? lines.comments : lines.content).push_back({number, line});
   }

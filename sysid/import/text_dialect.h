@@ -1,5 +1,6 @@
 #pragma once
-// Format of a table in an external text: its separator, and the lines of names, units and numbers.
+// Determines the format of a table in an external text: its separator, and the lines that contain names,
+// units and numbers.
 
 #include <cstddef>
 #include <optional>
@@ -19,29 +20,31 @@ struct TextLine {
   std::string_view text;
 };
 
-/// The lines of a text that are neither empty nor comments (#, %, //), and the comments.
+/// The comments of a text (#, %, //), and the lines that are neither empty nor comments.
 struct TextLines {
   std::vector<TextLine> content;
   std::vector<TextLine> comments;
 };
 [[nodiscard]] TextLines text_lines(std::string_view text);
 
-/// Splits a line into cells. Several blanks count as one separator. Returns false if a quote is not closed.
+/// Splits a line into cells. Consecutive blanks count as one separator. Returns false if a quote is not
+/// closed.
 bool split_line(std::string_view line, char separator, std::vector<Cell>& cells);
 
 struct Dialect {
   char separator = ',';
   std::size_t first_row = 0;       ///< index of the first row of numbers in TextLines::content
-  std::vector<std::string> names;  ///< by column; empty if the text has no names
-  std::vector<std::string> units;  ///< by column, from a row below the names; empty: there is none
-  int names_line = 0;              ///< number of the line with the names; 0: there are no names
-  std::size_t width = 0;           ///< number of columns
-  /// Each row has one more cell than there are names, and this last cell is empty.
+  std::vector<std::string> names;  ///< column names; empty if the text has no names
+  /// Units of the columns, from a row below the names; empty: the text has no such row.
+  std::vector<std::string> units;
+  int names_line = 0;     ///< number of the line with the names; 0: the text has no names
+  std::size_t width = 0;  ///< number of columns
+  /// True if each row ends with an empty cell that has no column name.
   bool extra_cell = false;
 };
 
-/// Detects the format from the rows of numbers. Returns nullopt and adds a problem if there are no such rows,
-/// or if the number of names above them differs from the number of columns.
+/// Detects the format from the rows of numbers. Adds a problem and returns nullopt if the text has no such
+/// rows, or if the number of names above the rows differs from the number of columns.
 [[nodiscard]] std::optional<Dialect> dialect_of(const std::string& file, const TextLines& lines,
                                                 const TableOptions& options, document::Problems& problems);
 

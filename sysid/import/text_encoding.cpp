@@ -47,7 +47,8 @@ std::string from_utf16(std::string_view bytes, bool big_endian) {
   return text;
 }
 
-/// Returns the number of continuation bytes after the first byte of a character; -1: not a first byte.
+/// Returns the number of continuation bytes that follow the first byte of a UTF-8 character. Returns -1 if
+/// `first` cannot be a first byte.
 int continuations(std::uint8_t first) {
   if (first < 0x80) return 0;
   if (first >= 0xc2 && first < 0xe0) return 1;
@@ -66,20 +67,24 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-/// Replaces \r by \n in a text without \n: old Macs end lines with \r alone.
+/// Replaces \r by
+///  if the text contains no
+/// , because old Macintosh files end their lines with \r alone.
 void normalise_line_ends(std::string& text) {
   if (text.find('\n') != std::string::npos) return;
   for (char& c : text) c = c == '\r' ? '\n' : c;
 }
 
-/// Returns the number of NUL bytes at the end of a text; 0 for UTF-16.
+/// Returns the number of NUL bytes at the end of a text. Returns 0 for UTF-16, whose characters contain NUL
+/// bytes.
 std::size_t nul_tail(std::string_view bytes) {
   if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) return 0;
   const std::size_t last = bytes.find_last_not_of('\0');
   return last == std::string_view::npos ? 0 : bytes.size() - last - 1;
 }
 
-/// Returns the number of the first line that is too long, counted from 1.
+/// Returns the number of the first line that exceeds longest_line, counted from 1; nullopt if there is no
+/// such line.
 std::optional<std::size_t> number_of_long_line(std::string_view text) {
   std::size_t number = 1;
   for (std::size_t begin = 0; begin < text.size(); ++number) {

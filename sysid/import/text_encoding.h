@@ -1,5 +1,5 @@
 #pragma once
-// Character encoding of an external text.
+// Converts the character encoding of an external text to UTF-8.
 
 #include <optional>
 #include <string>
@@ -12,18 +12,20 @@
 
 namespace softgrip::sysid {
 
-/// Converts UTF-8, UTF-16 with a byte order mark, or Latin-1 to UTF-8 without a byte order mark; lines end
-/// with \n. If the bytes are not a text, the error is a sentence.
+/// Converts a text to UTF-8 without a byte order mark and with
+///  at the end of each line. Accepted encodings are UTF-8, UTF-16 with a byte order mark, and Latin-1. If the
+/// bytes are not a text, the error is a sentence.
 [[nodiscard]] tl::expected<std::string, std::string> utf8_of(std::string_view bytes);
 
 struct ForeignText {
-  std::string text;  ///< see utf8_of()
-  /// Notes about removed NUL bytes at the end, which a data logger leaves after a power failure.
+  std::string text;  ///< text in UTF-8, as utf8_of() returns it
+  /// Notes about NUL bytes that were removed at the end. A data logger leaves such bytes after a power
+  /// failure.
   std::vector<std::string> notes;
 };
 
-/// Returns the text of an external file with at most most_text_bytes bytes and most_rows lines of at most
-/// longest_line bytes (table.h). If the text is refused, a problem is added.
+/// Returns the text of an external file. The text may have at most most_text_bytes bytes and most_rows lines,
+/// and each line at most longest_line bytes (table.h). If the text is refused, a problem is added.
 [[nodiscard]] std::optional<ForeignText> foreign_text(const std::string& file, std::string_view bytes,
                                                       document::Problems& problems);
 

@@ -63,7 +63,8 @@ class RowReader {
                            (skipped_.size() > bad_lines_named ? ", ..." : ""));
   }
 
-  /// Refuses a file with both decimal points and decimal commas, because one of them must separate thousands.
+  /// Refuses a file that contains both decimal points and decimal commas. In such a file, one of the two
+  /// marks must separate thousands.
   void check_decimals() {
     if (comma_.number == 0 || point_.number == 0) return;
     const TextLine& later = comma_.number > point_.number ? comma_ : point_;
@@ -75,8 +76,8 @@ class RowReader {
   [[nodiscard]] bool decimal_comma() const { return comma_.number != 0; }
 
  private:
-  /// Removes the empty cell that follows a separator at the end of a row, if the line of names does not end
-  /// with a separator.
+  /// Removes the empty cell after a separator at the end of each row if the line of the names has no such
+  /// cell.
   void drop_extra_cell() {
     const bool extra = dialect_.extra_cell && cells_.size() == dialect_.width + 1;
     if (extra && trimmed(cells_.back().text).empty()) cells_.pop_back();
@@ -103,7 +104,7 @@ class RowReader {
     const std::string channel = cell_text(cells_[channel_].text);
     if (std::find(table_.channels.begin(), table_.channels.end(), channel) == table_.channels.end())
       table_.channels.push_back(channel);
-    // If a column has more different cells than a rig has fingers, the cells are readings.
+    // A column with more different cells than a rig has fingers contains readings, not names of fingers.
     if (table_.channels.size() > most_fingers && !is_log_channel_ && options_.channel.empty()) {
       channel_ = dialect_.width;
       table_.channels.clear();
@@ -142,9 +143,9 @@ class RowReader {
     column.values.push_back(nothing);
   }
 
-  /// Computes times relative to the first timestamp of a column, in whole nanoseconds, because a double of
-  /// seconds since 1970 would lose digits. If a time of day decreases by more than half a day, midnight has
-  /// passed. If minutes and seconds decrease by more than half an hour, a full hour has passed.
+  /// Computes times relative to the first timestamp of a column. The times are whole nanoseconds, because
+  /// seconds since 1970 in a double would lose digits. If a time of day decreases by more than half a day,
+  /// midnight has passed. If minutes and seconds decrease by more than half an hour, the next hour has begun.
   struct Clock {
     Nanoseconds first = 0;
     Nanoseconds last = 0;
@@ -167,7 +168,8 @@ class RowReader {
   std::vector<Clock> moments_;
   std::vector<Cell> cells_;
   std::size_t channel_ = dialect_.width;
-  bool is_log_channel_ = false;  ///< the channel column has the same name as in a log
+  /// True: the column that identifies the finger has the same name as in a log.
+  bool is_log_channel_ = false;
   TextLine comma_;
   TextLine point_;
   std::vector<int> skipped_;

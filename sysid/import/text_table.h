@@ -1,5 +1,5 @@
 #pragma once
-// Reader of external tables in text: CSV with any separator, or columns separated by tabs or blanks.
+// Reads external tables in text: CSV with any separator, or columns separated by tabs or blanks.
 
 #include <optional>
 #include <string>
@@ -10,10 +10,11 @@
 
 namespace softgrip::sysid {
 
-/// Reads UTF-8 or Latin-1, with or without a byte order mark, or UTF-16 with one. Skips comments, lines above
-/// the names and empty lines. Recognises a row of units. Detects decimal points or decimal commas; a file
-/// that contains both is refused. If the last line is incomplete, it is left out and counted. Other rows with
-/// a different number of cells are problems. `file` names the text in messages.
+/// Reads UTF-8 or Latin-1, with or without a byte order mark, or UTF-16 with a byte order mark. Skips
+/// comments, empty lines and the lines above the names. Recognises a row of units. Accepts decimal points or
+/// decimal commas, but refuses a file that contains both. If the last line has too few cells, it is left out
+/// and counted. It is a problem if another row has a wrong number of cells. `file` names the text in
+/// messages.
 [[nodiscard]] std::optional<ForeignTable> parse_text_table(const std::string& file, std::string_view text,
                                                            const TableOptions& options,
                                                            document::Problems& problems);

@@ -10,8 +10,8 @@ namespace {
 constexpr double psi_kpa = 6.894757293168361;
 constexpr double absolute_zero_c = -273.15;
 
-/// The units that an import knows. The first unit of each quantity is the unit of a log. Names are in lower
-/// case.
+/// Units that the import can convert. The first unit of each quantity is the unit in a log. The names are in
+/// lower case.
 constexpr std::array units{
     Unit{"s", Quantity::time},
     Unit{"ms", Quantity::time, 1e-3},
@@ -74,7 +74,7 @@ constexpr std::array spellings{
 };
 constexpr std::array<std::string_view, 14> raw_units{
     "v", "mv", "volt", "volts", "ma", "a", "counts", "count", "lsb", "adc", "raw", "%", "percent", "digits"};
-/// Units that can also be a word or an index if they follow a blank or an underscore.
+/// Names of units that can also be a word or an index if they follow a blank or an underscore.
 constexpr std::array<std::string_view, 10> doubtful{"in", "min", "a", "c",   "d",
                                                     "f",  "h",   "k", "raw", "count"};
 
@@ -83,7 +83,7 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
     text.replace(at, from.size(), to);
 }
 
-/// Returns a unit in the spelling of the table of units. mPa, the only case-sensitive unit, becomes
+/// Returns a unit in lower case, as the table of units spells it. The only case-sensitive unit, mPa, becomes
 /// "millipascal".
 std::string normalised(std::string_view text) {
   std::string unit(trimmed(text));
@@ -107,7 +107,8 @@ bool is_unit_of(std::string_view text, std::optional<Quantity> quantity) {
   return quantity ? unit_named(text, *quantity).has_value() : unit_named(text).has_value();
 }
 
-/// Returns the name and the text in the last pair of brackets: "P [psi]", "P (psi)".
+/// Splits a column name with brackets at its end ("P [psi]", "P (psi)") into the name and the text in the
+/// brackets.
 std::optional<NameAndUnit> in_brackets(std::string_view column) {
   if (column.size() < 3 || (column.back() != ']' && column.back() != ')')) return std::nullopt;
   const std::size_t open = column.rfind(column.back() == ']' ? '[' : '(');
@@ -115,7 +116,7 @@ std::optional<NameAndUnit> in_brackets(std::string_view column) {
   const std::string_view unit = trimmed(column.substr(open + 1, column.size() - open - 2));
   std::string_view name = trimmed(column.substr(0, open));
   while (!name.empty() && (name.back() == '_' || name.back() == ' ')) name.remove_suffix(1);
-  // "M(:,2)" is a column of a matrix.
+  // A name such as "M(:,2)" is a column of a matrix and does not end with a unit.
   if (unit.empty() || unit.find(':') != std::string_view::npos) return std::nullopt;
   return NameAndUnit{std::string(name), std::string(unit)};
 }

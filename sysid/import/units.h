@@ -1,6 +1,6 @@
 #pragma once
-// Units in external files, and their conversion to the units of a log: s, kPa, mm or deg, degrees Celsius. A
-// bending angle counts as a displacement.
+// Defines the units in external files and their conversion to the units of a log: s, kPa, mm or deg, and
+// degrees Celsius. A bending angle is treated as a displacement.
 
 #include <cstdint>
 #include <optional>
@@ -19,34 +19,35 @@ struct Unit {
   Quantity quantity = Quantity::time;
   double factor = 1;
   double offset = 0;
-  /// Output unit of a log whose displacement is in this unit.
+  /// Unit of the displacement in the log if the file states the displacement in this unit.
   model::OutputUnit output = model::OutputUnit::mm;
 };
 
-/// Returns the unit of a quantity that a text names: "PSI", "µm", "deg C". Case is ignored, except in mPa and
+/// Returns the unit of the given quantity with this name: "PSI", "µm", "deg C". Case matters only in mPa and
 /// MPa.
 [[nodiscard]] std::optional<Unit> unit_named(std::string_view text, Quantity quantity);
-/// Returns the unit of any quantity that a text names; nullopt if two quantities have a unit of this name.
+/// Returns the unit with this name, of any quantity. Returns nullopt if units of two quantities have this
+/// name.
 [[nodiscard]] std::optional<Unit> unit_named(std::string_view text);
-/// Returns true for units of electrical or digital values (V, mA, counts, %). Such values need a scale to
-/// become kPa or mm.
+/// Returns true if the name is a unit of electrical or digital values (V, mA, counts, %). A value in such a
+/// unit becomes kPa or mm only with a scale.
 [[nodiscard]] bool is_raw_unit(std::string_view text);
-/// Returns the names of the units of a quantity for messages: "s, ms, us, ...".
+/// Returns the unit names of a quantity as text for messages: "s, ms, us, ...".
 [[nodiscard]] std::string unit_names(Quantity quantity);
 /// Returns the name of a quantity: "time", "pressure", ...
 [[nodiscard]] std::string_view name_of(Quantity quantity);
 
-/// The name of a column, split into name and unit: "P [psi]" is P in psi, "set_kpa" is set in kpa, and "Tip"
-/// has no unit.
+/// A column name, split into name and unit. "P [psi]" has the name P and the unit psi, "set_kpa" has the name
+/// set and the unit kpa, and "Tip" has no unit.
 struct NameAndUnit {
   std::string name;
-  std::string unit;  ///< as written; empty: none
+  std::string unit;  ///< unit as written in the column name; empty: the column name has no unit
 };
 
 /// Splits the name of a column into name and unit. A text in brackets is always the unit. After another mark,
-/// such as '/' or '_', only a known unit of `quantity` is accepted, or of any quantity if none is given. If
-/// no quantity is given, a unit that is also a word or a letter needs a slash or a comma before it (p_in is
-/// not in inches).
+/// such as '/' or '_', only a known unit is accepted. If `quantity` is given, it must be a unit of this
+/// quantity. If no quantity is given, a unit that is also a word or a letter must follow a slash or a comma:
+/// p_in is not in inches.
 [[nodiscard]] NameAndUnit split_unit(std::string_view column, std::optional<Quantity> quantity = {});
 
 /// Converts ASCII letters to lower case.

@@ -12,7 +12,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Largest size of an archive [bytes]. The directory of a larger archive alone could exhaust the memory.
+/// Largest size of an archive [bytes]. The list of files in a larger archive could exhaust the memory.
 constexpr std::size_t largest_archive_bytes = std::size_t{128} << 20U;
 constexpr std::size_t bytes_at_once = std::size_t{1} << 18U;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Reader of the parts of an .xlsx workbook, which is a ZIP archive; uses libzip.
+// Reads the files (parts) in an .xlsx workbook, which is a ZIP archive. Uses libzip.
 
 #include <cstddef>
 #include <memory>
@@ -12,8 +12,9 @@ struct zip;
 
 namespace softgrip::sysid {
 
-/// Reads the parts of an archive in memory. `bytes` must outlive the object. All parts together may have at
-/// most `most_text_bytes` (table.h) after decompression, regardless of the sizes that the archive states.
+/// Reads the parts of a workbook archive that is in memory. `bytes` must outlive the object. All parts
+/// together may have at most `most_text_bytes` (table.h) after decompression. The sizes that the archive
+/// states are not trusted.
 class WorkbookPackage {
  public:
   /// Opens the archive. The error is a sentence.
@@ -28,7 +29,7 @@ class WorkbookPackage {
   explicit WorkbookPackage(Archive archive);
 
   Archive archive_;
-  std::size_t left_;  ///< bytes that may still be read
+  std::size_t left_;  ///< number of decompressed bytes that may still be read
 };
 
 }  // namespace softgrip::sysid

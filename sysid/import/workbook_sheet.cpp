@@ -19,7 +19,7 @@
 namespace softgrip::sysid {
 namespace {
 
-// Limits of the format itself.
+// Largest sheet that the file format allows.
 constexpr std::size_t most_sheet_rows = 1048576;
 constexpr std::size_t most_sheet_columns = 16384;
 constexpr std::size_t cells_named = 5;
@@ -30,13 +30,13 @@ struct SheetCell {
   std::size_t row = 0;     ///< counted from 1
   std::size_t column = 0;  ///< counted from 0
   Content content = Content::none;
-  std::string text;      ///< text, number as written in the file, or word of an error
-  double serial = 0;     ///< value of a date [days]
+  std::string text;      ///< text, number as written in the file, or code of an error
+  double serial = 0;     ///< value of a date, in days since the origin of the calendar
   bool formula = false;  ///< the cell contains a formula, and the value is its stored result
   bool is_bool = false;
 };
 
-/// A number of cells and the names of the first few of them.
+/// A count of cells, and the names of the first of these cells.
 struct NamedCells {
   std::size_t count = 0;
   std::string names;
@@ -54,7 +54,7 @@ std::string column_letters(std::size_t column) {
   return text;
 }
 
-/// Returns the number of a row, or nullopt if the text is not a valid row number.
+/// Converts a text to a row number; returns nullopt if the text is not a valid row number.
 std::optional<std::size_t> row_number(std::string_view text) {
   const auto row = whole_number(text);
   return row && *row >= 1 && *row <= most_sheet_rows ? row : std::nullopt;
@@ -75,7 +75,7 @@ std::optional<Place> place_of(std::string_view reference) {
   return Place{*row, place.column - 1};
 }
 
-/// Returns a date in ISO 8601, or a time of day if `with_day` is false. `serial` counts days since `from`.
+/// Returns a date in ISO 8601, or a time of day if `with_day` is false. @param serial  days since `from`.
 /// Excel stores times with a resolution of about 0.6 us, so finer digits are rounding errors.
 std::string iso_date(double serial, std::chrono::sys_days from, bool with_day) {
   constexpr std::int64_t ticks_a_second = 1'000'000;
@@ -100,8 +100,8 @@ std::string iso_date(double serial, std::chrono::sys_days from, bool with_day) {
   return text.data();
 }
 
-/// Returns a text as a cell of CSV. A text that begins like a comment is quoted, so that its line is not
-/// taken for a comment.
+/// Returns a text as a cell of CSV. A text that begins like a comment is put in quotes, so that the reader of
+/// the CSV does not skip its line as a comment.
 std::string csv_cell(std::string text) {
   for (char& c : text) c = c == '\n' || c == '\r' || c == '\t' ? ' ' : c;
   const bool like_comment = !text.empty() && (text[0] == '#' || text[0] == '%' || text[0] == '/');
@@ -210,7 +210,7 @@ class SheetReader {
       return refuse_cell(
           cell, "'" + document::shown(cell.text) + "' is not a number, although the file states that it is");
     if (!std::isfinite(*number)) {
-      cell.content = Content::text;  // "NaN" is interpreted as in a text file
+      cell.content = Content::text;  // the reader of text tables interprets "NaN" later
       return;
     }
     cell.content = Content::number;
@@ -234,7 +234,7 @@ class SheetReader {
     if (!index || *index >= texts_.strings.size())
       return refuse_cell(cell, "shared string '" + document::shown(cell.text) + "' is none of the " +
                                    std::to_string(texts_.strings.size()) + " of the workbook");
-    // Count the size for each cell, because many cells can refer to one long text.
+    // The size is added for each cell, because many cells can refer to one long text.
     shared_bytes_ += texts_.strings[*index].size();
     if (shared_bytes_ > most_text_bytes)
       return refuse_cell(cell,
@@ -253,8 +253,8 @@ class SheetReader {
     cell.content = Content::number;
   }
 
-  /// Updates the first and last row and column of the sheet. Call it for all cells before the first cell is
-  /// written.
+  /// Extends the range of used rows and columns by a cell. Call this function for all cells before the first
+  /// cell is written.
   void survey(const SheetCell& cell) {
     if (result_.first_row == 0) {
       result_.first_row = cell.row;
@@ -278,13 +278,14 @@ class SheetReader {
     booleans_ += cell.is_bool ? 1 : 0;
   }
 
-  /// Updates the latest date of a column. Dates above the table are ignored.
+  /// Updates the latest date in the column of a cell. Dates above the table are ignored.
   void survey_date(const SheetCell& cell) {
     if (cell.content == Content::date && cell.row >= full_row_)
       longest_[cell.column] = std::max(longest_[cell.column], cell.serial);
   }
 
-  /// Returns the first row that has cells in at least 75 % of the columns, as a row of names or numbers has.
+  /// Returns the first row that has cells in at least 75 % of the columns. A title above the table usually
+  /// has fewer cells.
   [[nodiscard]] std::size_t first_full_row() const {
     const std::size_t width = last_column_ - first_column_ + 1;
     const auto full = std::find_if(filled_.begin(), filled_.end(),
@@ -301,8 +302,8 @@ class SheetReader {
     constexpr sys_days of_1904{year{1904} / 1 / 1};
     constexpr double a_year = 366;
     const double longest = cell.row < full_row_ ? cell.serial : longest_[cell.column];
-    // If all values of a column are below one year, they are durations, which do not depend on the origin of
-    // the calendar.
+    // If all values of a column are shorter than one year, they are durations, and the origin of the calendar
+    // does not affect them.
     return iso_date(cell.serial, texts_.from_1904 || longest < a_year ? of_1904 : of_1900, longest >= 1);
   }
 
@@ -333,7 +334,7 @@ class SheetReader {
     text += '\n';
   }
 
-  /// Adds a note "what (3): where".
+  /// Adds a note with a description, a number of cells and their names: "what (3): where".
   void note(const std::string& what, std::size_t count, const std::string& where = {}) {
     result_.notes.push_back(what + " (" + std::to_string(count) + ")" + (where.empty() ? "" : ": " + where));
   }
@@ -382,11 +383,11 @@ class SheetReader {
   std::size_t first_column_ = 0;
   std::size_t last_column_ = 0;
   std::vector<std::pair<std::size_t, std::size_t>>
-      filled_;                             ///< rows with content: row number and number of cells
+      filled_;                             ///< for each row with content: row number and number of cells
   std::size_t full_row_ = 0;               ///< first row below the titles
-  std::size_t shared_bytes_ = 0;           ///< total size of shared strings in the cells
-  std::map<std::size_t, double> longest_;  ///< by column: latest date below the titles
-  std::size_t numbers_ = 0;                ///< number of numbers in the present row
+  std::size_t shared_bytes_ = 0;           ///< total size of the shared strings to which the cells refer
+  std::map<std::size_t, double> longest_;  ///< for each column: latest date below the titles
+  std::size_t numbers_ = 0;                ///< number of cells with a number in the current row
   std::size_t dates_ = 0;
   std::size_t formulas_ = 0;
   std::size_t booleans_ = 0;
@@ -409,7 +410,7 @@ bool is_date_format(std::string_view code) {
   for (std::size_t i = 0; i < code.size() && code[i] != ';'; ++i) {
     const char c = code[i];
     if (c == '\\' || c == '_' || c == '*') {
-      ++i;  // the next character is literal
+      ++i;  // the character after a backslash is literal
     } else if (c == '"') {
       i = std::min(code.find('"', i + 1), code.size());
     } else if (c == '[') {

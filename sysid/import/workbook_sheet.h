@@ -1,5 +1,5 @@
 #pragma once
-// Conversion of a workbook sheet to rows of text.
+// Converts a workbook sheet to rows of text.
 
 #include <cstddef>
 #include <string>
@@ -13,40 +13,43 @@
 
 namespace softgrip::sysid {
 
-/// Texts and formats to which the cells of all sheets refer.
+/// Texts and number formats of the workbook. The cells of all sheets refer to them.
 struct WorkbookTexts {
   std::vector<std::string> strings;  ///< shared strings
-  std::vector<bool> date_styles;     ///< by style; true: numbers in this style are dates or times of day
-  bool from_1904 = false;            ///< dates count from 1904
+  /// For each style, true if numbers in this style are dates or times of day.
+  std::vector<bool> date_styles;
+  bool from_1904 = false;  ///< true: dates count from 1904 instead of 1900
 };
 
 struct SheetText {
-  std::string text;              ///< line N is row N of the sheet; commas between the cells
+  std::string text;              ///< CSV text; line N is row N of the sheet
   std::size_t first_column = 0;  ///< counted from 0
   std::size_t first_row = 0;     ///< counted from 1; 0: the sheet is empty
   std::size_t last_row = 0;
-  std::size_t rows_of_numbers = 0;  ///< rows with 2 numbers or more
+  std::size_t rows_of_numbers = 0;  ///< number of rows that contain at least 2 numbers
   std::vector<std::string> notes;
 };
 
-/// The reason why a sheet cannot be read.
+/// Reason why a sheet cannot be read, and its location.
 struct SheetProblem {
-  document::Location at;  ///< row and column, both from 1
+  document::Location at;  ///< row and column, both counted from 1
   std::string message;
 };
 
-/// Returns true if numbers in this format are dates or times of day: "yyyy-mm-dd", "[h]:mm:ss.000".
+/// Returns true if a number in this format is a date or a time of day. Such formats are "yyyy-mm-dd" and
+/// "[h]:mm:ss.000".
 [[nodiscard]] bool is_date_format(std::string_view code);
 [[nodiscard]] bool is_date_format(std::size_t builtin);
 
 /// Returns the name of a cell, such as "B7". Rows are counted from 1 and columns from 0.
 [[nodiscard]] std::string cell_name(std::size_t row, std::size_t column);
 
-/// Returns the cells as lines of CSV. The first row that has at least 75 % of the columns begins the table.
-/// Rows above it contain only their own cells. From this row on, each row that is not empty has all columns.
-/// Booleans are written as 1 and 0, and dates as ISO 8601. A column whose values are all within one day is
-/// written as times of day, regardless of the rows above the table. A formula gives its stored value. Errors
-/// and formulas without a stored value give empty cells, and a note names these cells.
+/// Returns the cells as lines of CSV. The table begins at the first row that has cells in at least 75 % of
+/// the columns. Rows above the table contain only their own cells. From the table on, each row that is not
+/// empty has a cell for every column. Booleans are written as 1 and 0, and dates in ISO 8601. A column whose
+/// values are all within one day is written as times of day; rows above the table have no influence on this
+/// choice. A formula gives its stored value. Errors and formulas without a stored value give empty cells, and
+/// a note names these cells.
 [[nodiscard]] tl::expected<SheetText, SheetProblem> sheet_text(const pugi::xml_document& sheet,
                                                                const WorkbookTexts& texts);
 

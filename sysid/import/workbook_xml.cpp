@@ -6,11 +6,12 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::size_t most_tree_bytes = std::size_t{1} << 30U;
-// Sizes of a node and an attribute of pugixml on a 64-bit machine.
+// Sizes of an XML node and of an XML attribute in pugixml on a 64-bit machine [bytes].
 constexpr std::size_t node_bytes = 64;
 constexpr std::size_t attribute_bytes = 40;
 
-/// Returns an upper bound of the memory of the XML tree [bytes]. The first text in an element needs no node.
+/// Returns an upper bound of the memory that the XML tree of `text` needs [bytes]. The first text in an
+/// element needs no node of its own.
 std::size_t tree_bytes(std::string_view text) {
   std::size_t bytes = 0;
   bool opens = false;

@@ -1,5 +1,5 @@
 #pragma once
-// Parser of the XML in the parts of a workbook; uses pugixml, which expands no entities.
+// Parses the XML files in a workbook. Uses pugixml, which expands no entities.
 
 #include <string>
 #include <string_view>
@@ -9,17 +9,18 @@
 
 namespace softgrip::sysid {
 
-/// Parses `text` into `document`. `text` must outlive the document. The error is a sentence. XML whose tree
-/// could need more than 1 GiB is refused.
+/// Parses the XML in `text` into `document`. `text` must outlive the document. XML whose tree could need more
+/// than 1 GiB of memory is refused. The error is a sentence.
 [[nodiscard]] tl::expected<void, std::string> load_xml(std::string& text, pugi::xml_document& document);
 
-/// Returns a name without its prefix: "x:row" gives "row".
+/// Returns an XML name without its namespace prefix: "x:row" gives "row".
 [[nodiscard]] std::string_view local_name(std::string_view name);
-/// Returns the first child, or the value of the attribute, with the local name `name`.
+/// Returns the first child of a node that has the local name `name`, or the value of the attribute with this
+/// local name.
 [[nodiscard]] pugi::xml_node child_of(const pugi::xml_node& node, std::string_view name);
 [[nodiscard]] std::string_view attribute_of(const pugi::xml_node& node, std::string_view name);
 
-/// Returns true for "1" and "true", the two forms of a true value in XML.
+/// Returns true for "1" and "true", the two spellings of a true value in XML.
 [[nodiscard]] bool is_true(std::string_view word);
 
 /// Returns the text of a shared or an inline string: the text of all its `t` elements, including those in

@@ -22,7 +22,7 @@ constexpr const char* as_csv = "export the sheet as CSV";
 
 /// A reference from one part of the package to another.
 struct Relation {
-  std::string type;  ///< the last word of its type address: "worksheet"
+  std::string type;  ///< kind of the target, the last word of the type address: "worksheet"
   std::string part;
   bool external = false;
 };
@@ -31,7 +31,7 @@ using Relations = std::map<std::string, Relation>;
 struct Sheet {
   std::string name;
   std::string part;
-  bool is_table = true;  ///< false: a chart or a macro
+  bool is_table = true;  ///< true: the sheet contains cells; false: the sheet is a chart or a macro
 };
 
 std::string quoted_name(const std::string& name) {
@@ -69,7 +69,8 @@ class WorkbookReader {
     return file_ + ", sheet " + quoted_name(sheet.name);
   }
 
-  /// Loads the XML of a part. `text_` stores its characters. Returns false if the part was refused.
+  /// Loads the XML of a part of the workbook into `document_`, and its characters into `text_`. Returns false
+  /// if the part was refused.
   bool load(const std::string& part, const std::string& file) {
     auto text = package_.read(part);
     if (!text) {
@@ -88,7 +89,8 @@ class WorkbookReader {
     return loaded.has_value();
   }
 
-  /// Returns the relations of the part `name` in the folder `folder`, by id.
+  /// Returns the relations of the part `name` in the folder `folder`. The keys of the result are the ids of
+  /// the relations.
   std::optional<Relations> relations(const std::string& folder, const std::string& name) {
     const std::string part = folder + "_rels/" + name + ".rels";
     if (!load(part, file_)) return std::nullopt;
@@ -104,7 +106,7 @@ class WorkbookReader {
     return relations;
   }
 
-  /// Returns the path of the part that lists the sheets.
+  /// Returns the path of the part of the workbook that lists the sheets.
   std::optional<std::string> book_part() {
     if (!package_.has("_rels/.rels")) {
       if (package_.has("content.xml"))
@@ -271,7 +273,7 @@ class WorkbookReader {
     return table;
   }
 
-  /// Adds the name of the cell ("B7") to each bad cell.
+  /// Adds to each bad cell its name in the sheet, such as "B7".
   void name_bad_cells(ForeignTable& table) const {
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
       for (BadCell& bad : table.columns[i].bad)

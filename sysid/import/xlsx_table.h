@@ -1,5 +1,5 @@
 #pragma once
-// Reader of the values in one sheet of a spreadsheet workbook (.xlsx).
+// Reads the values of one sheet of a spreadsheet workbook (.xlsx).
 
 #include <optional>
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace softgrip::sysid {
 
-/// Reads the sheet that `options.sheet` names, otherwise the only sheet with rows of numbers. If several
-/// sheets have rows of numbers, a problem lists them. The cells are read like those of a text (text_table.h),
-/// so a workbook gives the same table as CSV with the same cells. The line of a row is its number in the
-/// sheet. Notes name errors, formulas without a stored value, merged cells and other sheets. `file` names the
-/// workbook in messages.
+/// Reads the sheet that `options.sheet` names. If this option is empty, reads the only sheet with rows of
+/// numbers. If several sheets have rows of numbers, a problem lists these sheets. The cells are read like the
+/// cells of a text (text_table.h), so a workbook gives the same table as CSV with the same cells. The line
+/// number of a row is its number in the sheet. Notes name errors, formulas without a stored value, merged
+/// cells and other sheets. `file` names the workbook in messages.
 [[nodiscard]] std::optional<ForeignTable> read_xlsx_table(const std::string& file, std::string_view bytes,
                                                           const TableOptions& options,
                                                           document::Problems& problems);
