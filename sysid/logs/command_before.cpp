@@ -12,11 +12,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest difference between the first command and the initial pressure, as a share of the range of the
-/// commands. Errors of a regulator and of a pressure sensor are smaller.
+/// Smallest difference between the first command and the initial pressure that indicates a previous command,
+/// as a share of the range of the commands. Errors of a regulator and of a pressure sensor are smaller.
 constexpr double far = 0.1;
-/// Share of this difference that the measured pressure must cover while the first command is held. The
-/// response of a regulator covers more.
+/// Share of the difference between first command and initial pressure that the measured pressure must cover
+/// while the first command is held. A working regulator covers a larger share.
 constexpr double on_its_way = 0.5;
 
 /// Returns the number of samples at the beginning of the log during which the command is constant.
@@ -27,15 +27,15 @@ std::size_t stands_for(const Log& log, double range_kpa) {
   return count;
 }
 
-/// Smallest motion during the first command, as a share of the displacement's range. Creep at constant
-/// pressure is smaller.
+/// Smallest motion during the first command that indicates a previous command, as a share of the range of the
+/// displacement. Creep at constant pressure is smaller.
 constexpr double step_share = 0.2;
-/// Number of readings at the beginning and at the end of the first command that are compared. Their median is
-/// robust against an outlier.
+/// Number of readings at the beginning of the first command whose median is compared with the median of as
+/// many readings at its end. A median is insensitive to an outlier.
 constexpr std::size_t at_an_end = 5;
 constexpr std::size_t fewest_standing = 4 * at_an_end;
 
-/// Returns the median of the readings in [first, last); NaN if there are none.
+/// Returns the median of the readings in [first, last); NaN if this range contains no reading.
 double median_mm(const Log& log, std::size_t first, std::size_t last) {
   std::vector<double> readings;
   for (std::size_t i = first; i < last; ++i) {
@@ -44,8 +44,8 @@ double median_mm(const Log& log, std::size_t first, std::size_t last) {
   return readings.empty() ? std::numeric_limits<double>::quiet_NaN() : median_of(std::span(readings));
 }
 
-/// Returns the command that is nearest to a pressure. If the pressure is outside the range of the commands,
-/// it is returned unchanged.
+/// Returns the command of the log that is nearest to a pressure. If the pressure is outside the range of the
+/// commands, the function returns the pressure.
 double command_near(double pressure_kpa, const std::vector<double>& commands, double least_kpa,
                     double most_kpa) {
   if (pressure_kpa < least_kpa || pressure_kpa > most_kpa) return pressure_kpa;

@@ -1,5 +1,5 @@
 #pragma once
-// Calls a function for each record, in parallel if the records are long enough.
+// Calls a function for each record. If the records are long enough, the calls run in parallel.
 
 #include <cstddef>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace softgrip::sysid {
 
-/// Number of samples below which the simulation of a record takes less time than the start of a thread.
+/// Number of samples below which simulating a record takes less time than starting a thread.
 inline constexpr std::size_t samples_worth_a_thread = 1000;
 
 /// Returns true if the records have at least `least_samples` samples on average.
@@ -21,7 +21,7 @@ inline constexpr std::size_t samples_worth_a_thread = 1000;
 }
 
 /// Calls work(i) for i from 0 to `count` - 1 in any order. Each call simulates records. If the records are
-/// long enough, the calls run on idle threads.
+/// long enough for a thread, the calls run on idle threads.
 template <class Work>
 void for_each_walk(const std::vector<Record>& records, std::size_t count, Work&& work,
                    std::size_t least_samples = samples_worth_a_thread) {
@@ -32,16 +32,16 @@ void for_each_walk(const std::vector<Record>& records, std::size_t count, Work&&
   }
 }
 
-/// Calls work(k) for the index k of each record, in any order. If the records are long enough, the calls run
-/// on idle threads. work(k) must write its result to element k of a container that exists already.
+/// Calls work(k) for the index k of each record, in any order. If the records are long enough for a thread,
+/// the calls run on idle threads. work(k) must write its result to element k of a container that exists
+/// already.
 template <class Work>
 void for_each_record(const std::vector<Record>& records, Work&& work,
                      std::size_t least_samples = samples_worth_a_thread) {
   for_each_walk(records, records.size(), work, least_samples);
 }
 
-/// Returns the index of each record's first reading in a list that contains the readings of all records one
-/// after the other.
+/// Returns, for each record, the index of its first reading in a list of the readings of all records.
 [[nodiscard]] inline std::vector<std::size_t> first_rows_of(const std::vector<Record>& records) {
   std::vector<std::size_t> rows;
   std::size_t row = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// Finds motions that are missing in the commands of logs. Without such a motion, a fit cannot determine the
-// corresponding effect.
+// Finds motions that are missing in the commands of logs. If a motion is missing, a fit cannot determine the
+// effect that only this motion shows.
 
 #include <cstdint>
 #include <string>
@@ -10,19 +10,21 @@
 
 namespace softgrip::sysid {
 
-/// Motions that a log should contain.
+/// Motions that the logs of a fit should contain.
 enum class Excitation : std::uint8_t {
   unloading,  ///< the pressure decreases by 20 % of the largest pressure
-  rest,       ///< more than 3 s without pressure (at most 2 % of the largest)
-  /// Two peaks whose pressures differ by 5 % of the largest; each peak is 5 % above the next turning point.
+  rest,       ///< pressure below 2 % of the largest pressure for more than 3 s
+  /// Two peaks whose pressures differ by at least 5 % of the largest pressure. Each peak exceeds the next
+  /// turning point by 5 % of the largest pressure.
   amplitudes,
 };
 
-/// Returns the motions that no log contains. Pressures are compared by their magnitudes, so a rig with vacuum
-/// has its largest load at its lowest pressure.
+/// Returns the motions that no log contains. Pressures are compared by their magnitudes. With vacuum, the
+/// largest load is therefore at the lowest pressure.
 [[nodiscard]] std::vector<Excitation> missing_excitation(const std::vector<Log>& logs);
 
-/// Returns a sentence about a missing motion and the effect that cannot be determined without it.
+/// Returns a sentence about a missing motion. It names the effect that cannot be determined without this
+/// motion.
 [[nodiscard]] std::string without(Excitation missing);
 
 [[nodiscard]] bool contains_rest(const std::vector<Log>& logs);

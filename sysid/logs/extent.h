@@ -1,5 +1,5 @@
 #pragma once
-// Range of the values in a column.
+// Computes the range of the values in a column.
 
 #include <optional>
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace softgrip::sysid {
 
-/// Limits for the largest value of a column. If the largest value is smaller, the unit is probably not kPa,
-/// mm or deg. A soft finger moves by about 10 mm at 20 to 60 kPa and bends by more than 3 deg. A bending
-/// angle in rad is always below 3.
+/// Limits for the largest value of a column. If the largest value is below its limit, the unit is probably
+/// not kPa, mm or deg. A soft finger moves by about 10 mm at 20 to 60 kPa and bends by more than 3 deg. A
+/// bending angle in rad never exceeds 3.
 inline constexpr double small_pressure_kpa = 2;
 [[nodiscard]] constexpr double small_reading(model::OutputUnit unit) {
   return unit == model::OutputUnit::deg ? 3 : 0.1;
@@ -22,7 +22,7 @@ struct ColumnExtent {
   [[nodiscard]] double width() const { return highest - lowest; }
 };
 
-/// Returns the range of the finite values, or nullopt if there are none.
+/// Returns the range of the finite values, or nullopt if no value is finite.
 [[nodiscard]] std::optional<ColumnExtent> extent_of(const std::vector<double>& values);
 
 }  // namespace softgrip::sysid

@@ -10,13 +10,15 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Reversals that are smaller than this multiple of the noise are removed. The noise that remains after the
-/// smoothing does not reach this value.
+/// Reversals that are smaller than this multiple of the noise are removed. The smoothing leaves noise that is
+/// smaller than this limit.
 constexpr double least_turn = 5;
-/// Noise below this share of a column's range has no relevant effect on the response of a model.
+/// A column is not smoothed if its noise is below this share of its range, because such noise hardly affects
+/// the response of a model.
 constexpr double negligible_share = 1e-4;
 
-/// Returns the largest minus the smallest finite value; negative if there are none.
+/// Returns the difference between the largest and the smallest finite value; a negative number if no value is
+/// finite.
 double range_of(std::span<const double> values) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double v : values) {
@@ -27,27 +29,28 @@ double range_of(std::span<const double> values) {
   return high - low;
 }
 
-/// Degrees of freedom of the t distribution of the slope's increments. The slope is mostly constant and
-/// sometimes jumps. With a normal distribution, a single fast vent would increase the drift rate so much that
-/// the smoothed signal would follow the noise in the whole log.
+/// Degrees of freedom of the t distribution of the increments of the slope. The slope is mostly constant and
+/// sometimes jumps. With a normal distribution, a single fast vent would increase the estimated drift rate,
+/// and the smoothed signal would then follow the noise in the whole log.
 constexpr double heavy_tail = 1;
-/// Number of iterations in which the shares of the drift rate are estimated.
+/// Number of iterations that estimate the scale of the drift rate in each step.
 constexpr int rounds = 12;
 
-/// Level and slope as predicted before a measurement, their covariance, and the innovation of the
-/// measurement.
+/// Predicted level and slope before a measurement, the covariance of level and slope, and the innovation of
+/// the measurement.
 struct Estimate {
   double level = 0, slope = 0;
   double ll = 0, ls = 0, ss = 0;
-  double innovation = 0, variance = 0;  ///< variance 0: no measurement
+  double innovation = 0, variance = 0;  ///< variance of the innovation; 0: no measurement
 };
 
-/// A signal whose slope is a Wiener process. The variance rate in a step is `drift_rate` times the share of
-/// this step.
+/// A signal whose slope is a Wiener process. The variance rate of the slope in a step is `drift_rate` times
+/// the element of `shares` for this step.
 struct Path {
   std::span<const double> time_s, values;
   double noise = 0;
-  std::vector<double> shares;  ///< share of the step that ends at a sample
+  /// For each sample, the relative variance rate in the step that ends at this sample.
+  std::vector<double> shares;
 
   [[nodiscard]] double step_s(std::size_t i) const { return time_s[i] - time_s[i - 1]; }
 };
@@ -60,7 +63,7 @@ void advance(Estimate& e, double dt, double drift_rate) {
   e.ss += drift_rate * dt;
 }
 
-/// Runs the Kalman filter. Returns minus twice the log-likelihood of the innovations.
+/// Runs the Kalman filter. Returns minus twice the log-likelihood of the innovations, except for a constant.
 double filter(const Path& path, double drift_rate, std::vector<Estimate>* before) {
   const auto& values = path.values;
   const auto first = std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
@@ -86,8 +89,8 @@ double filter(const Path& path, double drift_rate, std::vector<Estimate>* before
   return cost;
 }
 
-/// Returns the drift rate of the slope with the maximum likelihood. It is found by a golden-section search
-/// over its logarithm.
+/// Returns the drift rate of the slope that has the maximum likelihood. A golden-section search over its
+/// logarithm finds this value.
 double likeliest_drift_rate(const Path& path) {
   const auto& time_s = path.time_s;
   const double dt = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
@@ -116,8 +119,8 @@ double likeliest_drift_rate(const Path& path) {
   return std::exp((low + high) / 2);
 }
 
-/// The smoothed signal, and an estimate of the slope's drift in each step: the mean of w' Q^-1 w, where w is
-/// the disturbance of the step and Q its covariance for a drift rate of 1.
+/// The smoothed signal, and an estimate of the slope's drift in each step. The estimate is the mean of w'
+/// Q^-1 w, where w is the disturbance of the step and Q is the covariance of w for a drift rate of 1.
 struct Smooth {
   std::vector<double> level, drift;
 };
@@ -131,7 +134,7 @@ Smooth disturbances(const Path& path, double drift_rate) {
   double r0 = 0, r1 = 0, n00 = 0, n01 = 0, n11 = 0;
   for (std::size_t i = n; i-- > 0;) {
     const Estimate& e = before[i];
-    if (i + 1 < n) {  // backward recursion over the step
+    if (i + 1 < n) {  // the step after sample i
       const double dt = path.step_s(i + 1);
       r1 += dt * r0;
       n11 += 2 * dt * n01 + dt * dt * n00;
@@ -158,8 +161,8 @@ Smooth disturbances(const Path& path, double drift_rate) {
 double white_noise_of(std::span<const double> time_s, std::span<const double> values) {
   std::vector<double> deviations;
   for (std::size_t i = 2; i < values.size(); ++i) {
-    // Deviation of a value from the straight line between its neighbours, scaled so that its standard
-    // deviation is that of one value.
+    // Deviation of a value from the straight line between its neighbours, divided by the factor that makes
+    // its standard deviation equal to that of a single value.
     const double share = (time_s[i - 1] - time_s[i - 2]) / (time_s[i] - time_s[i - 2]);
     const double off = values[i - 1] - (1 - share) * values[i - 2] - share * values[i];
     if (std::isfinite(off))

@@ -16,8 +16,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Makes the names unique, because reports and JSON refer to logs by name: the second log "run" becomes "run
-/// (2)".
+/// Makes the names of the logs unique, because reports and JSON refer to logs by name. For example, the
+/// second log with the name "run" becomes "run (2)".
 void make_names_unique(std::vector<Log>& logs) {
   std::map<std::string, int> seen;
   for (Log& log : logs) {

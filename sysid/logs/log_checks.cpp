@@ -14,15 +14,16 @@ namespace {
 using document::Problem;
 using document::Problems;
 
-/// Smallest number of samples. Fewer samples do not determine a model with ten parameters.
+/// Smallest number of samples of a log. A log with fewer samples does not determine a model with ten
+/// parameters.
 constexpr std::size_t fewest_samples = 50;
 constexpr std::size_t fewest_command_samples = 2;
-/// Larger values certainly have a wrong unit, because a soft finger moves by about 10 mm at 20 to 60 kPa.
+/// A larger pressure certainly has a wrong unit, because a soft finger moves by about 10 mm at 20 to 60 kPa.
 constexpr double largest_pressure_kpa = 5000;
 constexpr double largest_displacement_mm = 5000;
 constexpr double longest_median_interval_s = 5;
-/// A gap in the samples is a hole if it is longer than this time [s] and longer than this number of usual
-/// intervals, and if the command changes during the gap.
+/// A gap between two samples is reported if it fulfils three conditions: it is longer than this time [s], it
+/// is longer than `hole_intervals` usual intervals, and the command changes in it.
 constexpr double hole_s = 0.5;
 constexpr double hole_intervals = 20;
 constexpr double gap_intervals = 5;
@@ -31,7 +32,7 @@ std::string percent(double share) {
   return fixed(100 * share, 1) + " %";
 }
 
-/// Checks one log.
+/// Checks one log and collects its problems and notes.
 class Check {
  public:
   Check(Log& log, const LogSource& source, Problems& problems)
@@ -59,7 +60,7 @@ class Check {
   }
 
  private:
-  /// Adds a problem at the line of `sample`. If `sample` is after the last sample, uses the last line.
+  /// Adds a problem at the line of `sample`, or at the last line if `sample` is after the last sample.
   void refuse(std::size_t sample, int column, std::string message, std::string hint = {}) {
     Problem problem{source_.file, {1, column}, {}, std::move(message), std::move(hint)};
     if (!source_.line.empty()) {
@@ -204,8 +205,8 @@ class Check {
     }
   }
 
-  /// Finds readings that remain at an extreme value while the command changes, because the sensor or the
-  /// board clips.
+  /// Finds readings that stay at an extreme value while the command changes. The sensor or the board clips
+  /// such readings.
   void clipping(double share_refused) {
     const ColumnExtent reading = extent_of(log_.displacement_mm).value_or(ColumnExtent{});
     if (reading.width() <= 0) return;

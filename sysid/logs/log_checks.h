@@ -1,5 +1,5 @@
 #pragma once
-// Checks time, excitation, sensor and units of a log whose cells were all read without errors.
+// Checks times, excitation, sensor and units of a log after all its cells were read without errors.
 
 #include <string>
 #include <string_view>
@@ -10,18 +10,19 @@
 
 namespace softgrip::sysid {
 
-/// The positions of a log's samples in its text.
+/// Positions of the samples of a log in its text.
 struct LogSource {
   std::string file;
-  std::vector<int> line;                    ///< line number of each sample
-  std::vector<std::string_view> line_text;  ///< line of each sample, without line break
-  /// Column of the time in the header line, counted in bytes, for messages.
+  std::vector<int> line;                    ///< line number for each sample
+  std::vector<std::string_view> line_text;  ///< text line for each sample, without its line break
+  /// Position of the time column in the header line, counted in bytes, for messages.
   int time_column = 1;
   int command_column = 1;
   int displacement_column = 1;
 };
 
-/// Adds a problem for each reason to refuse the log. Other findings are added to the log as notes.
+/// Checks a log. Adds a problem to `problems` for each reason to refuse the log, and adds all other findings
+/// to the log as notes.
 void check_log(Log& log, const LogSource& source, const LogOptions& options, document::Problems& problems);
 
 }  // namespace softgrip::sysid

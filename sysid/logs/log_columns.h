@@ -1,5 +1,6 @@
 #pragma once
-// The columns of the log format: names, units, and the members of Log that store their values.
+// Defines the columns of the log format: their names, their units, and the members of Log that store their
+// values.
 
 #include <array>
 #include <cstddef>
@@ -14,9 +15,9 @@ namespace softgrip::sysid {
 /// A column of the log format.
 struct KnownColumn {
   std::string_view name;
-  std::string_view quantity;  ///< the name without its unit
+  std::string_view quantity;  ///< name of the column without its unit
   bool required;
-  bool may_be_empty;  ///< an empty cell is a missing reading
+  bool may_be_empty;  ///< true: a cell may be empty, which means a missing reading
   std::vector<double> Log::*values;
 };
 
@@ -33,25 +34,26 @@ inline constexpr std::size_t column_command = 1;
 inline constexpr std::size_t column_displacement = 2;
 inline constexpr std::string_view channel_column = "channel";
 
-/// A column that can contain the readings of the finger.
+/// A column that can contain the readings of the displacement.
 struct ReadingColumn {
   std::string_view name;
   model::OutputUnit unit;
-  double factor;  ///< conversion factor from the column to the unit
+  double factor;  ///< the value in the log is the value in the column times this factor
 };
-/// The columns of which a log must have at least one. If a log has several of them, the first is used and the
-/// others are stored as text.
+/// Columns that can contain the readings; a log must have at least one of them. If a log has several, the
+/// first one in this list is used, and the others are stored as text.
 inline constexpr std::array<ReadingColumn, 3> reading_columns{{
     {known_columns[column_displacement].name, model::OutputUnit::mm, 1},
     {"angle_deg", model::OutputUnit::deg, 1},
     {"angle_rad", model::OutputUnit::deg, model::deg_per_rad},
 }};
 
-/// Returns the name of a column in a log: "angle_deg" for the readings of a log in deg.
+/// Returns the name of a column in the file of a log. If the unit of the log is deg, the name of the column
+/// of readings is "angle_deg".
 [[nodiscard]] std::string_view column_name(const KnownColumn& known, const Log& log);
 
-/// Returns the conversion from a unit to the unit of the log format as a text: ", divide by 1000". Returns ""
-/// for an unknown unit.
+/// Returns the conversion of a unit to the unit of the log format as a text, such as ", divide by 1000".
+/// Returns "" for an unknown unit.
 [[nodiscard]] std::string conversion(std::string_view unit);
 
 }  // namespace softgrip::sysid

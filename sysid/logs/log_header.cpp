@@ -9,7 +9,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Reports an unknown column name that is similar to a known one, and suggests the known one.
+/// Reports an unknown column name that is similar to a name of the log format, and suggests the latter.
 void report_near_miss(const Cell& cell, std::string_view name, std::string_view line, LogReporter& report) {
   for (const KnownColumn& known : known_columns) {
     const std::string_view unit = known.name.substr(known.quantity.size() + 1);
@@ -30,7 +30,7 @@ void report_near_miss(const Cell& cell, std::string_view name, std::string_view 
   }
 }
 
-/// Checks the line of the header before its names are interpreted.
+/// Checks the header line for formal errors, before its column names are interpreted.
 bool header_is_plausible(std::string_view line, const std::vector<Cell>& cells, LogReporter& report) {
   if (cells.size() == 1 && line.find(';') != std::string_view::npos) {
     report.add("separator", {1, static_cast<int>(line.find(';')) + 1}, line,
@@ -50,7 +50,7 @@ bool header_is_plausible(std::string_view line, const std::vector<Cell>& cells, 
   return true;
 }
 
-/// Returns the first column that can contain the readings.
+/// Returns the first column of the header that can contain the readings.
 std::optional<ReadingColumn> reading_column(const std::vector<Cell>& cells) {
   for (const ReadingColumn& column : reading_columns) {
     if (std::any_of(cells.begin(), cells.end(),
@@ -60,7 +60,8 @@ std::optional<ReadingColumn> reading_column(const std::vector<Cell>& cells) {
   return std::nullopt;
 }
 
-/// Returns the hint for a log without readings: it suggests a column with a similar name.
+/// Returns the hint for a log that lacks the column `column`. The hint suggests a column of the log with a
+/// similar name.
 std::string hint_of_missing(std::string_view column, const std::vector<std::string>& names) {
   const auto angle = std::find_if(names.begin(), names.end(),
                                   [](const std::string& name) { return name.starts_with("angle"); });

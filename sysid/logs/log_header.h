@@ -1,5 +1,5 @@
 #pragma once
-// Reader of the first line of a log.
+// Reads the first line of a log.
 
 #include <array>
 #include <string>
@@ -12,16 +12,18 @@
 
 namespace softgrip::sysid {
 
-/// The positions of the columns in the rows of a log.
+/// Position of each column of the log format in the rows of a log.
 struct LogHeader {
   std::vector<std::string> names;
-  std::array<int, known_columns.size()> index{};  ///< -1: absent
+  /// Index of the cell in each row; -1: the log has no such column.
+  std::array<int, known_columns.size()> index{};
   std::array<int, known_columns.size()> column{};
   int channel = -1;
-  ReadingColumn reading = reading_columns.front();  ///< the column that contains the readings
+  ReadingColumn reading = reading_columns.front();  ///< column that contains the readings
 };
 
-/// Reads the header and reports its errors. If there was an error, the result must not be used.
+/// Reads the header line and reports its errors. If an error was reported, the caller must not use the
+/// result.
 [[nodiscard]] LogHeader read_header(std::string_view line, const LogOptions& options, LogReporter& report);
 
 }  // namespace softgrip::sysid

@@ -1,4 +1,4 @@
-// Reader of logs: parse_log() and channels_of() of sysid/logs/log.h.
+// Reads logs from text. Implements parse_log() and channels_of() of sysid/logs/log.h.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double no_reading = std::numeric_limits<double>::quiet_NaN();
 
-/// Reads a number from a cell. Reports a cell that does not contain a number.
+/// Returns the number in a cell. Reports an error if the cell does not contain a number.
 double read_cell(const KnownColumn& known, std::string_view name, const Cell& cell, int line_number,
                  std::string_view line, LogReporter& report) {
   const std::string_view text = unquoted(cell.text);
@@ -99,8 +99,8 @@ class RowReader {
   [[nodiscard]] const std::vector<std::string>& channels() const { return channels_; }
 
  private:
-  /// Converts a value to the unit of the log. If the conversion overflows, the value is returned unchanged,
-  /// and a later check refuses its magnitude.
+  /// Converts a reading to the unit of the log. If the result is too large for a double, the function returns
+  /// the unconverted value. The check of the largest reading then refuses this value.
   [[nodiscard]] double in_output_unit(double value) const {
     const double converted = header_.reading.factor * value;
     return std::isfinite(converted) ? converted : value;

@@ -1,5 +1,5 @@
 #pragma once
-// Collects the problems of a log, so that a file with a million bad rows is reported in a few lines.
+// Collects the problems of a log. A file with a million bad rows is therefore reported in a few lines.
 
 #include <map>
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace softgrip::sysid {
 
-/// Adds the first few problems of each kind and counts the rest.
+/// Adds the first problems of each kind and counts the problems of this kind after them.
 class LogReporter {
  public:
   LogReporter(std::string file, document::Problems& problems) : file_(std::move(file)), problems_(problems) {}
 
   void add(const std::string& kind, document::Location at, std::string_view line, std::string message,
            std::string hint = {});
-  /// Adds, for each kind of problem, one problem that states how many are not shown.
+  /// Adds, for each kind of problem, one problem that states how many problems of this kind are not shown.
   void finish();
   [[nodiscard]] bool any() const { return !counts_.empty(); }
 

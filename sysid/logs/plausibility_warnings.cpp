@@ -14,12 +14,13 @@
 namespace softgrip::sysid {
 namespace {
 
-// Limits for plausible values. Values above them, or below those of extent.h, probably have a wrong unit.
+// Limits for plausible values. A value above its limit here, or below its limit in extent.h, probably has a
+// wrong unit.
 constexpr double large_pressure_kpa = 1000;
-/// Upper limit of the largest pressure of a soft finger, expressed in MPa.
+/// If the pressure of a soft finger is in MPa, its largest value is below this limit.
 constexpr double small_as_mpa = 0.2;
-/// If the largest pressure is below this value and the gain exceeds one of the following limits, the pressure
-/// is probably in psi.
+/// The pressure is probably in psi if its largest value is below this limit and the gain exceeds
+/// large_gain_mm_per_kpa or large_gain_deg_per_kpa.
 constexpr double small_as_psi = 20;
 constexpr double large_gain_mm_per_kpa = 1;
 constexpr double large_gain_deg_per_kpa = 5;
@@ -27,9 +28,9 @@ constexpr double small_as_mbar = 20e3;
 constexpr double large_displacement_mm = 500;
 constexpr double slow_sampling_s = 1;
 constexpr double atmosphere_kpa = 101.325;
-/// Magnitude of a correlation above which it is significant.
+/// A correlation with a magnitude above this value counts as significant.
 constexpr double clear_correlation = 0.5;
-/// Relative area of a loop below which drift of the sensor cannot explain the loop.
+/// If the relative area of a loop is below this value, drift of the sensor cannot explain the loop.
 constexpr double clear_loop_backwards = -0.02;
 
 PairSums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
@@ -38,8 +39,8 @@ PairSums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
   return sums;
 }
 
-/// Returns the lag [samples] at which the increments of `later` correlate best with those of `earlier`. A
-/// negative lag means that `later` precedes `earlier`. Returns 0 if no correlation is significant.
+/// Returns the lag [samples] at which the increments of `later` correlate best with the increments of
+/// `earlier`. The lag is negative if `later` changes first. Returns 0 if no correlation is significant.
 int best_lag(const std::vector<double>& earlier, const std::vector<double>& later) {
   constexpr int farthest = 20;
   const auto increments = [](const std::vector<double>& values) {
@@ -89,9 +90,9 @@ const std::vector<double>& drive_of(const Log& log) {
   return log.pressure_kpa.empty() ? log.pressure_command_kpa : log.pressure_kpa;
 }
 
-/// Returns the mean area of the loops in a plot of readings over pressure, as a share of the bounding
-/// rectangle of each loop. It is positive if the readings lag behind the pressure, as in every dissipative
-/// system.
+/// Returns the mean area of the loops in a plot of the readings over the pressure. The area of each loop is
+/// divided by the area of its bounding rectangle. The result is positive if the readings lag behind the
+/// pressure, as in every dissipative system.
 double loop_share(const std::vector<double>& pressure, const std::vector<double>& reading) {
   const auto p = extent_of(pressure), y = extent_of(reading);
   if (!p || !y || p->width() <= 0 || y->width() <= 0) return 0;
@@ -140,8 +141,7 @@ void check_free_motion(const Log& log, std::vector<std::string>& warnings) {
                      "tested with them; record a run without contact");
 }
 
-/// Returns a text with the name of the column, its largest value, and the option that states the probable
-/// unit.
+/// Returns a text about a column: its name, its largest value, and the option that states the probable unit.
 std::string state_unit(const PressureColumn& column, const ColumnExtent& p, const char* unit) {
   const double largest = -p.lowest > p.highest ? p.lowest : p.highest;
   return " The largest value of `" + column.name + "` is " + significant(largest, 3) +

@@ -15,7 +15,7 @@ namespace softgrip::sysid {
 namespace {
 
 void fill_missing(std::vector<double>& values) {
-  std::size_t last = values.size();  // index of the last finite value; values.size(): none
+  std::size_t last = values.size();  // index of the last finite value; values.size(): no value is finite
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) continue;
     const std::size_t from = last == values.size() ? 0 : last + 1;

@@ -22,7 +22,7 @@ double hat_mean_kpa(const std::vector<double>& drive_kpa, std::size_t at, std::s
   return sum_kpa / width;
 }
 
-/// Returns true if the command jumps between sample `at` and the next kept sample.
+/// Returns true if the command jumps between sample `at` and the next sample that is kept.
 bool jumps_after(const Record& record, std::size_t at, std::size_t stride) {
   const double from_kpa = record.drive_kpa[at], to_kpa = record.drive_kpa[at + stride];
   for (std::size_t j = 1; j < stride; ++j) {
@@ -33,8 +33,9 @@ bool jumps_after(const Record& record, std::size_t at, std::size_t stride) {
   return false;
 }
 
-/// Replaces a command that is held or jumps by its local mean. Otherwise a jump between two kept samples
-/// would be early or late by up to one interval. Corners without a jump are unchanged.
+/// If the command is held, or if it jumps, replaces it by its local mean. Otherwise a jump between two kept
+/// samples would be early or late by up to one interval. Where the command changes its slope without a jump,
+/// it is not changed.
 void keep_mean_of_jumps(const Record& record, std::size_t stride, Record& thin) {
   if (record.held) {
     for (std::size_t to = 0; to + 1 < thin.size(); ++to) {
@@ -56,8 +57,8 @@ std::size_t stride_for(const Record& record, double interval_s) {
   return static_cast<std::size_t>(std::max(1.0, std::floor(interval_s / record.mean_interval_s())));
 }
 
-/// Returns the mean of a reading and of `reach` readings on either side. Returns NaN if at most half of these
-/// neighbours is present.
+/// Returns the mean of a reading and its neighbours, up to `reach` readings on either side. Returns NaN if at
+/// most half of these readings is present.
 double mean_around(const std::vector<double>& readings, std::size_t at, std::size_t reach) {
   double sum = 0;
   std::size_t count = 0;
@@ -87,7 +88,8 @@ std::vector<std::size_t> nearest_to_centres(const Record& record, double interva
   return kept;
 }
 
-/// Divides each step of a series into `parts` steps. `between` computes the additional values.
+/// Divides each step of a series into `parts` steps. @param between  function that interpolates the
+/// additional values.
 template <class Between>
 std::vector<double> finer(const std::vector<double>& series, std::size_t parts, Between&& between) {
   std::vector<double> out;
@@ -106,8 +108,8 @@ std::vector<double> finer(const std::vector<double>& series, std::size_t parts, 
 
 Record thinned_record(const Record& record, std::span<const std::size_t> kept) {
   Record thin = record;
-  // Thinning keeps the first value of each group of samples. A held command has its value at the beginning of
-  // a step, so the first original step determines the command of the thinned step.
+  // Each column keeps the first value of each group of samples. The duration of a kept step is the sum of the
+  // durations of the original steps. A held command has the value of its first original step.
   for (auto* column :
        {&thin.time_s, &thin.drive_kpa, &thin.reading_mm, &thin.temperature_c, &thin.supply_kpa}) {
     if (column->empty()) continue;

@@ -1,8 +1,8 @@
 #pragma once
-// Resamples records. No other file removes, averages or adds samples.
+// Resamples records. Only this file removes, averages or adds samples.
 //
-// Each function returns a new record of the run. If no sample has to be removed, it returns an unchanged
-// copy.
+// Each function returns a new record of the same run. If no sample has to be removed, the result is an
+// unchanged copy.
 
 #include <cstddef>
 #include <span>
@@ -12,42 +12,42 @@
 
 namespace softgrip::sysid {
 
-/// Number of readings that suffices to describe a finger completely: one hour at 10 Hz, or seven minutes at
-/// 100 Hz. More readings only increase the duration of a diagnosis and of the choice of a structure.
+/// Number of readings that is sufficient for a diagnosis: one hour at 10 Hz, or seven minutes at 100 Hz. More
+/// readings only increase the computing time of a diagnosis or of the choice of a structure.
 inline constexpr std::size_t enough_readings = 40'000;
 
-/// Returns the samples with the indices `kept` (ascending, the first is 0), and the durations between these
-/// samples. The sampling of the result counts as irregular.
+/// Returns the samples with the indices `kept`, with the durations between these samples. @param kept
+/// ascending indices; the first is 0. The sampling of the result counts as irregular.
 [[nodiscard]] Record thinned_record(const Record& record, std::span<const std::size_t> kept);
 /// Returns every `stride`-th sample, beginning with the first, for a coarse fit from many starting points. A
 /// held command is replaced by its mean over the removed samples. If the command jumps between two kept
-/// samples, both get the local mean of the command. Otherwise the jump would be early or late by up to one
-/// interval. Corners without a jump are unchanged.
+/// samples, each of the two gets the local mean of the command. Otherwise the jump would be early or late by
+/// up to one interval. Where the command changes its slope without a jump, it is not changed.
 [[nodiscard]] Record thinned_record(const Record& record, std::size_t stride);
-/// Thins a record so that the kept samples are as far apart as possible, but at most `interval_s`.
+/// Thins a record to the longest interval between kept samples that does not exceed `interval_s`.
 [[nodiscard]] Record thinned_to(const Record& record, double interval_s);
 /// Thins a record like thinned_to() and replaces each kept reading by the mean of the readings around it. The
 /// noise decreases with the square root of the number of averaged readings. A motion is preserved if it is
 /// almost linear within `interval_s`.
 [[nodiscard]] Record averaged_to(const Record& record, double interval_s);
-/// Averages all records so that about `most` readings remain in total. No mean covers more than `longest_s`,
-/// so more than `most` readings remain if the campaign is very long.
+/// Averages all records so that about `most` readings remain in total. Each mean covers at most `longest_s`.
+/// If the campaign is very long, more than `most` readings therefore remain.
 [[nodiscard]] std::vector<Record> averaged_to_count(std::vector<Record> records, std::size_t most,
                                                     double longest_s);
-/// Returns the first sample, and one sample from each interval of length `interval_s` after it: the sample
-/// that is nearest to the middle of the interval. A value at this sample approximates the mean over the
-/// interval, except for the effect of curvature. If the samples are further apart than `interval_s`, the
-/// record is returned unchanged.
+/// Returns the first sample of the record and one sample from each following interval of length `interval_s`:
+/// the sample that is nearest to the middle of the interval. The value at this sample approximates the mean
+/// over the interval if the signal is nearly linear in the interval. If the interval between samples exceeds
+/// `interval_s`, the record is returned unchanged.
 [[nodiscard]] Record thinned_to_centres(const Record& record, double interval_s);
 /// Divides each step into `parts` equal parts. The drive, the temperature and the supply are interpolated
 /// linearly; a held drive is constant within a step. Only the original samples have readings.
 /// @param parts  at least 1; sample i of the record becomes sample i * parts of the result.
 [[nodiscard]] Record finer_record(const Record& record, std::size_t parts);
-/// Keeps all samples, but only every k-th reading of each record, so that at most about `most` readings
-/// remain in total.
+/// Keeps all samples, but removes all readings of each record except every k-th reading, so that at most
+/// about `most` readings remain in total.
 [[nodiscard]] std::vector<Record> with_fewer_readings(std::vector<Record> records, std::size_t most);
-/// Returns every `stride`-th row of a log: times, pressures, readings and supply. Other columns remain
-/// unchanged.
+/// Returns a log with every `stride`-th value of times, pressures, readings and supply. The other columns are
+/// not thinned.
 [[nodiscard]] Log thinned_log(const Log& log, std::size_t stride);
 
 }  // namespace softgrip::sysid

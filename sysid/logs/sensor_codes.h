@@ -1,14 +1,14 @@
 #pragma once
-// Detects numbers that a sensor writes instead of a reading.
+// Detects error codes that a sensor writes instead of a reading.
 
 #include <span>
 #include <vector>
 
 namespace softgrip::sysid {
 
-/// Returns the values that are error codes instead of readings, in ascending order. A code is far outside the
-/// range of all other values. It is also a typical code (999, -9999 and similar numbers), or it occurs at
-/// least three times. Values that are not finite are ignored.
+/// Returns the values that are error codes instead of readings, in ascending order. An error code is far
+/// outside the range of all other values. In addition, it is a typical code (999, -9999 and similar numbers),
+/// or it occurs at least three times. Values that are not finite are ignored.
 [[nodiscard]] std::vector<double> sensor_codes(std::span<const double> values);
 
 }  // namespace softgrip::sysid

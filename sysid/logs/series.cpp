@@ -18,7 +18,7 @@ std::string cell(double value) {
 
 LogSeries series_of(const Log& log, const Record& record, bool all_held_out) {
   LogSeries series;
-  // The samples of an averaged record are not those of the log.
+  // If the record was averaged, it has other samples than the log.
   const bool own_samples = record.size() == log.size();
   series.name = log.name;
   series.output_unit = record.output_unit;

@@ -1,12 +1,13 @@
 #pragma once
-// Series of a log: the readings and the predictions of models for each sample. Users make their own figures
-// from them.
+// Writes the series of a log as CSV: for each sample, the reading and the predictions of the models. Users
+// make their own figures from these files.
 //
 //   time_s,drive_kpa,measured_mm,predicted_MODEL_mm,residual_MODEL_mm[,...],held_out
 //
 // For a log in deg, the names end with _deg instead of _mm.
 //
-// An empty cell is a missing reading or prediction. held_out is 1 if no model was fitted to the reading.
+// An empty cell is a missing reading or a missing prediction. In the column held_out, 1 means that no model
+// was fitted to the reading.
 
 #include <string>
 #include <string_view>
@@ -17,10 +18,10 @@
 
 namespace softgrip::sysid {
 
-/// The series of one log. All vectors that are not empty have one value per sample.
+/// Readings and predictions of one log. All vectors that are not empty have one value per sample.
 struct LogSeries {
   struct Predicted {
-    std::string model;  ///< "identified", "given", "recalibrated", "extended"
+    std::string model;  ///< id of the model: "identified", "given", "recalibrated" or "extended"
     std::vector<double> mm;
   };
 
@@ -33,15 +34,16 @@ struct LogSeries {
   std::vector<bool> held_out;  ///< true: no model was fitted to this reading; empty: all readings were fitted
 };
 
-/// Returns the series of a log without predictions. A reading of the log that is missing in the record counts
-/// as held out. If `all_held_out`, all readings count as held out.
+/// Returns the series of a log without predictions. A reading that the log contains but the record does not
+/// counts as held out. If `all_held_out` is true, all readings count as held out.
 [[nodiscard]] LogSeries series_of(const Log& log, const Record& record, bool all_held_out);
 
-/// Returns the series as CSV.
+/// Returns the series as CSV text with a header line.
 [[nodiscard]] std::string series_csv(const LogSeries& series);
 
-/// Returns the path of the series of a log, relative to the output folder of a command: "LOG/series.csv".
-/// Characters of the name other than letters, digits and "-_. ()" are replaced by '_'.
+/// Returns the path of the series file of a log, relative to the output folder of a command:
+/// "LOG/series.csv". LOG is the name of the log, in which '_' replaces every character except letters, digits
+/// and "-_. ()".
 [[nodiscard]] std::string series_path(std::string_view log_name);
 
 }  // namespace softgrip::sysid

@@ -5,7 +5,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A group of neighbouring values that are replaced by their mean.
+/// Neighbouring values that are replaced by their mean.
 struct Pool {
   double sum = 0;
   double count = 0;
@@ -34,7 +34,8 @@ void make_rising(std::span<double> values, double sign) {
 std::vector<std::size_t> turning_points(const std::vector<double>& values, double least) {
   std::vector<std::size_t> turns{0};
   std::size_t highest = 0, lowest = 0;
-  bool may_fall = true, may_rise = true;  // both are true until the signal has moved in one direction
+  // Both are true until the signal has moved by more than `least` in one direction.
+  bool may_fall = true, may_rise = true;
   const auto turn = [&](std::size_t at) {
     if (at > turns.back()) turns.push_back(at);
   };

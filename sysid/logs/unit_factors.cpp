@@ -19,8 +19,8 @@ constexpr std::array pressures{UnitFactor{6.894757, "psi and kPa"}, UnitFactor{1
                                UnitFactor{10, "mbar and kPa"},      UnitFactor{1000, "Pa and kPa"},
                                UnitFactor{14.50377, "psi and bar"}, UnitFactor{101.325, "atm and kPa"}};
 
-// Factors of probable mistakes. The motion of a finger is nearly proportional to the pressure, so if a
-// pressure value is too small, the readings seem too large.
+// Factors between readings and expected values for probable mistakes. The motion of a finger is nearly
+// proportional to the pressure. If the pressure values are too small, the readings therefore seem too large.
 constexpr std::array mistakes{
     UnitFactor{6.894757, "psi in a pressure column taken for kPa"},
     UnitFactor{100, "bar in a pressure column taken for kPa"},
@@ -63,8 +63,8 @@ std::string pressure_units_apart(double factor) {
 }
 
 std::string mistaken_unit(double factor, model::OutputUnit unit) {
-  // Large tolerance, because the motion of a finger is not exactly proportional to the pressure, and the
-  // model may have been fitted to another finger.
+  // Relative tolerance of the factor. It is large, because the motion of a finger is not exactly proportional
+  // to the pressure, and because the model may have been fitted to another finger.
   constexpr double close = 0.25;
   const UnitFactor* nearest = nullptr;
   const std::span<const UnitFactor> known = unit == model::OutputUnit::deg

@@ -1,5 +1,5 @@
 #pragma once
-// Detects wrong units: two quantities then differ by the ratio of two units.
+// Detects wrong units. If a unit is wrong, two quantities differ by the ratio of two units.
 
 #include <string>
 
@@ -7,13 +7,13 @@
 
 namespace softgrip::sysid {
 
-/// Returns "psi and kPa" if the factor, or its inverse, is the ratio of these two units of pressure. Returns
-/// "" if the factor is not the ratio of two known units.
+/// Returns the two units of pressure whose ratio is `factor` or its inverse, such as "psi and kPa". Returns
+/// "" if `factor` is not the ratio of two known units.
 [[nodiscard]] std::string pressure_units_apart(double factor);
 
 /// Returns the probable mistake if the readings are `factor` times the expected values: "psi in a pressure
-/// column taken for kPa (a factor of 6.895)". Returns "" if the factor is not the ratio of two units. The
-/// factor must be above 0. `unit` is the unit of the readings.
+/// column taken for kPa (a factor of 6.895)". Returns "" if `factor` is not the ratio of two units. @param
+/// factor  above 0. @param unit  unit of the readings.
 [[nodiscard]] std::string mistaken_unit(double factor, model::OutputUnit unit);
 
 }  // namespace softgrip::sysid
