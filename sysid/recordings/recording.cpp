@@ -23,7 +23,7 @@ std::string text_at(const json& object, const char* key) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-/// Formats a recipe: "pick_stone 4419590a hold_s=5 squeeze_kpa=5".
+/// Returns the recipe of a sequence as text: "pick_stone 4419590a hold_s=5 squeeze_kpa=5".
 std::string recipe_of(const json& sequence) {
   std::string recipe = text_at(sequence, "name") + " " + text_at(sequence, "sha256").substr(0, 8);
   const auto parameters = sequence.find("parameters");
@@ -34,7 +34,7 @@ std::string recipe_of(const json& sequence) {
   return recipe;
 }
 
-/// Adds the data of run.json. A missing or truncated run.json is no error.
+/// Adds the data of run.json to a recording. If run.json is missing or truncated, nothing is added.
 void read_story(const std::string& path, Recording& recording) {
   const auto text = read_file(path, longest_story);
   if (!text) return;

@@ -1,5 +1,5 @@
 #pragma once
-// Reads a recording: the log of every channel, and the events.
+// Reads a recording: the log of every channel, and the events of the run.
 
 #include <string>
 #include <vector>
@@ -11,37 +11,37 @@
 
 namespace softgrip::sysid {
 
-/// An event of run.json.
+/// An event that run.json contains.
 struct RecordedEvent {
   double time_s = 0;
   std::string kind;     ///< "grip_result", "fault_latched", "step_started", ...
-  std::string channel;  ///< empty: the event concerns the whole rig
+  std::string channel;  ///< channel that the event concerns; empty: the whole rig
   std::string code;     ///< "HOLDING", "F101", ...
   std::string text;
 };
 
 struct Recording {
-  std::string name;              ///< name of the folder or file
-  std::string sequence;          ///< empty if unknown
-  std::string software_version;  ///< version of the software that recorded it; empty if unknown
-  std::string started_at;        ///< UTC, empty if unknown or in virtual time
-  /// Equal for two recordings if sequence, text of the sequence and parameters are equal.
+  std::string name;              ///< name of the recording's folder or file
+  std::string sequence;          ///< name of the sequence; empty if unknown
+  std::string software_version;  ///< version of the software that made the recording; empty if unknown
+  std::string started_at;        ///< start time in UTC; empty if unknown or if the run had virtual time
+  /// Text of the sequence's name, hash and parameters. Two recordings with the same recipe are comparable.
   std::string recipe;
-  /// The recording is not complete: it is still being written, or its daemon was killed.
+  /// True if the recording is incomplete: it is still being written, or its daemon was killed.
   bool unfinished = false;
-  std::vector<Log> channels;  ///< one log per channel; displacement readings may be missing
+  std::vector<Log> channels;  ///< one log per channel; readings of the displacement may be missing
   std::vector<RecordedEvent> events;
 };
 
-/// Reads the folder of a recording, or a single log file. The error is a sentence if a file cannot be opened.
-/// It is empty if the log has problems, which are all added to `problems`.
+/// Reads the folder of a recording, or a single log file. If a file cannot be opened, the error is a
+/// sentence. If a log has problems, the error is empty, and all problems are added to `problems`.
 [[nodiscard]] tl::expected<Recording, std::string> read_recording(const std::string& path,
                                                                   document::Problems& problems);
 
-/// Returns the numbers of a column that does not belong to the log format. A cell that is not a number is
-/// NaN. The result is empty if there is no such column.
+/// Returns the numbers in a column that is not part of the log format. NaN: the cell does not contain a
+/// number. The result is empty if the log has no such column.
 [[nodiscard]] std::vector<double> numbers_of(const Log& log, const std::string& column);
-/// Returns the texts of a column that does not belong to the log format. The result is empty if there is no
+/// Returns the texts in a column that is not part of the log format. The result is empty if the log has no
 /// such column.
 [[nodiscard]] std::vector<std::string> texts_of(const Log& log, const std::string& column);
 
