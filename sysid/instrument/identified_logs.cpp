@@ -24,15 +24,15 @@ std::string source_of(const std::vector<Log>& logs, double rmse_mm, const model:
          "), starting from " + start.name;
 }
 
-/// Returns the error message of a fit, followed by the plausibility warnings about its logs, because a wrong
-/// unit can be the cause of the error.
+/// Returns the error message of a fit, followed by the plausibility warnings about its logs. A wrong unit,
+/// for example, can cause the error.
 std::string refusal_of(const std::string& error, const std::vector<Log>& logs) {
   std::string text = error;
   for (const std::string& implausible : plausibility_warnings_among(logs)) text += "; " + implausible;
   return text;
 }
 
-/// Returns the warnings about the logs and about the predictions for them.
+/// Returns the warnings about the logs, and about the predictions of the model for these logs.
 std::vector<std::string> warnings_of_data(const Identification& result, const std::vector<Log>& logs,
                                           std::vector<std::string> wrong_readings) {
   std::vector<std::string> warnings = std::move(wrong_readings);
