@@ -10,26 +10,27 @@
 
 namespace softgrip::sysid {
 
-/// The part of a text that is placed at the given point.
+/// Point of a text that is placed at the given position.
 enum class Anchor { start, middle, end };
 
-/// Returns the approximate width of a text [px], for margins and legends. The actual font is unknown.
+/// Returns the approximate width of a text [px] for margins and legends. The font that the reader's system
+/// will use is not known.
 [[nodiscard]] double text_width(std::string_view text);
 
-/// A sequence of SVG elements. All lengths are in pixels. `more` contains further attributes and begins with
-/// a blank.
+/// A sequence of SVG elements. All lengths are in pixels. A parameter `more` contains additional attributes
+/// and begins with a blank.
 class Canvas {
  public:
   void line(Pixel from, Pixel to, Colour colour, std::string_view more = {});
-  /// Draws a filled rectangle without an edge; framed_box() draws one with an edge.
+  /// Draws a filled rectangle without a border; framed_box() draws a rectangle with a border.
   void box(double x, double y, double width, double height, Colour fill, std::string_view more = {});
   void framed_box(double x, double y, double width, double height, Colour fill, Colour edge,
                   std::string_view more = {});
   void words(Pixel at, Anchor anchor, std::string_view text, Colour colour = Colour::text,
              std::string_view more = {});
-  /// Draws a text that remains readable if it lies on a curve.
+  /// Draws a text with an outline that keeps the text readable on a curve.
   void words_on_curve(Pixel at, Anchor anchor, std::string_view text);
-  /// Appends markup that another file of this folder has produced. It is not escaped.
+  /// Appends SVG markup without escaping it. The markup must come from a file of this folder.
   void raw(std::string_view markup) { markup_ += markup; }
 
   [[nodiscard]] const std::string& markup() const noexcept { return markup_; }

@@ -15,7 +15,7 @@
 namespace softgrip::sysid {
 namespace {
 
-constexpr double line_px = 16;  ///< height of a line of the title or the legend
+constexpr double line_px = 16;  ///< height of one line of text in the title or the legend
 
 /// Returns the SVG attribute of a dash pattern.
 std::string_view dashes_of(Dash dash) {
@@ -75,8 +75,8 @@ class Painter {
     const Scale x(chart_.x, x_range_.lowest, x_range_.highest, left_, right_, margin);
     const Scale y(chart_.y, y_range_.lowest, y_range_.highest, lower_, upper_, true);
     grid(x, y);
-    // A nested <svg> clips the curves at the axes. A clip path would also do this, but it needs an id that is
-    // unique in the document.
+    // A nested <svg> element clips the curves at the axes. A clip path is not used because it needs an id
+    // that is unique in the document.
     const std::string box = fixed(left_, 1) + ' ' + fixed(upper_, 1) + ' ' + fixed(right_ - left_, 1) + ' ' +
                             fixed(lower_ - upper_, 1);
     canvas_.raw("<svg x=\"" + fixed(left_, 1) + "\" y=\"" + fixed(upper_, 1) + "\" width=\"" +
@@ -96,7 +96,8 @@ class Painter {
     upper_ = top_ + 10 + line_px * head_lines();
     lower_ = top_ + chart_.height - (chart_.x.label.empty() ? 22 : 40);
   }
-  /// Returns the number of lines for the title and the legend. Both are on one line if they fit.
+  /// Returns the number of text lines that the title and the legend need. If both fit on one line, they share
+  /// it.
   [[nodiscard]] int head_lines() const {
     const double legend = legend_width();
     if (chart_.title.empty()) return legend > 0 ? 1 : 0;
@@ -159,9 +160,9 @@ class Painter {
     }
   }
 
-  /// Draws points as strokes with a round end and length 0. For the colours `error` and `other`, the ends are
-  /// square, and the strokes have a small length, because PDF renderers do not draw a square end of a stroke
-  /// without a direction.
+  /// Draws each point as a stroke of length 0 with round ends. For the colours `error` and `other`, the ends
+  /// are square. These strokes have a small length, because PDF renderers draw a square end only if the
+  /// stroke has a direction.
   void points(const std::vector<Pixel>& curve, Colour colour, double radius) {
     const bool square = colour == Colour::error || colour == Colour::other;
     const auto dots = distinct_dots(curve);
@@ -217,7 +218,7 @@ class Painter {
         canvas_.words_on_curve({right_ - 4, y.px(mark.at) - 4}, Anchor::end, mark.label);
     } else {
       canvas_.line({x.px(mark.at), upper_}, {x.px(mark.at), lower_}, Colour::text, dashes);
-      // Place the label on the side of its line that has enough space.
+      // The label is placed on the side of its line that has enough space for the label.
       const bool fits = x.px(mark.at) + 4 + text_width(mark.label) <= right_;
       const double at = fits ? x.px(mark.at) + 4 : x.px(mark.at) - 4;
       if (!mark.label.empty())
@@ -258,7 +259,7 @@ class Painter {
   Range x_range_;
   Range y_range_;
   double right_ = 0;
-  double upper_ = 0;  ///< y of the upper edge [px], less than lower_
+  double upper_ = 0;  ///< y coordinate of the upper edge [px]; smaller than lower_
   double lower_ = 0;
   Canvas canvas_;
 };
@@ -281,7 +282,7 @@ Extent extent_of(const ChartRows& rows) {
 
 std::string markup_of(const ChartRows& rows) {
   std::string markup;
-  std::vector<double> margins;  // by column
+  std::vector<double> margins;  // left margin of each column of charts [px]
   for (const auto& row : rows) {
     margins.resize(std::max(margins.size(), row.size()));
     for (std::size_t i = 0; i < row.size(); ++i)

@@ -1,10 +1,11 @@
 #pragma once
-// Charts as SVG: lines, points, bands, bars. They contain no script and use the fonts of the reader's system.
+// Draws charts as SVG, with lines, points, bands and bars. The SVG contains no script and uses the fonts of
+// the reader's system.
 //
 // A chart is a plain value. markup_of() draws it as part of a figure (figure.h). Units of axes are written in
 // words. Long series are thinned to the resolution of the picture. If x increases, the lowest and the highest
-// value of each pixel column are kept, so that a single outlier among a million samples remains visible. In
-// other curves (loops), points that coincide with points already drawn are removed.
+// value of each pixel column are kept. A single outlier among a million samples therefore remains visible. In
+// other curves, such as loops, points that coincide with points already drawn are removed.
 
 #include <optional>
 #include <string>
@@ -14,7 +15,7 @@
 
 namespace softgrip::sysid {
 
-/// The dash pattern of a line. Some readers cannot distinguish lines by their colour alone.
+/// Dash pattern of a line, for readers who cannot distinguish lines by colour alone.
 enum class Dash { solid, dashed, dotted };
 
 /// One curve. `x` and `y` have the same length; a value that is not finite interrupts the line.
@@ -22,14 +23,14 @@ struct Series {
   enum class Style {
     line,
     points,
-    band,   ///< area between y and y_upper
+    band,   ///< area between the curves y and y_upper
     bars,   ///< bars from 0 to y, as wide as possible
-    steps,  ///< a line that is horizontal until the next x
+    steps,  ///< a line that keeps the value of y until the next x
   };
-  std::string label;  ///< text in the legend; "": not in the legend
+  std::string label;  ///< text in the legend; "": the curve is not in the legend
   std::vector<double> x;
   std::vector<double> y;
-  std::vector<double> y_upper;  ///< upper limit of a band
+  std::vector<double> y_upper;  ///< upper edge of a band
   Style style = Style::line;
   Colour colour = Colour::measured;
   Dash dash = Dash::solid;
@@ -44,13 +45,13 @@ struct Mark {
   std::string label;
 };
 
-/// One axis. Without limits, it covers the range of the data.
+/// An axis of a chart. If it has no limits, it covers the range of the data.
 struct Axis {
-  std::string label;  ///< name and unit: "displacement [mm]"
+  std::string label;  ///< name and unit of the axis: "displacement [mm]"
   std::optional<double> lower;
   std::optional<double> upper;
   bool logarithmic = false;
-  std::vector<std::string> categories;  ///< names at 0, 1, 2, ... instead of numbers
+  std::vector<std::string> categories;  ///< names that label the positions 0, 1, 2, ... in place of numbers
 };
 
 struct Chart {
@@ -63,12 +64,12 @@ struct Chart {
   int height = 280;  ///< [px]
 };
 
-/// Returns a chart whose x axis has names instead of numbers as tick labels.
+/// Returns a chart whose x axis is labelled with names in place of numbers.
 [[nodiscard]] Chart chart_over(std::vector<std::string> names);
-/// Returns points for such a chart, one value per name. NaN: no point.
+/// Returns points for a chart of chart_over(), one value per name. A value that is NaN gives no point.
 [[nodiscard]] Series points_over_names(std::string label, Colour colour, std::vector<double> values);
 
-/// Rows of charts, one below the other. A row contains one chart of full width, or several charts side by
+/// Rows of charts, one below the other. A row contains one chart of full width or several charts side by
 /// side.
 using ChartRows = std::vector<std::vector<Chart>>;
 
@@ -77,14 +78,15 @@ struct Extent {
   int width = 0;
   int height = 0;
 };
-/// Returns the size of a picture with these rows: the width of the widest row and the sum of the heights.
+/// Returns the size of a picture with these rows. The width is that of the widest row, and the height is the
+/// sum of the heights of the rows.
 [[nodiscard]] Extent extent_of(const ChartRows& rows);
 
-/// Returns the charts as SVG elements that fit into extent_of(). The y axes of charts in one column are
-/// aligned.
+/// Returns the charts as SVG elements within the size extent_of(rows). The y axes of charts in the same
+/// column are aligned.
 [[nodiscard]] std::string markup_of(const ChartRows& rows);
 
-/// Returns rows with one chart each.
+/// Returns one row for each chart.
 [[nodiscard]] ChartRows stacked(std::vector<Chart> charts);
 
 }  // namespace softgrip::sysid

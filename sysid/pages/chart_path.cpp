@@ -26,13 +26,13 @@ bool x_increases(const std::vector<Pixel>& curve) {
   return true;
 }
 
-/// Largest numbers of strokes and dots. If there are more, a reader cannot distinguish them from the area
-/// that they cover.
+/// Largest numbers of strokes and dots of a curve. A reader cannot distinguish a larger number from a filled
+/// area.
 constexpr std::size_t most_strokes = 9000;
 constexpr std::size_t most_dots = 6000;
 
-/// Appends the lowest and the highest point of [begin, end) in their order. All points are in one pixel
-/// column. If there are at most four, all are appended.
+/// Appends the lowest and the highest of the points [begin, end), in their order in the curve. All these
+/// points are in one pixel column. If there are at most four points, all of them are appended.
 void append_column(const std::vector<Pixel>& curve, std::size_t begin, std::size_t end,
                    std::vector<Pixel>& kept) {
   if (end - begin <= 4) {
@@ -67,7 +67,8 @@ std::vector<Pixel> thinned_by_column(const std::vector<Pixel>& curve) {
   return kept;
 }
 
-/// Removes points that are closer than `least_px` to the last kept point. Also removes repeated strokes.
+/// Removes points whose distance from the last kept point is below `least_px`, and strokes that were already
+/// drawn.
 std::vector<Pixel> thinned_by_stroke(const std::vector<Pixel>& curve, double least_px) {
   constexpr double grid = 1.0 / 3.0;
   std::vector<Pixel> kept;
@@ -108,10 +109,10 @@ std::vector<Pixel> thinned_by_stroke(const std::vector<Pixel>& curve, double lea
   return kept;
 }
 
-/// Returns the area that the points cover. In each pixel column, points closer than `gap` are joined by a
-/// vertical stroke.
+/// Returns vertical strokes that cover the area of the points. In each pixel column, one stroke covers all
+/// neighbouring points that are at most `gap` apart.
 std::vector<Pixel> covered(const std::vector<Pixel>& curve, double gap) {
-  constexpr double dot = 0.7;  // length of the stroke for a single point
+  constexpr double dot = 0.7;  // length of the stroke that covers a single point
   std::vector<Pixel> cloud;
   for (const Pixel& p : curve) {
     if (drawn(p)) cloud.push_back({std::floor(p.x) + 0.5, p.y});

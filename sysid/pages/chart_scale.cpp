@@ -74,7 +74,7 @@ std::vector<Tick> Scale::ticks(int most) const {
     return ticks;
   }
   double step = step_for(upper_ - lower_, most);
-  // A reader needs at least two ticks to read a scale.
+  // A reader needs at least two ticks to read values from an axis.
   while (std::floor(upper_ / step) - std::ceil(lower_ / step) < 1) step = step_for(step / 2.5, 1);
   const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
   const bool plain = decimals <= 6 && std::max(std::abs(lower_), std::abs(upper_)) < 1e7;

@@ -1,5 +1,5 @@
 #pragma once
-// Conversion of values to pixels, and positions of the ticks of an axis.
+// Converts values to pixels, and computes the positions of the ticks of an axis.
 
 #include <string>
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace softgrip::sysid {
 
-/// The position of a tick, as a value of the axis, and the text of the tick.
+/// A tick of an axis: its value and its text.
 struct Tick {
   double at;
   std::string text;
 };
 
-/// One axis, mapped onto pixels.
+/// The mapping of the values of one axis to pixels.
 class Scale {
  public:
   /// @param lowest,highest  range of the data; used if the axis has no limits of its own.

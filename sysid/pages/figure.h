@@ -1,5 +1,5 @@
 #pragma once
-// A figure: charts or a drawing, with a name, a caption and the values that the picture shows.
+// A figure of a report: charts or a drawing, with a name, a caption and the values that the picture shows.
 
 #include <optional>
 #include <string>
@@ -9,30 +9,30 @@
 
 namespace softgrip::sysid {
 
-/// A picture that is not a chart.
+/// A picture of a figure that has no charts.
 struct Drawing {
   std::string markup;  ///< SVG elements from a Canvas
   int width = 760;     ///< [px]
   int height = 100;    ///< [px]
-  /// Column names of `rows`, which contain the values that the drawing shows.
+  /// Names of the columns of `rows`. The rows contain the values that the drawing shows.
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
 };
 
 struct Figure {
-  /// A few words, which are also used for the names of the figure's files: "error over time tp1".
+  /// Short name of the figure: "error over time tp1". It is also part of the names of the figure's files.
   std::string name;
   std::string caption;  ///< one or more sentences
   ChartRows charts;
-  std::optional<Drawing> drawing = {};  ///< if set, drawn instead of charts
+  std::optional<Drawing> drawing = {};  ///< drawing that replaces the charts; absent: the charts are drawn
 };
 
-/// Returns the figure as an <svg> element. The page defines the colours.
+/// Returns the figure as an <svg> element for a page. The style sheet of the page defines the colours.
 [[nodiscard]] std::string svg_of(const Figure& figure);
-/// Returns the figure as a separate file with both colour schemes.
+/// Returns the figure as the text of a separate SVG file that contains both colour schemes.
 [[nodiscard]] std::string svg_file_of(const Figure& figure);
-/// Returns the values of the figure as CSV with a header: all values of each curve, or the rows of the
-/// drawing. If curves of a chart have equal x values, they share one column `x`.
+/// Returns the values of the figure as CSV text with a header line: all values of each curve, or the rows of
+/// the drawing. Curves of a chart that have equal x values share one column `x`.
 [[nodiscard]] std::string csv_of(const Figure& figure);
 
 }  // namespace softgrip::sysid

@@ -10,11 +10,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Numbers of bytes of a page that must remain free after a figure is added, and after the copy of a figure
-/// for saving is added.
+/// Numbers of bytes below the size limit of a page that must remain free: after a figure is added, and after
+/// the copy of a figure for saving is added.
 constexpr std::size_t kept_for_text = 150'000;
 constexpr std::size_t kept_for_figures = 450'000;
-/// Smallest number of sections for which a page has a table of contents.
+/// A page has a table of contents if it has at least this number of sections.
 constexpr std::size_t many_sections = 3;
 
 constexpr std::string_view style = R"(
@@ -43,7 +43,8 @@ pre{font:12.5px/1.45 ui-monospace,monospace;background:var(--panel);padding:12px
 @media print{body{max-width:none;padding:0;font-size:9.5pt;line-height:1.36;print-color-adjust:exact;-webkit-print-color-adjust:exact}h1{margin-bottom:6px}h2{font-size:13pt;margin:14px 0 4px;padding-top:8px;break-after:avoid}h3{font-size:10.5pt;margin:10px 0 2px;break-after:avoid}p,ul,table,figure{margin:5px 0}p,ul,figcaption{max-width:none}.verdict{font-size:12.5pt;padding:8px 12px;margin-bottom:10px}table,dl,figcaption,pre{font-size:8.5pt}th,td{padding:1px 10px 1px 0}figure,tr,.verdict{break-inside:avoid}figure svg{margin:0 auto;max-width:82%}nav,figcaption a{display:none}.appendix{break-before:page}pre{white-space:pre-wrap}}
 )";
 
-/// Returns a data URI of an SVG text. Blanks and digits, which are most of its bytes, are not escaped.
+/// Returns a data URI of an SVG text. Blanks and digits are most of the bytes of such a text, so they are not
+/// escaped.
 std::string uri_of(std::string_view svg) {
   constexpr std::string_view escaped_ones = "%#\"<>&'\n";
   constexpr std::string_view digits = "0123456789ABCDEF";
@@ -85,7 +86,7 @@ std::string_view class_of(Tone tone) {
 }  // namespace
 
 std::string text_of(const Table& table) {
-  // Counts UTF-8 characters: all bytes except continuation bytes.
+  // Counts the UTF-8 characters of a text: all bytes except continuation bytes.
   const auto width_of = [](std::string_view text) {
     return static_cast<std::size_t>(
         std::count_if(text.begin(), text.end(), [](char c) { return (c & '\xc0') != '\x80'; }));

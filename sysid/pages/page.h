@@ -1,9 +1,9 @@
 #pragma once
-// The self-contained HTML page of a report: the verdict first, then the provenance, then the sections.
+// Builds the self-contained HTML page of a report: the verdict first, then the provenance, then the sections.
 //
-// The page has no JavaScript and no references to other files. It can be printed, and on a screen it uses the
-// reader's colour scheme. Every text is escaped here. Only pictures that this folder has produced are
-// inserted as markup. Figures are numbered in the order of the page.
+// The page has no JavaScript and no references to other files. It can be printed. On a screen, it uses the
+// reader's colour scheme. Every text is escaped here. Only pictures from this folder are inserted as markup.
+// Figures are numbered in the order of the page.
 
 #include <cstddef>
 #include <string>
@@ -15,11 +15,11 @@
 
 namespace softgrip::sysid {
 
-/// The meaning of a verdict, which determines its colour.
+/// Rating of a verdict; determines the colour of the verdict.
 enum class Tone { good, doubtful, bad };
 
-/// A table. `numeric` states for each column if it is right-aligned; columns without an entry are
-/// left-aligned text.
+/// A table of a page. For each column, `numeric` states whether the column is right-aligned. A column without
+/// an entry in `numeric` is left-aligned.
 struct Table {
   std::string caption;
   std::vector<std::string> header;
@@ -27,40 +27,40 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 };
 
-/// Returns the table as lines of text with aligned columns; the caption is the first line.
+/// Returns the table as lines of text with aligned columns. The first line is the caption.
 [[nodiscard]] std::string text_of(const Table& table);
 
-/// Terms and their values.
+/// Terms, each with its value.
 using Terms = std::vector<std::pair<std::string, std::string>>;
 
-/// A report, built from top to bottom.
+/// A report page, built from top to bottom.
 class Page {
  public:
-  /// Largest size of a page [bytes], regardless of the length of the logs. A figure with which the page would
-  /// exceed it is replaced by a sentence.
+  /// Largest size of a page [bytes], for logs of any length. If a figure would make the page larger, a
+  /// sentence replaces the figure.
   static constexpr std::size_t most_bytes = 1'500'000;
 
   /// @param title  title of the document. @param verdict  one sentence for a technician.
   Page(std::string title, std::string verdict, Tone tone);
 
-  /// Adds entries below the verdict: versions, files, hashes.
+  /// Adds entries below the verdict, such as versions, files and hashes.
   void provenance(Terms entries);
   void section(std::string_view title);
-  /// Begins a section on a new sheet of paper, for readers who want to verify the result.
+  /// Begins a section for readers who want to verify the result. In print, the section begins on a new sheet.
   void appendix(std::string_view title);
   void subsection(std::string_view title);
   void paragraph(std::string_view text);
   void list(const std::vector<std::string>& items);
   void terms(const Terms& entries);
   void table(const Table& table);
-  /// Adds a figure with its number, its caption and a link that saves it as a file.
+  /// Adds a figure with its number, its caption and a link with which the reader saves the figure as a file.
   void figure(Figure figure);
-  /// Adds a text with its line breaks in a fixed-width font, for example a model file.
+  /// Adds a text in a fixed-width font with its line breaks, for example a model file.
   void code(std::string_view text);
 
-  /// Returns all figures so far, including those that were replaced by a sentence.
+  /// Returns all figures that were added, including figures that a sentence replaces.
   [[nodiscard]] const std::vector<Figure>& figures() const noexcept { return figures_; }
-  /// Returns the page. It has a table of contents if there are at least three sections.
+  /// Returns the page as HTML. The page has a table of contents if it has at least three sections.
   [[nodiscard]] std::string to_html() const;
 
  private:
@@ -75,10 +75,10 @@ class Page {
   std::string body_;
 };
 
-/// Returns the name and version of the software, which is the first entry of each provenance.
+/// Returns the name and version of the software. This entry is the first one in every provenance.
 [[nodiscard]] std::string software_and_version();
 
-/// Returns the stem of the names of a figure's files: "figure-2-error-over-time".
+/// Returns the common part of the names of a figure's files: "figure-2-error-over-time".
 [[nodiscard]] std::string figure_stem(std::size_t number, std::string_view name);
 
 }  // namespace softgrip::sysid

@@ -12,8 +12,8 @@ struct Role {
   std::string_view dark;
 };
 
-/// The names and colours of the roles, in the order of Colour. In the dark scheme, blue and vermilion are
-/// lighter.
+/// Names and colours of the roles, in the order of Colour. Blue and vermilion are lighter in the dark scheme
+/// than in the light scheme.
 constexpr std::array roles{
     Role{"measured", "#4d4d4d", "#c3ccd3"}, Role{"model", "#0072b2", "#56b4e9"},
     Role{"error", "#d55e00", "#f08a4b"},    Role{"other", "#a8578a", "#dd9cc1"},

@@ -1,9 +1,9 @@
 #pragma once
-// The colours of pages and pictures, selected by role, for light and dark screens. Printed pages always use
-// the light colours.
+// Defines the colours of pages and pictures for light and dark screens. Each colour is selected by its role.
+// Printed pages always use the light colours.
 //
 // The light colour of an element is stored as an attribute, which all SVG programs support. The element also
-// has a class, for which the style sheet of a page defines the colour in the reader's colour scheme.
+// has a class. For this class, the style sheet of a page defines the colour in the reader's colour scheme.
 
 #include <optional>
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace softgrip::sysid {
 
-/// A colour, named by its role, so that a quantity has the same colour in all pictures of a report. The
-/// colours of curves are those of Okabe and Ito, which people with any kind of colour vision can distinguish.
+/// Role of a colour. All pictures of a report draw a quantity in the colour of its role. The colours of
+/// curves are those of Okabe and Ito, which people with any kind of colour vision can distinguish.
 enum class Colour {
   measured,
   model,
@@ -22,23 +22,22 @@ enum class Colour {
   good,
   bad,
   text,
-  muted,  ///< secondary text
+  muted,  ///< text that is less important
   axis,
   grid,
-  paper,  ///< background
-  panel,  ///< a box on the background
+  paper,  ///< background of the page
+  panel,  ///< background of a box on the page
 };
 
 /// Returns the colour code of the light scheme, such as "#0072b2".
 [[nodiscard]] std::string_view light_code(Colour colour);
 
-/// Returns attributes of an SVG element, with a leading blank. The element inherits the attributes that are
-/// not given.
+/// Returns attributes of an SVG element, with a leading blank. The element inherits all other attributes.
 [[nodiscard]] std::string stroked(Colour stroke);
 [[nodiscard]] std::string filled(Colour fill, std::optional<Colour> stroke = std::nullopt);
 
-/// Returns CSS that defines the colours of both schemes as variables of `selector`, and the classes that use
-/// these variables.
+/// Returns CSS that defines the colours of both schemes as variables of `selector`. It also defines the
+/// classes that use these variables.
 [[nodiscard]] std::string scheme_css(std::string_view selector);
 
 }  // namespace softgrip::sysid

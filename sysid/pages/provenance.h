@@ -1,5 +1,5 @@
 #pragma once
-// Provenance of a result: software, logs, models.
+// States the provenance of a result: software, logs and models.
 
 #include <string>
 #include <utility>
