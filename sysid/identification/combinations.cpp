@@ -12,7 +12,7 @@ namespace {
 
 using model::Model;
 
-/// Returns the values of the first block of this type. The model must contain one.
+/// Returns the parameter values of the first block of this type. The model must contain such a block.
 template <template <class> class Block>
 const std::vector<double>& values_of(const Model& model) {
   return model.blocks[*model::position_of<Block>(model)].values;
@@ -81,7 +81,8 @@ double beta_over_gain(const model::Model& model) {
 }
 
 std::string wrong_way_sentence(double beta_over_gain) {
-  // If alpha and 1/k0 are almost zero, the exact ratio has no meaning.
+  // Largest ratio that is stated as a number. If alpha and 1/k0 are almost zero, the ratio is larger, and its
+  // exact value has no meaning.
   constexpr double largest_told = 1000;
   const std::string ratio = beta_over_gain < largest_told
                                 ? "= " + significant(beta_over_gain, 3) + " is above 1"

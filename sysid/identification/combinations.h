@@ -1,6 +1,6 @@
 #pragma once
-// Computes sums and ratios of parameters that the data determine even if they do not determine each
-// parameter. For example, the data determine only the sum of alpha and 1/k0.
+// Computes sums and ratios of parameters. The data can determine such a combination even if they do not
+// determine each parameter in it. For example, the data determine only the sum of alpha and 1/k0.
 
 #include <functional>
 #include <string>
@@ -12,22 +12,21 @@ namespace softgrip::sysid {
 
 /// A quantity that is computed from the parameters of a model.
 struct Combination {
-  std::string name;  ///< name, including the unit
+  std::string name;  ///< name of the combination, including the unit
   std::string unit;
-  std::string formula;  ///< formula as text, for display
-  double scale = 0;     ///< typical value; an interval that is narrow relative to it counts as narrow for any
-                        ///< value
+  std::string formula;  ///< formula of the combination as text, for display
+  double scale = 0;     ///< typical value; an interval that is narrow relative to this value counts as narrow
   std::function<double(const model::Model&)> value;
 };
 
-/// Returns the combinations that exist for the blocks of this model.
+/// Returns all combinations that are defined for the blocks of this model.
 [[nodiscard]] std::vector<Combination> combinations_of(const model::Model& model);
 
-/// Returns beta divided by the instantaneous gain alpha + 1/k0 of a Bouc-Wen element, or 0 if the model has
-/// none. If the ratio is 1 or more, the model has an inverse response: it first moves opposite to the
-/// command.
+/// Returns beta / (alpha + 1/k0) of the Bouc-Wen element of a model, or 0 if the model has no such element.
+/// The denominator is the instantaneous gain. If the ratio is 1 or more, the model has an inverse response:
+/// its displacement first moves opposite to a change of the command.
 [[nodiscard]] double beta_over_gain(const model::Model& model);
-/// Returns the warning for a model in which this ratio is above 1.
+/// Returns the warning for a model whose ratio beta_over_gain() is above 1.
 [[nodiscard]] std::string wrong_way_sentence(double beta_over_gain);
 
 }  // namespace softgrip::sysid

@@ -1,5 +1,5 @@
 #pragma once
-// Computes estimates with intervals from the minimum of a fit and its covariance.
+// Computes estimates of parameters and their intervals from the minimum of a fit and its covariance.
 
 #include <vector>
 
@@ -8,22 +8,22 @@
 
 namespace softgrip::sysid {
 
-/// The minimum of a fit and its uncertainty.
+/// The minimum of a fit, and the uncertainty of the parameters there.
 struct FittedPoint {
   const Residuals& residuals;
   const std::vector<double>& z;
   const Uncertainty& uncertainty;
 };
 
-/// Returns the estimates of all parameters of the model, including the fixed ones.
+/// Returns the estimates of all parameters of the model, including the parameters that were not fitted.
 [[nodiscard]] std::vector<Estimate> parameter_estimates(const FittedPoint& fit);
-/// Marks alpha and k0 as not identifiable and removes their intervals, because the data determine only the
-/// sum alpha + 1/k0.
+/// Marks alpha and k0 as not identifiable and removes their intervals. The data determine only their
+/// combination alpha + 1/k0.
 void name_the_sum(std::vector<Estimate>& parameters);
-/// Returns the fitted initial states.
+/// Returns the estimates of the fitted initial states of the logs.
 [[nodiscard]] std::vector<Estimate> start_estimates(const FittedPoint& fit);
-/// Returns combinations of parameters. Their intervals follow from linear error propagation, applied to the
-/// logarithm if the value is positive.
+/// Returns the estimates of combinations of parameters. Their intervals are computed by linear error
+/// propagation. For a positive value whose `scale` is 0, the propagation applies to the logarithm.
 [[nodiscard]] std::vector<Estimate> combination_estimates(const FittedPoint& fit);
 
 }  // namespace softgrip::sysid

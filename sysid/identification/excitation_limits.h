@@ -1,5 +1,5 @@
 #pragma once
-// Lists the parameters that a fit cannot determine because the logs do not excite them.
+// Lists the parameters that a fit cannot determine because the logs lack the necessary motion.
 
 #include <string>
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace softgrip::sysid {
 
-/// Returns one sentence for each kind of excitation that no log contains. The sentence names the fitted
-/// parameters that need this excitation.
+/// Returns one sentence for each kind of motion that no log contains. The sentence names the fitted
+/// parameters that cannot be determined without this motion.
 [[nodiscard]] std::vector<std::string> excitation_limits(const std::vector<Log>& logs,
                                                          const std::vector<Estimate>& parameters);
 

@@ -24,13 +24,14 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-/// A search counts as successful if its RMSE exceeds the smallest one by at most this share.
+/// A search counts as successful if its RMSE exceeds the smallest RMSE of all searches by at most this share.
 constexpr double reached_share = 1e-3;
 
-/// Parameters of the model that are fitted, by flat index.
+/// Indices of the fitted parameters in the list of all parameters of the model.
 struct FreeIndices {
   std::vector<std::size_t> flat;
-  bool k0_kept = false;  ///< true: the program fixes k0, because only the sum of alpha and 1/k0 has an effect
+  /// True: the program keeps k0 fixed, because only the sum of alpha and 1/k0 affects the displacement.
+  bool k0_kept = false;
 };
 
 tl::expected<FreeIndices, std::string> free_indices(const model::Model& model,
@@ -61,7 +62,8 @@ tl::expected<FreeIndices, std::string> free_indices(const model::Model& model,
   return free;
 }
 
-/// Returns 2.5 robust standard deviations of the residuals [mm], from their median absolute value.
+/// Returns 2.5 times the robust standard deviation of the residuals [mm]. It is computed from the median of
+/// their absolute values.
 double huber_width_mm(const Residuals& residuals, const std::vector<double>& z) {
   std::vector<double> r(residuals.count());
   if (!residuals.evaluate(z, r, {}) || r.empty()) return std::numeric_limits<double>::infinity();
@@ -69,7 +71,7 @@ double huber_width_mm(const Residuals& residuals, const std::vector<double>& z) 
   return std::max(2.5 * median_of(std::span(r)) / 0.6745, 1e-9);
 }
 
-/// Fits the model with a given exponent.
+/// Fits the model for one value of the Bouc-Wen exponent.
 class Run {
  public:
   Run(std::vector<Record> records, model::Model start, const IdentifyOptions& options)
@@ -107,7 +109,8 @@ class Run {
     MinimiseOptions options;
     options.normal_equations = true;
     Minimum minimum = minimise(*residuals, z, options);
-    // The width of Huber's loss and the fit depend on each other. Two iterations are sufficient.
+    // The width of Huber's loss depends on the residuals of the fit, and the fit depends on this width. Two
+    // iterations are sufficient.
     for (int pass = 0; pass < 2 && options_.robust; ++pass) {
       options.huber_mm = result_.huber_mm = huber_width_mm(*residuals, minimum.z);
       minimum = minimise(*residuals, minimum.z, options);
@@ -147,8 +150,8 @@ class Run {
   Identification result_;
 };
 
-/// Returns the model with another exponent and loops of about the same size. The parameters gamma and eta are
-/// scaled, because they act on h^n.
+/// Returns the model with another exponent and a hysteresis loop of about the same size. For this, the
+/// parameters gamma and eta are scaled, because they multiply the exponentiated hysteretic state h^n.
 model::Model with_exponent(model::Model model, int exponent) {
   const auto position = model::position_of<model::BoucWen>(model);
   if (!position) return model;
@@ -161,10 +164,12 @@ model::Model with_exponent(model::Model model, int exponent) {
   return model;
 }
 
-/// Returns the complete start model with the fitted values. Blocks that were not fitted keep their values.
+/// Returns the complete start model with the fitted values. Blocks that are not part of `fitted` keep their
+/// values.
 model::Model put_back(const model::Model& start, const model::Model& fitted) {
   model::Model whole = start;
-  std::size_t next = 0;  // the fitted blocks are a subset of the start's blocks, in the same order
+  // Index of the next fitted block; the fitted blocks have the same order as in `start`.
+  std::size_t next = 0;
   for (model::BlockSpec& block : whole.blocks) {
     if (next < fitted.blocks.size() && fitted.blocks[next].type == block.type) {
       block.values = fitted.blocks[next++].values;
@@ -228,7 +233,7 @@ tl::expected<Identification, std::string> identify(std::vector<Record> records, 
     auto result = Run(records, exponent == 0 ? from : with_exponent(from, exponent), options).go();
     if (!result) return Failure(result.error());
     if (exponent != 0) tried.emplace_back(exponent, result->rmse_mm);
-    // A higher exponent is accepted only if it reduces the RMSE by more than 1 %.
+    // A further exponent is accepted only if it reduces the RMSE by more than 1 %.
     constexpr double worth = 0.99;
     if (!best || result->rmse_mm < worth * best->rmse_mm) best = std::move(*result);
   }

@@ -19,113 +19,120 @@
 
 namespace softgrip::sysid {
 
-/// One estimated or fixed value.
+/// A value that is estimated or fixed, with its interval.
 struct Estimate {
   std::string name;  ///< "kelvin_voigt.k1_kpa_per_mm", "tp1: offset_mm", "instantaneous_gain_mm_per_kpa"
   std::string unit;
-  std::string formula;  ///< formula if the value is a combination of parameters, otherwise empty
+  std::string formula;  ///< formula of a combination of parameters; empty for a single parameter
   double value = 0;
-  std::optional<Interval> ci95;       ///< empty if the value is fixed, at a bound or without effect
-  std::optional<Interval> profile95;  ///< interval by profile likelihood; empty if it was not requested
+  /// 95 % interval; empty if the value is fixed, at a bound or without effect.
+  std::optional<Interval> ci95;
+  std::optional<Interval> profile95;  ///< 95 % interval by profile likelihood; empty if it was not requested
   bool free = false;
-  bool identifiable = false;  ///< true: half the interval is at most half the value or half a typical change
-  std::string note;           ///< reason why there is no interval; empty if there is one
+  /// True: half the width of the interval is at most half the value or half a typical change.
+  bool identifiable = false;
+  std::string note;  ///< reason why the interval is missing; empty if there is an interval
 };
 
-/// Results of searches from several start points.
+/// Results of the searches from several start points.
 struct MultiStart {
   std::size_t starts = 0;
-  double share_at_best = 0;     ///< share of the start points from which the search ends within 0.1 % of the
-                                ///< best RMSE
-  std::vector<double> rmse_mm;  ///< RMSE at the end of the search from each start point
+  /// Share of the start points whose search ends at an RMSE within 0.1 % of the smallest RMSE.
+  double share_at_best = 0;
+  std::vector<double> rmse_mm;  ///< for each start point, the RMSE at the end of its search
 };
 
 struct IdentifyOptions {
-  std::vector<std::string> fixed;  ///< parameter paths that keep the value of the start model
-  std::vector<std::string> free;   ///< parameter paths that are fitted; empty: all that are not fixed
-  std::size_t starts = 20;  ///< number of start points: the given model, and points drawn around it and from
-                            ///< the scale of the data
-  std::vector<model::Model> start_points;  ///< models to start from instead of random start points
+  std::vector<std::string> fixed;  ///< paths of the parameters that keep the value of the start model
+  /// Paths of the parameters that are fitted; empty: all parameters that are not fixed.
+  std::vector<std::string> free;
+  /// Number of start points: the given model, and random points around it and at the scale of the data.
+  std::size_t starts = 20;
+  std::vector<model::Model> start_points;  ///< models that are used as start points in place of random points
   std::uint64_t seed = 1;
-  unsigned threads = 0;  ///< 0: one per core
-  bool robust = false;   ///< use Huber's loss, which is insensitive to outliers
-  bool profile = false;  ///< also compute intervals by profile likelihood
-  /// Share of every log, from its start, that is fitted. The rest is predicted and scored as held-out data.
+  unsigned threads = 0;  ///< number of threads; 0: one per core
+  bool robust = false;   ///< true: use Huber's loss, which is insensitive to outliers
+  bool profile = false;  ///< true: also compute intervals by profile likelihood
+  /// Share of the samples of each log that is fitted, from the start of the log. The model then predicts the
+  /// other samples, and their error is the held-out error.
   double fit_share = 1;
-  std::vector<int> exponents;  ///< Bouc-Wen exponents to try; empty: that of the start model
+  std::vector<int> exponents;  ///< Bouc-Wen exponents that are tried; empty: the exponent of the start model
   RecordOptions record;
   ShowProgress progress;
 };
 
-/// Results of the choice of a structure, which is made if the caller specifies none.
+/// Results of the choice of a model structure. The structure is chosen if the caller specifies no structure.
 struct StructureEvidence {
-  /// A structure that was fitted for comparison.
+  /// A structure that was fitted so that it can be compared with other structures.
   struct Candidate {
     std::string structure;  ///< "bouc_wen", "prandtl_ishlinskii"
     std::string description;
-    double rmse_mm = 0;          ///< RMSE on the fitted readings
-    double heldout_rmse_mm = 0;  ///< RMSE on interleaved blocks, each predicted by a fit without this block
+    double rmse_mm = 0;          ///< RMSE of the readings to which the structure was fitted
+    double heldout_rmse_mm = 0;  ///< RMSE of held-out blocks, each predicted by a fit without this block
     bool chosen = false;
   };
-  /// The chosen structure without one component, fitted and evaluated in the same way.
+  /// The chosen structure with one component removed, fitted and evaluated like a candidate.
   struct Ablation {
     std::string without;
     double rmse_mm = 0;
     double heldout_rmse_mm = 0;
   };
-  /// Model from the command to the measured pressure.
+  /// Model of the valve, from the command to the measured pressure.
   struct Valve {
     double delay_s = 0, filling_time_constant_s = 0, venting_time_constant_s = 0;
     double rmse_kpa = 0, rmse_percent_of_range = 0, held_out_rmse_kpa = 0, noise_kpa = 0;
-    std::vector<Score> from_command;  ///< prediction of each log from the command through the valve model and
-                                      ///< the model of the finger
+    /// For each log, score of the prediction from the command with the models of valve and finger.
+    std::vector<Score> from_command;
   };
-  std::vector<Candidate> candidates;  ///< candidates, the simplest first
+  std::vector<Candidate> candidates;  ///< candidates in order of complexity, the simplest one first
   std::vector<Ablation> ablation;
   double ridge = 0;
   std::size_t blocks = 0;
-  std::optional<Valve> valve;  ///< present if the pressure was measured and the command drives the model
+  /// Present if the pressure was measured and the input of the model is the command.
+  std::optional<Valve> valve;
 };
 
-/// Result of an identification.
+/// Result of an identification of a model.
 struct Identification {
-  model::Model model;                ///< identified model, including the blocks of the start model that were
-                                     ///< not fitted
-  model::Model fitted;               ///< fitted part of the model, without noise and quantisation
-  std::vector<Record> records;       ///< fitted records, in which held-out readings are NaN
-  std::vector<Score> scores;         ///< scores of the fitted samples of each log
-  std::vector<Score> held_out;       ///< scores of the held-out samples of each log; empty if all samples
-                                     ///< were fitted
-  std::vector<Estimate> parameters;  ///< all parameters of the model
+  /// Identified model, including the blocks of the start model that are not fitted.
+  model::Model model;
+  /// Part of the model that is fitted, without sensor noise and quantisation.
+  model::Model fitted;
+  std::vector<Record> records;  ///< records of the logs; a held-out reading is NaN
+  std::vector<Score> scores;    ///< for each log, the scores of its fitted samples
+  /// For each log, the scores of its held-out samples; empty if no samples were held out.
+  std::vector<Score> held_out;
+  std::vector<Estimate> parameters;  ///< estimates of all parameters of the model
   std::vector<Estimate> combinations;
-  std::vector<Estimate> starts;  ///< estimated offsets and initial states
+  std::vector<Estimate> starts;  ///< estimated offsets of the readings and estimated initial states
   std::vector<LooseDirection> loose;
-  NoiseModel noise;          ///< noise model of the residuals
-  double fast_noise_mm = 0;  ///< noise of the readings between consecutive samples
+  NoiseModel noise;          ///< autoregressive model of the residuals
+  double fast_noise_mm = 0;  ///< noise between consecutive readings, the largest value of all logs
   MultiStart multistart;
-  double rmse_mm = 0;                                    ///< RMSE of all fitted samples
-  double huber_mm = 0;                                   ///< width of Huber's loss; 0: this loss was not used
-  std::vector<std::pair<int, double>> exponent_rmse_mm;  ///< RMSE for each exponent; empty unless several
-                                                         ///< exponents were fitted
-  int iterations = 0;                                    ///< iterations of the last minimisation
+  double rmse_mm = 0;  ///< RMSE of all fitted samples
+  /// Width of Huber's loss; 0: the loss is the squared error.
+  double huber_mm = 0;
+  /// RMSE for each exponent; empty if only one exponent was fitted.
+  std::vector<std::pair<int, double>> exponent_rmse_mm;
+  int iterations = 0;  ///< number of iterations of the last minimisation
   bool converged = false;
   std::vector<std::string> warnings;
   double wall_s = 0;
-  std::optional<StructureEvidence> structure;  ///< present if the structure was chosen during the
-                                               ///< identification
+  /// Present if the structure was chosen during the identification.
+  std::optional<StructureEvidence> structure;
 };
 
-/// Returns the default structure (Bouc-Wen and Kelvin-Voigt with `branches` branches) with values at the
-/// scale of the data.
+/// Returns the default structure: a Bouc-Wen block, and a Kelvin-Voigt block with `branches` branches. Its
+/// parameter values are scaled to the data.
 [[nodiscard]] model::Model base_model(const std::vector<Log>& logs, std::size_t branches);
 [[nodiscard]] model::Model base_model(const std::vector<Record>& records, std::size_t branches);
 
-/// Fits the model `start` to the logs. Returns an error sentence if a named parameter does not exist, if no
-/// parameter is to be fitted, or if the model is not defined at any start point.
+/// Fits the model `start` to the logs. Returns an error sentence in three cases: a named parameter does not
+/// exist, no parameter is to be fitted, or the model is not defined at any start point.
 [[nodiscard]] tl::expected<Identification, std::string> identify(const std::vector<Log>& logs,
                                                                  const model::Model& start,
                                                                  const IdentifyOptions& options = {});
-/// Fits the model to existing records. Readings that are NaN are held out.
+/// Fits the model to records. A reading that is NaN is held out.
 [[nodiscard]] tl::expected<Identification, std::string> identify(std::vector<Record> records,
                                                                  const model::Model& start,
                                                                  const IdentifyOptions& options = {});

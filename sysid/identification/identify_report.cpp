@@ -12,8 +12,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Residuals count as noise if one of two quantities is below its limit: the ratio of their RMSE to the noise
-/// between consecutive samples, or their correlation from sample to sample.
+/// Limits for residuals that count as noise. At least one of two quantities must be below its limit: the RMSE
+/// divided by the noise between consecutive readings, or the correlation between consecutive residuals.
 constexpr double noise_factor = 1.3;
 constexpr double hardly_correlated = 0.3;
 
@@ -65,7 +65,8 @@ Table estimate_table(const std::vector<Estimate>& list, std::string caption) {
   return table;
 }
 
-/// Returns the autocorrelation of the errors over all logs, for lags of up to a tenth of the log.
+/// Returns the chart of the autocorrelation of the errors of the first log, for lags up to a tenth of this
+/// log.
 Chart correlation_chart(const Identification& r) {
   Chart chart;
   chart.width = 380;
@@ -169,7 +170,8 @@ void add_residuals(Page& page, const Identification& r) {
   }
 }
 
-/// Adds the candidate structures to the page, and the contribution of each component of the chosen structure.
+/// Adds a section with the candidate structures and with the error reduction by each component of the chosen
+/// structure.
 void add_structure(Page& page, const StructureEvidence& s, model::OutputUnit unit) {
   const std::string fitted = model::in_unit("RMSE fitted [mm]", unit);
   const std::string held_out = model::in_unit("RMSE held-out blocks [mm]", unit);

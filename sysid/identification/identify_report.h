@@ -10,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// An identification with its inputs.
+/// An identification, and the inputs that its report states.
 struct IdentifyReport {
   const Identification& result;
   const std::vector<Log>& logs;
@@ -19,7 +19,8 @@ struct IdentifyReport {
   std::vector<Record> validation_records;
   std::vector<Score> validation;
   const std::vector<Log>* validation_logs = nullptr;
-  std::vector<std::string> call;  ///< command line; empty if no command started the identification
+  /// Command line of the user; empty if no command started the identification.
+  std::vector<std::string> call;
 };
 
 /// Returns the result as one sentence, such as "The model explains 3 logs to the noise: RMSE 0.050 mm, 0.17 %

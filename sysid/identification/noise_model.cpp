@@ -39,7 +39,8 @@ NoiseModel fit_noise(const Autocovariance& given) {
   if (covariance[0] <= 0) return noise;
   noise.lag1_correlation = lags >= 1 ? covariance[1] / covariance[0] : 0;
 
-  // Levinson-Durbin recursion: computes the best predictor of each order.
+  // Computes the best linear predictor of each order from the predictor of the order below (Levinson-Durbin
+  // recursion).
   std::vector<double> a;
   double variance = covariance[0];
   double best = static_cast<double>(count) * std::log(variance);

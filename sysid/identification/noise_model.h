@@ -9,16 +9,16 @@ namespace softgrip::sysid {
 /// The autoregressive process e_t = a_1 e_(t-1) + ... + a_p e_(t-p) + innovation.
 struct NoiseModel {
   std::vector<double> coefficients;  ///< a_1 ... a_p; empty: white noise
-  double innovation_mm = 0;          ///< standard deviation of the innovation
-  double deviation_mm = 0;           ///< standard deviation of e
+  double innovation_mm = 0;          ///< standard deviation of the innovation [mm]
+  double deviation_mm = 0;           ///< standard deviation of the process e [mm]
   double lag1_correlation = 0;
-  /// Number of uncorrelated samples that would determine a constant with the same accuracy.
+  /// Number of uncorrelated samples whose mean would be as accurate as the mean of the correlated samples.
   double effective_samples = 0;
 };
 
-/// Autocovariances of several series together, up to a lag of `most_lags` or of a tenth of all samples.
-/// Values that are not finite count as gaps. For every lag, the sum is divided by the number of all samples
-/// and not of pairs, so that the result is a valid covariance.
+/// Autocovariances of several series together, up to a lag of `most_lags` or of a tenth of all samples. A
+/// value that is not finite is a gap. For every lag, the sum of products is divided by the number of all
+/// samples, not by the number of pairs. The result is therefore a valid covariance.
 struct Autocovariance {
   std::vector<double> lags;  ///< autocovariance for each lag from 0 [mm^2]
   std::size_t samples = 0;
@@ -26,8 +26,8 @@ struct Autocovariance {
 [[nodiscard]] Autocovariance autocovariance_of(const std::vector<std::span<const double>>& series,
                                                int most_lags = 40);
 
-/// Returns the autoregressive process with these autocovariances, computed by the Yule-Walker equations. Its
-/// order is selected by Akaike's criterion.
+/// Returns the autoregressive process with these autocovariances (Yule-Walker equations). Akaike's criterion
+/// selects the order of the process.
 [[nodiscard]] NoiseModel fit_noise(const Autocovariance& covariance);
 
 }  // namespace softgrip::sysid

@@ -9,7 +9,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Changes one parameter from its optimum in one direction and fits the others.
+/// Computes the profile likelihood of one parameter: moves the parameter away from its optimum and fits all
+/// other parameters.
 class Profile {
  public:
   Profile(const Residuals& residuals, const std::vector<double>& z, const Uncertainty& u, double huber_mm,
@@ -19,14 +20,14 @@ class Profile {
     const double white = u.naive(i, i);
     const double inflation = white > 0 ? std::max(1.0, u.covariance(i, i) / white) : 1;
     step_ = std::sqrt(std::max(u.covariance(i, i), 1e-12));
-    // The cost is half the sum of squares, so the threshold is half of sigma^2 chi^2. The quantile of
-    // Student's t distribution is used instead of the normal quantile.
+    // The cost is half the sum of squares, so the threshold is half of sigma^2 q^2. In place of the normal
+    // quantile, q is the quantile of Student's t distribution.
     allowed_ = 0.5 * u.noise.deviation_mm * u.noise.deviation_mm * u.quantile * u.quantile * inflation;
     at_minimum_ = cost_at(z, z[index]).cost;
   }
 
-  /// Returns the value of the parameter at which the cost has risen by the threshold, or the bound of the
-  /// parameter if the cost never rises by the threshold.
+  /// Returns the value of the parameter at which the cost exceeds its minimum by the threshold. If the cost
+  /// stays below this limit up to the bound of the parameter, returns the bound.
   [[nodiscard]] double edge(double direction) const {
     const FreeParameter& p = residuals_.space().free()[index_];
     const double bound = direction < 0 ? p.lower_z() : p.upper_z();
@@ -59,8 +60,8 @@ class Profile {
   }
 
  private:
-  /// Returns the smallest cost with the parameter fixed at `held`. The search for the other parameters starts
-  /// at `from`.
+  /// Returns the smallest cost if the parameter has the value `held`. The search for the other parameters
+  /// starts at `from`.
   [[nodiscard]] Minimum cost_at(const std::vector<double>& from, double held) const;
 
   const Residuals& residuals_;

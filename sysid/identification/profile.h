@@ -1,5 +1,5 @@
 #pragma once
-// Computes intervals by profile likelihood: one parameter is changed while all others are fitted again.
+// Computes intervals by profile likelihood: one parameter is moved while all other parameters are fitted.
 
 #include <functional>
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace softgrip::sysid {
 
-/// Computes profile95 of every free model parameter in `estimates`, which are in the order of
-/// parameter_estimates(). The threshold of the sum of squares is that of a likelihood-ratio test. It is
+/// Computes profile95 of every fitted model parameter in `estimates`, which has the order of
+/// parameter_estimates(). The threshold for the sum of squares is that of a likelihood-ratio test. It is
 /// multiplied by the factor by which the correlation of the residuals increases the variance of the
 /// parameter.
 void add_profiles(const Residuals& residuals, const std::vector<double>& z, const Uncertainty& uncertainty,

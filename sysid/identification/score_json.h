@@ -1,6 +1,6 @@
 #pragma once
-// Writes logs and scores as JSON in the same way for identify.json and validate.json. Include this header
-// only in source files that write JSON.
+// Writes logs and scores as JSON. identify.json and validate.json use the same keys. Include this header only
+// in source files that write JSON.
 
 #include <cmath>
 #include <vector>
@@ -31,8 +31,8 @@ namespace softgrip::sysid {
   return json;
 }
 
-/// Adds drive, rmse_mm, rmse_percent_of_span and the other scores. Each key is an object with one entry per
-/// log.
+/// Adds the keys drive, rmse_mm, rmse_percent_of_span and the keys of the other scores. The value of each key
+/// is an object with one entry per log.
 inline void add_scores(nlohmann::ordered_json& json, const std::vector<Score>& scores) {
   for (const Score& s : scores) {
     json["drive"][s.name] = name_of(s.drive);

@@ -1,5 +1,5 @@
 #pragma once
-// Draws the start points of a search at random.
+// Draws random start points for the searches of a fit.
 
 #include <cstdint>
 #include <vector>
@@ -10,17 +10,17 @@
 
 namespace softgrip::sysid {
 
-/// Scale of the data of a campaign.
+/// Scale of the data of all records.
 struct CampaignSize {
-  double largest_kpa = 0;  ///< largest driving pressure
-  double span_mm = 0;      ///< largest span of the readings of a record
+  double largest_kpa = 0;  ///< largest magnitude of the input pressure in all records
+  double span_mm = 0;      ///< largest span of the readings in a record
   double longest_s = 0;    ///< duration of the longest record
 };
 [[nodiscard]] CampaignSize campaign_size(const std::vector<Record>& records);
 
-/// Returns `count` start points. The first is the given model. The others are drawn alternately from the
-/// scale of the data (pressure, span, length) and around the given model. Parameters that are not free in
-/// `space` keep their values.
+/// Returns `count` start points. The first one is the given model. The others are random points, alternately
+/// at the scale of the data (pressure, span, length) and around the given model. Parameters that are not free
+/// in `space` keep their values.
 [[nodiscard]] std::vector<FitPoint> draw_starts(const FitSpace& space, const FitPoint& given,
                                                 const std::vector<Record>& records, std::size_t count,
                                                 std::uint64_t seed);

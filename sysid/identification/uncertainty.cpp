@@ -18,9 +18,9 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Computes products of the noise covariance C with the Jacobian J, for each record. If A is the whitening
-/// filter of the autoregressive model, then C = s^2 (A'A)^-1. C J is therefore s^2 times J, filtered first
-/// backwards and then forwards by 1/A.
+/// Computes products of the noise covariance C and the Jacobian J for each record. If A is the whitening
+/// filter of the autoregressive model, then C = s^2 (A'A)^-1. Therefore C J is s^2 times J after two passes
+/// of the filter 1/A, first backwards and then forwards in time.
 class CorrelatedNoise {
  public:
   CorrelatedNoise(const Jacobian& jacobian, const std::vector<std::size_t>& rows)
@@ -36,9 +36,8 @@ class CorrelatedNoise {
     return noise.innovation_mm * noise.innovation_mm * sum;
   }
 
-  /// Increases the autocovariances of the residuals by the part of the noise that the fit has removed. With H
-  /// = J M J', where M is the inverse of J'J, the covariance of the residuals is (I - H) C (I - H) instead of
-  /// C.
+  /// Increases the autocovariances of the residuals by the part of the noise that the fit has absorbed. The
+  /// covariance of the residuals is not C but (I - H) C (I - H) with H = J (J'J)^-1 J'.
   void give_back(const NoiseModel& noise, const MatrixXd& inverse, const MatrixXd& meat,
                  Autocovariance& covariance) const {
     const double s2 = noise.innovation_mm * noise.innovation_mm;
@@ -101,8 +100,9 @@ void scatter(const MatrixXd& part, const std::vector<Index>& keep, MatrixXd& who
   }
 }
 
-/// Returns the directions in which the standard deviation of the estimate is at least 0.5 in the scale of the
-/// fit. This value is half a typical change, or a factor of 1.6 on a logarithmic scale.
+/// Returns the directions in which the data determine the estimate poorly. In the scale of the fit, its
+/// standard deviation in such a direction is at least 0.5. This is half a typical change, or a factor of 1.6
+/// on a logarithmic scale.
 std::vector<LooseDirection> loose_directions(const MatrixXd& covariance, const std::vector<Index>& keep,
                                              const FitSpace& space) {
   constexpr double loose_from = 0.5;
@@ -144,7 +144,8 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
   std::vector<double> r(rows);
   if (!residuals.evaluate(z, r, {jacobian.data(), rows * z.size()})) return u;
 
-  // In the linear range of Huber's loss, a sample contributes a constant gradient but no curvature.
+  // In the linear range of Huber's loss, a sample adds a constant to the gradient and nothing to the
+  // curvature.
   double curved = 0;
   Jacobian bread = jacobian;
   for (std::size_t i = 0; i < rows; ++i) {
@@ -188,8 +189,8 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
   for (std::size_t i = 0; i < keep.size(); ++i) columns.col(static_cast<Index>(i)) = jacobian.col(keep[i]);
   const CorrelatedNoise correlated(columns, counts);
   MatrixXd meat = correlated.product(u.noise);
-  // The noise is larger and more correlated than the residuals, because the fit follows a part of the noise.
-  // Lags far beyond the order of the model are not used.
+  // The residuals are smaller and less correlated than the noise, because the fit has absorbed a part of the
+  // noise. The correction for this uses lags up to the order of the model plus this number.
   constexpr std::size_t lags_beyond = 5;
   for (int pass = 0; pass < 2; ++pass) {
     Autocovariance whole = observed;

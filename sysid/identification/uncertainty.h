@@ -1,9 +1,9 @@
 #pragma once
 // Computes the covariance of the estimates for correlated residuals.
 //
-// Least squares is unbiased under correlated noise, but the usual intervals are far too short. Therefore the
-// covariance is the sandwich (J'J)^-1 J' C J (J'J)^-1, where C comes from an autoregressive model of the
-// residuals.
+// Under correlated noise, a least-squares estimate is unbiased, but the usual intervals are far too short.
+// Therefore the covariance is the sandwich (J'J)^-1 J' C J (J'J)^-1. J is the Jacobian of the residuals, and
+// C is the covariance of the noise from an autoregressive model of the residuals.
 
 #include <string>
 #include <vector>
@@ -16,11 +16,12 @@
 
 namespace softgrip::sysid {
 
-/// A combination of parameters whose change has little effect on the error.
+/// A combination of parameters that can change with little effect on the error.
 struct LooseDirection {
-  std::vector<std::string> names;  ///< parameters in this combination, the largest weight first
-  std::vector<double> weights;     ///< weights of these parameters, in the scale of the fit
-  double deviation = 0;            ///< standard deviation in the scale of the fit
+  /// Parameters of the combination; the one with the largest weight comes first.
+  std::vector<std::string> names;
+  std::vector<double> weights;  ///< weights of `names`, in the scale of the fit
+  double deviation = 0;         ///< standard deviation of the combination in the scale of the fit
 };
 
 /// Covariance of the estimates in the coordinates z of the fit.
@@ -34,8 +35,8 @@ struct Uncertainty {
   std::vector<LooseDirection> loose;
 };
 
-/// Computes the uncertainty at the minimum `z`.
-/// @param huber_mm  width of Huber's loss in the minimisation; infinity: squared loss.
+/// Computes the uncertainty of the estimates at the minimum `z`.
+/// @param huber_mm  width of Huber's loss in the minimisation; infinity: the loss is the squared error.
 [[nodiscard]] Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>& z,
                                          double huber_mm);
 

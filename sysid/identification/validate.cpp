@@ -29,7 +29,8 @@ bool is_above_bound(const Validation& v, const Score& s) {
   return v.at_most_percent && !(s.rmse_percent_of_span <= *v.at_most_percent);
 }
 
-/// Returns ": 2 of them above the permitted 1 %", or "" if there is no bound or no log exceeds it.
+/// Returns a text such as ": 2 of them above the permitted 1 %". Returns "" if there is no bound or no log
+/// exceeds the bound.
 std::string bound_text(const Validation& v) {
   const auto above =
       std::count_if(v.scores.begin(), v.scores.end(), [&](const Score& s) { return is_above_bound(v, s); });

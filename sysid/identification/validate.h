@@ -1,5 +1,5 @@
 #pragma once
-// Validates a model: compares its predictions with logs to which it was not fitted.
+// Validates a model by predictions of logs to which the model was not fitted.
 
 #include <optional>
 #include <string>
@@ -16,20 +16,21 @@ namespace softgrip::sysid {
 struct Validation {
   model::Model model;
   std::vector<Record> records;
-  std::vector<Score> scores;  ///< scores of each log
+  std::vector<Score> scores;  ///< one element per log
   std::vector<std::string> warnings;
   std::optional<double> at_most_percent;  ///< largest permitted RMSE of a log, in % of its span
-  std::vector<std::string> call;          ///< command line; empty if no command started the validation
+  /// Command line of the user; empty if no command started the validation.
+  std::vector<std::string> call;
   double wall_s = 0;
 };
 
-/// Predicts every log. The initial state is estimated from the first readings
+/// Predicts every log with the model. The initial state is estimated from the first readings of the log
 /// (sysid/fitting/start_estimate.h).
 [[nodiscard]] Validation validate_logs(const model::Model& model, const std::vector<Log>& logs,
                                        const RecordOptions& options = {});
 
-/// Returns true if the prediction does not diverge and its RMSE does not exceed the bound (if there is a
-/// bound). A log whose readings have no span exceeds every bound.
+/// Returns true if no prediction diverges and no RMSE exceeds the bound. Without a bound, every RMSE is
+/// accepted. If there is a bound, a log whose readings have no span exceeds it.
 [[nodiscard]] bool is_acceptable(const Validation& validation, const Score& score);
 
 /// Returns the result as one sentence, such as "3 logs predicted with an RMSE of 0.26 to 0.54 mm, at most 1.9
