@@ -1,5 +1,5 @@
 #pragma once
-// The actuator does not move below a threshold pressure.
+// Defines a cause: below a threshold pressure, the actuator does not move.
 
 #include "model/blocks/actuator_threshold.h"
 #include "sysid/diagnosis/causes/form.h"
@@ -16,8 +16,8 @@ struct ActuatorThreshold : FormOf<model::ActuatorThreshold> {
   static Starts starts(const Scales& s) {
     return every({{"threshold_kpa", {0.02 * s.largest_kpa, 0.08 * s.largest_kpa, 0.2 * s.largest_kpa}}});
   }
-  /// With a higher threshold, nearly all data would show no motion, which cannot be an effect of this
-  /// actuator.
+  /// If the threshold were higher, the finger would stand still in nearly all data, which contradicts the
+  /// recorded motion.
   static Bounds bounds(const Scales& s, const model::Model&) {
     return {{"threshold_kpa", 0, 0.6 * s.largest_kpa}};
   }

@@ -1,5 +1,5 @@
 #pragma once
-// The gain drifts during a campaign: with time, during running-in, or with use.
+// Defines a cause: the gain drifts during a campaign, with time, during running-in or with use.
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@
 
 namespace softgrip::sysid::causes {
 
-/// The start points of all forms change the gain by 10 % during the campaign.
+/// The cause has several forms. The start points of each form change the gain by 10 % during the campaign.
 struct Ageing {
   static constexpr std::array advice{Advice::leave_vented, Advice::record_temperature};
   static constexpr Appears appears = Appears::displaced;
@@ -33,8 +33,9 @@ struct Ageing {
                      {std::max(s.soonest_s(), 0.07 * s.campaign_s),
                       std::max(s.soonest_s(), 0.2 * s.campaign_s), 0.5 * s.campaign_s}}});
     }
-    /// A shorter running-in time would only describe the difference between one or two load cycles. A longer
-    /// one cannot be determined, because the data contain only its trend.
+    /// With a shorter running-in time, the form would describe only the difference between one or two load
+    /// cycles. A longer running-in time cannot be determined, because the data contain only the beginning of
+    /// its curve.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"run_in_time_s", s.soonest_s(), 0.5 * s.campaign_s}};
     }

@@ -1,5 +1,5 @@
 #pragma once
-// The loading and unloading branches of a loop differ in shape.
+// Defines a cause: the loading and unloading branches of a hysteresis loop differ in shape.
 
 #include "model/blocks/asymmetric_bouc_wen.h"
 #include "model/blocks/crescent_hysteresis.h"
@@ -17,7 +17,8 @@ struct AsymmetricHysteresis {
        "Remove the load, then run the pressure up and down slowly three times."},
       {{{HealthNumber::loop_width, Moves::either_way}}}};
 
-  /// An additional hysteresis element whose loading and unloading curves differ.
+  /// Form of the cause: an additional hysteresis element whose loading curve differs from its unloading
+  /// curve.
   struct OwnLoop : FormOf<model::DuhemHysteresis> {
     static Starts starts(const Scales& s) {
       const double gain = s.gain_mm_per_kpa();
@@ -25,14 +26,15 @@ struct AsymmetricHysteresis {
                     {"unloading_kpa", {0.3 * s.largest_kpa}},
                     {"loading_kpa", {0.08 * s.largest_kpa, 0.3 * s.largest_kpa, s.largest_kpa}}});
     }
-    /// If a length is far above the largest pressure, the curve is practically a straight line.
+    /// If a characteristic length of the curve is far above the largest pressure, the curve is practically a
+    /// straight line.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"unloading_kpa", 0.01 * s.largest_kpa, 3 * s.largest_kpa},
               {"loading_kpa", 0.01 * s.largest_kpa, 3 * s.largest_kpa}};
     }
   };
 
-  /// The hysteresis of the base structure with different loading and unloading branches.
+  /// Form of the cause: the hysteresis of the base structure, with different loading and unloading branches.
   struct Skew : FormOf<model::AsymmetricBoucWen> {
     static Starts starts(const Scales& s) {
       Starts starts;
@@ -46,16 +48,16 @@ struct AsymmetricHysteresis {
     }
   };
 
-  /// A loop that is wide at medium pressures and closes at the largest pressure.
+  /// Form of the cause: a loop that is wide at medium pressures and closes at the largest pressure.
   struct Crescent : FormOf<model::CrescentHysteresis> {
     static constexpr std::array<Parameter, 2> fitted{"gain_mm_per_kpa", "bend"};
     static Starts starts(const Scales& s) {
       const double gain = s.gain_mm_per_kpa();
       return every({{"gain_mm_per_kpa", {0.05 * gain}}, {"bend", {2, 6}}, {"range_kpa", {s.largest_kpa}}});
     }
-    /// With a bend near zero, the element has no effect. With a large bend, it is a step at the end of the
-    /// range. A negative gain would release more energy than the element stores. A narrower loop is described
-    /// by the parameters of the base structure.
+    /// If the bend is near zero, the element has no effect. If the bend is large, the element is a step at
+    /// the end of the range. With a negative gain, the element would release more energy than it stores. The
+    /// parameters of the base structure describe a narrower loop.
     static Bounds bounds(const Scales&, const model::Model&) {
       return {{"gain_mm_per_kpa", 0}, {"bend", 0.5, 30}};
     }

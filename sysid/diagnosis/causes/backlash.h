@@ -1,5 +1,5 @@
 #pragma once
-// There is play between the actuator and the point that the sensor measures.
+// Defines a cause: there is play between the actuator and the point whose position the sensor measures.
 
 #include "model/blocks/backlash.h"
 #include "sysid/diagnosis/causes/form.h"

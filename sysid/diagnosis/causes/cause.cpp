@@ -136,7 +136,7 @@ constexpr auto table_from(List<C...>) {
 }
 constexpr auto table = table_from(causes::All{});
 
-// Compile-time check: the registry must assign every block of the catalogue.
+// This check at compile time fails if the registry does not assign a block of the catalogue.
 
 template <class Block, class... F>
 constexpr bool is_block_of(List<F...>) {

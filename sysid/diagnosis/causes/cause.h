@@ -1,7 +1,7 @@
 #pragma once
-// Declares the causes that a diagnosis may name. Each cause is defined in its own file in this folder (form.h
-// documents the format), and registry.h lists them. This header is the interface to the rest of the
-// diagnosis.
+// Declares the causes that a diagnosis may name. Each cause is defined in a file of this folder (form.h
+// documents its format), and registry.h lists all causes. The rest of the diagnosis includes only this
+// header.
 
 #include <algorithm>
 #include <cstddef>
@@ -17,25 +17,26 @@
 
 namespace softgrip::sysid {
 
-/// A form of a cause: a block that extends a model.
+/// One form of a cause: a block that extends a model by the effect of the cause.
 struct CauseForm {
   std::size_t type = 0;  ///< index in model::catalogue()
-  /// True: the form has as many parameters as are necessary to follow any slow signal. A fit starts with all
-  /// of them at zero, so a scan of the start point does not show how well the form fits.
+  /// True: the form has enough parameters to follow any slow signal. Its start point has all parameters at
+  /// zero, so a scan of start points does not show how well the form fits.
   bool free_form = false;
-  /// Returns the start points of fits. They cover the plausible range for data of these scales, within the
-  /// declared bounds.
+  /// Returns the start points of fits. They lie within the declared bounds and cover the plausible range for
+  /// data of these scales.
   std::vector<model::BlockSpec> (*starts)(const Scales& scales) = nullptr;
-  /// Returns true if a block of this type has this form. nullptr: every block of the type has it.
+  /// Returns true if a block of this type has this form. If the pointer is null, every block of the type has
+  /// this form.
   bool (*holds)(const model::BlockSpec& block) = nullptr;
-  /// Returns true if a fit may change value `index`. The others keep their start value, such as a calibrated
-  /// range or a limit that the data do not reach.
+  /// Returns true if a fit may change the parameter `index`. The other parameters keep their start values.
+  /// Examples are a calibrated range, and a limit that the data do not reach.
   bool (*is_fitted)(std::size_t index) = nullptr;
-  /// Returns the range in which a fit may change value `index`, in addition to the declared bounds. Outside
-  /// this range the block would represent a different effect.
+  /// Returns the range in which a fit may change the parameter `index`, in addition to its declared bounds.
+  /// Outside this range, the block would represent a different effect.
   Range (*range)(std::size_t index, const Scales& scales, const model::Model& model) = nullptr;
-  /// Returns the reading of a sensor of this shape at a displacement [mm]. nullptr: the form is not a static
-  /// sensor (sensor_shape).
+  /// Returns the reading of a sensor with this block at a displacement [mm]. If the pointer is null, the form
+  /// is not a static sensor (sensor_shape).
   double (*shown_mm)(const model::BlockSpec& block, double displacement_mm) = nullptr;
 };
 
@@ -48,14 +49,16 @@ struct Cause {
   bool found_by_fitting = true;
   Column needs = Column::none;
   std::span<const Advice> advice;
-  std::string_view indistinguishable;  ///< id of a cause with equal readings for every command; empty: none
+  /// Id of a cause that gives equal readings for every command; empty: no such cause.
+  std::string_view indistinguishable;
   std::span<const std::string_view> counterparts;
   std::span<const std::string_view> confounded_with;
   bool is_stop = false;
   bool makes_distinguishable = false;
   bool is_ideal = false;
   Appears appears = Appears::anywhere;
-  std::string_view sensor_shape;  ///< description of the static sensor shape; empty: not a static sensor
+  /// Description of the static shape of the sensor; empty: the cause is not a static sensor.
+  std::string_view sensor_shape;
   WhenChanged when_changed;
 
   [[nodiscard]] constexpr bool is_static_sensor() const { return !sensor_shape.empty(); }
@@ -69,27 +72,26 @@ struct Cause {
 /// Returns all causes, sorted by the position of their first form in the signal path.
 [[nodiscard]] std::span<const Cause> all_causes();
 [[nodiscard]] std::optional<Cause> find_cause(std::string_view id);
-/// Returns the cause that has this block type as a form. Returns nullptr for blocks that belong to the base
-/// structure or are the random error of the sensor, because these are not causes.
+/// Returns the cause that has a form with this block type. Returns nullptr if the block belongs to the base
+/// structure or describes the random error of the sensor, because such blocks are not causes.
 [[nodiscard]] const Cause* cause_of(std::size_t block_type);
 
-/// Returns the form of the cause that matches the block.
+/// Returns the form of the cause that this block has.
 [[nodiscard]] const CauseForm& form_of(const Cause& cause, const model::BlockSpec& block);
-/// Returns the form of the block, searched among the forms of all these causes, or nullptr if none of them
-/// has it.
+/// Returns the form that this block has among the forms of all these causes. Returns nullptr if none of the
+/// causes has such a form.
 [[nodiscard]] const CauseForm* form_among(std::span<const Cause> causes, const model::BlockSpec& block);
 
-/// Returns the position in a model of the block of this cause, in any of its forms, or an empty value.
+/// Returns the position of the cause's block in a model, or nullopt if the model contains none of its forms.
 [[nodiscard]] std::optional<std::size_t> position_of(const model::Model& model, const Cause& cause);
-/// Returns the model without the block of the cause.
+/// Returns the model after removal of the block of the cause.
 [[nodiscard]] model::Model without(model::Model model, const Cause& cause);
 
-/// Returns the reason why the data cannot test this cause ("needs a temperature_c column that varies"), or an
-/// empty string.
+/// Returns the reason why the data cannot test this cause, such as "needs a temperature_c column that
+/// varies". Returns an empty string if the data can test the cause.
 [[nodiscard]] std::string unanswerable(const Cause& cause, const Scales& scales);
 
-/// Returns the start points of all forms. The list is empty for a cause that a fit of a trajectory cannot
-/// find.
+/// Returns the start points of all forms of a cause. The list is empty if a fit cannot find the cause.
 [[nodiscard]] std::vector<model::BlockSpec> starts_of(const Cause& cause, const Scales& scales);
 
 }  // namespace softgrip::sysid

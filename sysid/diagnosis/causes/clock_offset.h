@@ -1,12 +1,13 @@
 #pragma once
-// The reading leads the command.
+// Defines a cause: the reading reacts before the command changes.
 
 #include "model/blocks/clock_offset.h"
 #include "sysid/diagnosis/causes/form.h"
 
 namespace softgrip::sysid::causes {
 
-/// A reading with a late time stamp is equivalent to a dead time, and no log can separate the two.
+/// This cause covers readings with an early time stamp. A late time stamp has the same effect as a dead time,
+/// and no log can separate the two.
 struct ClockOffset : FormOf<model::ClockOffset> {
   static constexpr bool is_ideal = true;
   static constexpr Appears appears = Appears::moving;

@@ -1,5 +1,5 @@
 #pragma once
-// The stiffness increases beyond a position because of an object or a stop.
+// Defines a cause: the stiffness increases beyond a position because of an object or a stop.
 
 #include "model/blocks/contact.h"
 #include "sysid/diagnosis/causes/form.h"
@@ -21,8 +21,8 @@ struct Contact : FormOf<model::Contact> {
                    {0.35 * s.span_mm, 0.55 * s.span_mm, 0.7 * s.span_mm, 0.85 * s.span_mm, 0.95 * s.span_mm}},
                   {"stiffening", {0.2, 1.5}}});
   }
-  /// A contact near zero is equivalent to a smaller gain. A contact near the largest displacement could fit
-  /// any effect there.
+  /// A contact near zero displacement has the same effect as a smaller gain. A contact near the largest
+  /// displacement could fit any effect in that range.
   static Bounds bounds(const Scales& s, const model::Model&) {
     return {{"position_mm", 0.05 * s.span_mm, s.span_mm}};
   }

@@ -7,45 +7,48 @@
 // title and station. A cause whose id differs from that of the block declares `id` and `title` itself.
 //
 // A form is a struct derived from FormOf<Block>, where Block is a block of the catalogue:
-//   static Starts starts(const Scales&);                   start points of fits; at least one
+//   static Starts starts(const Scales&);                   start points of fits, at least one
 //   static Bounds bounds(const Scales&, const model::Model&);  limits beyond which the block would duplicate
 //                                                          another effect as a false alternative
-//   static constexpr std::array<Parameter, N> fitted{...}; parameters that a fit moves; default: all
-//   static bool holds(const model::BlockSpec&);            required if several forms share a block: returns
-//                                                          true if the block has this form
-//   static constexpr bool free_form = true;                it can follow any slow signal: named only if no
-//                                                          law explains nearly as much
+//   static constexpr std::array<Parameter, N> fitted{...}; parameters that a fit changes; default: all
+//   static bool holds(const model::BlockSpec&);            returns true if the block has this form;
+//                                                          required if several forms share a block type
+//   static constexpr bool free_form = true;                the form can follow any slow signal, so it is
+//                                                          named only if no law explains nearly as much
 //
 // A cause must declare:
 //   static constexpr WhenChanged when_changed{words, {step, step}, {{{number, way}, ...}}, size};
-//                                                          for the operator of a rig that has acquired the
+//                                                          texts for the operator of a rig that shows the
 //                                                          cause; `number` and `way` name the indicators
 //                                                          of a recorded grip that change (health_sign.h);
-//                                                          optionally, the quantity that states the size
-//                                                          (SizedBy)
+//                                                          `size` is optional and selects the quantity
+//                                                          that states the size of the change (SizedBy)
 //
 // A cause may also declare:
 //   static constexpr Column needs = ...;                   the column that its test requires
-//   static constexpr std::array advice{Advice::...};       actions that separate it if no waveform does
+//   static constexpr std::array advice{Advice::...};       actions that separate the cause from others if
+//                                                          no waveform does
 //   static constexpr std::string_view indistinguishable = "...";
-//       a cause with equal readings for every command
+//       id of a cause that gives equal readings for every command
 //   static constexpr std::array<std::string_view, N> counterparts{...};
-//       sensor causes that may replace an actuator or load cause, or the reverse, in the order of testing
+//       ids of causes that may explain the same effect, in the order of testing: sensor causes for an
+//       actuator or load cause, and actuator or load causes for a sensor cause
 //   static constexpr std::array<std::string_view, N> confounded_with{...};
-//       causes that increase the uncertainty of its parameters beyond that of its fit, if they are present
+//       ids of causes that make the parameters of this cause more uncertain than its fit shows, if they are
+//       present too
 //   static constexpr bool is_stop = true;                  the displacement stops at a position
 //   static constexpr bool makes_distinguishable = true;
-//       has memory and acts between actuator and sensor: equal causes before and behind it give different
-//       readings
+//       the block has memory and acts between actuator and sensor, so equal causes before and behind the
+//       block give different readings
 //   static constexpr bool is_ideal = true;
-//       an ideal that no mechanism matches exactly: of two causes with equal loss and equally many
-//       parameters, the other one is named
+//       no mechanism matches this ideal exactly, so another cause with an equal loss and equally many
+//       parameters is named instead
 //   static constexpr std::string_view sensor_shape = "...";
-//       description of a sensor without memory, which a gauge can detect
+//       description of the static shape of the sensor, which a gauge check can detect
 //   static constexpr Appears appears = ...;
-//       where its effect must appear (evidence/signature.h)
+//       readings in which the effect of the cause must appear (evidence/signature.h)
 //   static constexpr bool found_by_fitting = false;
-//       a fit of a trajectory cannot find it: it has no start points
+//       a fit of a trajectory cannot find the cause, so the cause has no start points
 
 #include <array>
 #include <cstddef>
@@ -62,51 +65,56 @@
 
 namespace softgrip::sysid {
 
-/// Actions that separate causes which no waveform separates. An action separates two causes if both list it.
+/// Actions by which an operator separates causes that no waveform separates. Two causes are separated by an
+/// action that both list.
 enum class Advice : std::uint8_t {
   change_load,         ///< change the load, move the object, or hold the sensor against a gauge
   leave_vented,        ///< leave the finger vented for an hour and read the sensor zero
   record_temperature,  ///< record the temperature
-  vary_temperature,    ///< record the temperature and vary it; it separates this cause from any other
+  /// Record the temperature and vary it; this separates the cause from every other cause.
+  vary_temperature,
 };
 
-/// The quantity that states the size of a change, and its relation to the fitted parameters.
+/// Quantity that states the size of a change, and the computation of this quantity from the fitted
+/// parameters.
 struct SizedBy {
   enum class Of : std::uint8_t {
     full_pressure,  ///< mean effect at more than 90 % of the largest pressure
-    span,           ///< the same as a share of the span of the readings
-    largest,        ///< largest effect, with its sign
-    amplitude,      ///< largest effect, without its sign
-    number,         ///< value of a parameter of the block
+    /// Mean effect at more than 90 % of the largest pressure, as a share of the span of the readings.
+    span,
+    largest,    ///< largest effect, with its sign
+    amplitude,  ///< largest effect, without its sign
+    number,     ///< value of a parameter of the block
   };
   Of of = Of::full_pressure;
   std::string_view what = "at full pressure";
-  std::string_view unit{};    ///< empty: unit of the reading
-  std::string_view number{};  ///< name of the parameter for `number`; a form without this parameter uses
-                              ///< full_pressure
+  std::string_view unit{};  ///< unit of the quantity; empty: unit of the readings
+  /// Name of the parameter for Of::number; a form without this parameter uses full_pressure.
+  std::string_view number{};
   double factor = 1;
 };
 
-/// Texts for the operator of a finger that has acquired the cause since its baseline. Empty: the cause does
-/// not develop over time.
+/// Texts for the operator of a finger that shows the cause but did not show it in its baseline. Empty: the
+/// cause does not develop over time.
 struct WhenChanged {
-  std::string_view words;                      ///< "the finger rings"
-  std::array<std::string_view, 2> next_steps;  ///< actions for the operator, the quicker one first
-  HealthSigns signs{};                         ///< effects on indicators of recorded grips; empty: no effect
-  SizedBy size{};                              ///< quantity that states the size
+  std::string_view words;                      ///< description of the change: "the finger rings"
+  std::array<std::string_view, 2> next_steps;  ///< actions for the operator; the quicker action comes first
+  /// Indicators of recorded grips that the cause changes; empty: the cause changes no indicator.
+  HealthSigns signs{};
+  SizedBy size{};  ///< quantity that states the size
 };
 
-/// The range of a value.
+/// Range in which a value may lie.
 struct Range {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// A list of forms of a cause, or of causes of the registry.
+/// A list of types: the forms of a cause, or the causes of the registry.
 template <class... T>
 struct List {};
 
-/// Common members of all forms. Block is the class template of the block.
+/// Members that all forms of causes share. Block is the class template of the form's block.
 template <template <class> class Block>
 struct FormOf {
   using BlockType = Block<double>;
@@ -139,8 +147,8 @@ struct FormOf {
   };
   using Bounds = std::vector<Bound>;
 
-  /// Returns the parameters of the block with these values. All others have their neutral value or, if there
-  /// is none, their default value.
+  /// Returns the parameter values of the block. Parameters that are not given have their neutral value or, if
+  /// they have no neutral value, their default value.
   [[nodiscard]] static Values start(std::initializer_list<Value> given) {
     Values values;
     for (const model::ParameterSpec& spec : Block<double>::parameters)
@@ -149,7 +157,8 @@ struct FormOf {
     return values;
   }
 
-  /// Returns start points for all combinations of these values. The last axis varies fastest.
+  /// Returns start points for all combinations of the given parameter values. The last parameter varies
+  /// fastest.
   [[nodiscard]] static Starts every(std::initializer_list<Axis> axes) {
     Starts all{start({})};
     for (const Axis& axis : axes) {

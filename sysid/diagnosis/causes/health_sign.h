@@ -15,7 +15,7 @@ enum class HealthNumber : std::uint8_t {
   lag,            ///< delay of free motion relative to the baseline
   creep,          ///< additional motion at constant pressure, relative to the baseline
   loop_width,     ///< additional displacement during unloading, relative to the baseline
-  pressure_loss,  ///< command minus measured pressure while the finger holds
+  pressure_loss,  ///< command minus measured pressure during HOLDING
   leak,           ///< decrease of the measured pressure per second at constant command
   contact,        ///< reading at which a contact is detected
   time_to_grip,   ///< time from the first step of the sequence to the result HOLDING
@@ -42,15 +42,15 @@ inline constexpr std::array<HealthNumberInfo, health_numbers> health_number_info
   return health_number_infos[static_cast<std::size_t>(number)];
 }
 
-/// Direction in which an indicator changes.
+/// Direction in which a cause changes an indicator.
 enum class Moves : std::uint8_t { not_at_all, up, down, either_way };
 
-/// An indicator that a cause changes, with the direction.
+/// An indicator that a cause changes, and the direction of the change.
 struct HealthSign {
   HealthNumber number = HealthNumber::gain;
   Moves moves = Moves::not_at_all;
 };
-/// The indicators that a cause changes. Unused elements keep their default values.
+/// All indicators that a cause changes. An unused element has its default value.
 using HealthSigns = std::array<HealthSign, 4>;
 
 }  // namespace softgrip::sysid

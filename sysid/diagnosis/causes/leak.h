@@ -1,16 +1,16 @@
 #pragma once
-// Pressure is lost between valve and finger.
+// Defines a cause: pressure is lost between valve and finger.
 
 #include "model/blocks/leak.h"
 #include "sysid/diagnosis/causes/form.h"
 
 namespace softgrip::sysid::causes {
 
-/// This cause is found from a measured pressure below the command (verdict/valve_findings.h). In the
+/// This cause is found if the measured pressure is below the command (verdict/valve_findings.h). In the
 /// displacement, a leak has the same effect as a smaller gain.
 struct Leak : FormOf<model::Leak> {
   static constexpr bool found_by_fitting = false;
-  /// Empty, because a separate search finds a leak of a previously healthy finger
+  /// This member is empty because a separate search finds a leak that has developed since the baseline
   /// (changes/causes_without_block.h).
   static constexpr WhenChanged when_changed{};
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Single samples are wrong.
+// Defines a cause: single readings are wrong.
 
 #include "model/blocks/outliers.h"
 #include "sysid/diagnosis/causes/form.h"

@@ -1,5 +1,5 @@
 #pragma once
-// The reading contains a sustained oscillation that does not depend on the command.
+// Defines a cause: the reading contains a sustained oscillation that does not depend on the command.
 
 #include "model/blocks/periodic_disturbance.h"
 #include "sysid/diagnosis/causes/form.h"
@@ -13,7 +13,7 @@ struct PeriodicDisturbance : FormOf<model::PeriodicDisturbance> {
        "Check the sensor's shielding and ground; record with the finger vented."},
       {},
       {SizedBy::Of::amplitude, "oscillation of", "mm"}};
-  /// Returns one start point per significant line in the spectrum of the residual.
+  /// Returns one start point for each significant line in the spectrum of the residual.
   static Starts starts(const Scales& s) {
     Starts starts;
     for (const Line& line : s.residual_lines) {

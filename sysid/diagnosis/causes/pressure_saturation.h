@@ -1,5 +1,5 @@
 #pragma once
-// The pressure saturates below the command.
+// Defines a cause: the pressure saturates at a value below the command.
 
 #include "model/blocks/pressure_saturation.h"
 #include "sysid/diagnosis/causes/form.h"

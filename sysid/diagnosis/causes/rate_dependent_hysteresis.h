@@ -1,5 +1,6 @@
 #pragma once
-// The width of the hysteresis loop depends on the rate, in addition to the effect of creep.
+// Defines a cause: the width of the hysteresis loop depends on the rate of the pressure, in addition to the
+// effect of creep.
 
 #include "model/blocks/rate_dependent_levelling.h"
 #include "model/blocks/rate_dependent_width.h"
@@ -18,7 +19,7 @@ struct RateDependentHysteresis {
        "Check for rubbing, dried lubricant or a swollen seal, then record again."},
       {{{HealthNumber::loop_width, Moves::up}, {HealthNumber::lag, Moves::up}}}};
 
-  /// An additional hysteresis element that relaxes.
+  /// Form of the cause: an additional hysteresis element whose output relaxes with time.
   struct Relaxing : FormOf<model::RelaxingFriction> {
     static Starts starts(const Scales& s) {
       const double gain = s.gain_mm_per_kpa();
@@ -30,18 +31,18 @@ struct RateDependentHysteresis {
       return {// An element that does not saturate within the pressure range is linear in the pressure: a
               // viscous branch.
               {"width_kpa", 0.01 * s.largest_kpa, 0.5 * s.largest_kpa},
-              // The data cannot determine a relaxation that is slower than the load cycles.
+              // The data cannot determine a time constant that is longer than the load cycles.
               {"time_constant_s", s.sample_s, 0.1 * s.campaign_s}};
     }
   };
 
-  /// The hysteresis of the base structure with parameters that depend on the rate.
+  /// Form of the cause: the hysteresis of the base structure, with parameters that depend on the rate.
   template <template <class> class Block>
   struct Following : FormOf<Block> {
     using Form = FormOf<Block>;
     static typename Form::Starts sized(typename Form::Parameter size, const std::vector<double>& sizes,
                                        const Scales& s) {
-      // Rates at which the pressure would reach its largest value in 5 s, in 1 s and in 0.2 s.
+      // At these rates, the pressure would rise from 0 to its largest value in 5 s, in 1 s and in 0.2 s.
       return Form::every({{"rate_kpa_per_s", {0.2 * s.largest_kpa, s.largest_kpa, 5 * s.largest_kpa}},
                           {"settling_s", {0.03, 0.2}},
                           {size, sizes}});
@@ -49,15 +50,16 @@ struct RateDependentHysteresis {
     static typename Form::Bounds bounds(const Scales& s, const model::Model&) {
       return {// A change that is equal at all rates of the data is only a different loop width.
               {"rate_kpa_per_s", 0.05 * s.largest_kpa, 20 * s.largest_kpa},
-              // With a longer memory, the block would describe the history of the pressure, not its rate.
+              // If the rate were averaged over a longer time, the block would describe the history of the
+              // pressure instead of its rate.
               {"settling_s", 0.5 * s.sample_s, 0.5}};
     }
   };
-  /// The width of the hysteresis grows with the rate.
+  /// Form of the cause: the width of the hysteresis increases with the rate.
   struct Growing : Following<model::RateDependentWidth> {
     static Starts starts(const Scales& s) { return sized("growth", {0.06, 0.2, 0.6}, s); }
   };
-  /// The saturation of the hysteresis changes with the rate.
+  /// Form of the cause: the saturation of the hysteresis changes with the rate.
   struct Levelling : Following<model::RateDependentLevelling> {
     static Starts starts(const Scales& s) { return sized("levelling", {-0.3, 0.5, 3.0}, s); }
   };

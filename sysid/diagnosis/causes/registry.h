@@ -62,7 +62,8 @@ using All = List<ActuatorThreshold,        //
                  ValveDeadband,            //
                  ValveLag>;
 
-/// Blocks that are not a form of a cause: the base structure, and the random error of the sensor.
+/// Blocks that are not a form of a cause. They belong to the base structure or describe the random error of
+/// the sensor.
 using NoCauses = List<model::AsymmetricValveLag<double>,      //
                       model::PressureRegulator<double>,       //
                       model::RateLimit<double>,               //

@@ -1,5 +1,6 @@
 #pragma once
-// The sensor is sampled more slowly than the command, or the reading is frozen for some time.
+// Defines a cause: the sensor is sampled more slowly than the command, or its reading is frozen for some
+// time.
 
 #include "model/blocks/sampling.h"
 #include "sysid/diagnosis/causes/form.h"

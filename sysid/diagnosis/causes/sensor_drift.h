@@ -1,5 +1,6 @@
 #pragma once
-// The zero of the sensor drifts: steadily, during warm-up, sinusoidally, or along a piecewise linear curve.
+// Defines a cause: the zero of the sensor drifts steadily, during warm-up, sinusoidally, or along a piecewise
+// linear curve.
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +25,7 @@ struct SensorDrift {
       {{{HealthNumber::zero, Moves::either_way}, {HealthNumber::contact, Moves::either_way}}},
       {SizedBy::Of::largest, "largest drift of the zero", "mm"}};
 
-  /// The zero drifts at a constant rate.
+  /// Form of the cause: the zero drifts at a constant rate.
   struct Steady : FormOf<model::SensorDrift> {
     static Starts starts(const Scales& s) {
       const double rate = 3600 * 0.05 * s.span_mm / s.campaign_s;
@@ -32,19 +33,20 @@ struct SensorDrift {
     }
   };
 
-  /// The zero drifts while the sensor warms up.
+  /// Form of the cause: the zero drifts while the sensor warms up.
   struct WarmUp : FormOf<model::SensorWarmUp> {
     static Starts starts(const Scales& s) {
       return every(
           {{"warm_up_mm", {-0.05 * s.span_mm, 0.05 * s.span_mm}}, {"warm_up_time_s", {0.3 * s.campaign_s}}});
     }
-    /// A faster warm-up is equivalent to creep of the actuator, a slower one to a steady drift.
+    /// A faster warm-up has the same effect as creep of the actuator. A slower warm-up has the same effect as
+    /// a steady drift.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"warm_up_time_s", s.soonest_s(), s.campaign_s}};
     }
   };
 
-  /// The zero follows a slow sinusoid.
+  /// Form of the cause: the zero follows a slow sinusoid.
   struct Wander : FormOf<model::SensorWander> {
     /// Returns start points with different periods, eight phases and two amplitudes.
     static Starts starts(const Scales& s) {
@@ -61,19 +63,19 @@ struct SensorDrift {
       }
       return starts;
     }
-    /// The period is at least a twelfth of the campaign and at most three campaigns. With a longer period,
-    /// the data would contain only a trend.
+    /// The period is at least 1/12 of the campaign and at most 3 campaigns. If the period were longer, the
+    /// data would contain only a trend.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"wander_period_s", s.campaign_s / 12, 3 * s.campaign_s}};
     }
   };
 
-  /// The zero follows a piecewise linear curve.
+  /// Form of the cause: the zero follows a piecewise linear curve.
   struct Knots : FormOf<model::SensorFreeDrift> {
     static constexpr bool free_form = true;
     static constexpr std::array<Parameter, 0> fitted{};
     static Starts starts(const Scales& s) {
-      constexpr double closest_s = 12;  // with shorter intervals, the curve would follow the hysteresis loops
+      constexpr double closest_s = 12;  // at shorter intervals, the curve would follow the hysteresis loops
       const auto knots = static_cast<std::size_t>(std::clamp(s.campaign_s / closest_s, 2.0, 16.0));
       Values values = start({{"knot_interval_s", s.campaign_s / static_cast<double>(knots)}});
       values.resize(values.size() + knots, 0.0);

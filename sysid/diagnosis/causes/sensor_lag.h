@@ -1,5 +1,5 @@
 #pragma once
-// The reading lags behind the displacement.
+// Defines a cause: the reading lags behind the displacement.
 
 #include "model/blocks/sensor_lag.h"
 #include "sysid/diagnosis/causes/form.h"

@@ -1,5 +1,5 @@
 #pragma once
-// The scale of the sensor is nonlinear.
+// Defines a cause: the scale of the sensor is nonlinear.
 
 #include "model/blocks/sensor_nonlinearity.h"
 #include "sysid/diagnosis/causes/form.h"
@@ -15,14 +15,14 @@ struct SensorNonlinearity : FormOf<model::SensorNonlinearity> {
       "the scale of the sensor is nonlinear",
       {"Check whether the sensor has been displaced or its target is tilted.",
        "Measure five positions with a gauge (`softgrip diagnose --gauge`)."}};
-  /// The calibrated range is not fitted, because the nonlinearity is defined relative to it.
+  /// The calibrated range is not fitted, because the size of the nonlinearity refers to this range.
   static constexpr std::array<Parameter, 2> fitted{"bow_mm", "wave_mm"};
 
   static Starts starts(const Scales& s) {
     return every(
         {{"bow_mm", {-0.02 * s.span_mm, 0.02 * s.span_mm}}, {"wave_mm", {0.0}}, {"range_mm", {s.span_mm}}});
   }
-  /// Returns start values for a fit to gauge readings.
+  /// Returns parameter values of the block as the start of a fit to gauge readings.
   static Values bent(double bow_mm, double wave_mm, double range_mm) {
     return start({{"bow_mm", bow_mm}, {"wave_mm", wave_mm}, {"range_mm", range_mm}});
   }

@@ -1,5 +1,5 @@
 #pragma once
-// The reading saturates.
+// Defines a cause: the reading saturates at a limit.
 
 #include <algorithm>
 
@@ -17,7 +17,7 @@ struct SensorSaturation : FormOf<model::SensorSaturation> {
       "the reading saturates",
       {"Check whether the sensor is too near or too far: its range must cover the whole stroke.",
        "Move the target by hand beyond the position of saturation and note the reading."}};
-  /// The lower limit is not fitted. Its value is one that the data do not reach.
+  /// The lower limit is not fitted. Its value is below all readings.
   static constexpr std::array<Parameter, 1> fitted{"upper_mm"};
   static constexpr double no_floor_mm = -1e4;
 
@@ -25,7 +25,7 @@ struct SensorSaturation : FormOf<model::SensorSaturation> {
     return every({{"lower_mm", {no_floor_mm}},
                   {"upper_mm", {0.97 * s.span_mm, 0.9 * s.span_mm, 0.75 * s.span_mm, 0.6 * s.span_mm}}});
   }
-  /// Returns start values for a fit to gauge readings.
+  /// Returns parameter values of the block as the start of a fit to gauge readings.
   static Values ending(double upper_mm) {
     return start({{"lower_mm", no_floor_mm}, {"upper_mm", std::max(upper_mm, 0.9 * no_floor_mm)}});
   }

@@ -1,5 +1,5 @@
 #pragma once
-// The gain changes with the displacement, in the same way for loading and unloading.
+// Defines a cause: the gain changes with the displacement, equally for loading and unloading.
 
 #include "model/blocks/stiffening.h"
 #include "sysid/diagnosis/causes/form.h"

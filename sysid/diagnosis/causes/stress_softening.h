@@ -1,5 +1,5 @@
 #pragma once
-// The finger has become softer because of the largest load so far (Mullins effect).
+// Defines a cause: the largest load so far has made the finger softer (Mullins effect).
 
 #include "model/blocks/pseudo_elastic_softening.h"
 #include "model/blocks/stress_softening.h"
@@ -16,7 +16,7 @@ struct StressSoftening {
        "Leave it vented overnight and record again. If the stiffness recovers, it is not wear."},
       {{{HealthNumber::gain, Moves::up}, {HealthNumber::loop_width, Moves::up}}}};
 
-  /// The softening is proportional to the largest pressure so far.
+  /// Form of the cause: the softening is proportional to the largest pressure so far.
   struct Proportional : FormOf<model::StressSoftening> {
     static constexpr std::array<Parameter, 1> fitted{"softening_per_kpa"};
     static bool holds(const model::BlockSpec& block) {
@@ -26,7 +26,7 @@ struct StressSoftening {
       return every({{"softening_per_kpa", {0.05 / s.largest_kpa, 0.3 / s.largest_kpa}}});
     }
   };
-  /// The softening saturates at large pressures.
+  /// Form of the cause: the softening saturates at large pressures.
   struct Levelling : FormOf<model::StressSoftening> {
     static Starts starts(const Scales& s) {
       return every({{"softening_per_kpa", {0.5 / s.largest_kpa}},
@@ -34,13 +34,15 @@ struct StressSoftening {
     }
   };
 
-  /// The softening increases gradually as the pressure falls below the largest pressure so far.
+  /// Form of the cause: the softening increases gradually as the pressure falls below the largest pressure so
+  /// far.
   struct PseudoElastic : FormOf<model::PseudoElasticSoftening> {
     static Starts starts(const Scales& s) {
       return every({{"softening_per_kpa", {0.05 / s.largest_kpa, 0.3 / s.largest_kpa}},
                     {"range_kpa", {0.1 * s.largest_kpa, 0.3 * s.largest_kpa}}});
     }
-    /// A smaller range is equivalent to an immediate change. With a larger range, the effect is not visible.
+    /// If the range is smaller, the softening is practically immediate. If the range is larger, its effect is
+    /// not visible.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"range_kpa", 0.02 * s.largest_kpa, 2 * s.largest_kpa}};
     }

@@ -1,5 +1,5 @@
 #pragma once
-// The pressure at the finger decreases when the supply pressure falls.
+// Defines a cause: the pressure at the finger decreases when the supply pressure falls.
 
 #include "model/blocks/supply_sag.h"
 #include "sysid/diagnosis/causes/form.h"
@@ -14,7 +14,7 @@ struct SupplySag : FormOf<model::SupplySag> {
        "Connect other consumers to another line, or set the supply regulator higher, and record again."},
       {{{HealthNumber::pressure_loss, Moves::up}}},
       {SizedBy::Of::number, "share of a supply loss that reaches the finger", "%", "coupling", 100}};
-  /// The nominal supply is not fitted, because the coupling is defined relative to it.
+  /// The nominal supply pressure is not fitted, because the coupling refers to this pressure.
   static constexpr std::array<Parameter, 1> fitted{"coupling"};
 
   static Starts starts(const Scales& s) {

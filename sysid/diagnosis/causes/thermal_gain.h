@@ -1,5 +1,5 @@
 #pragma once
-// The gain of the finger depends on the temperature.
+// Defines a cause: the gain of the finger depends on the temperature.
 
 #include "model/blocks/thermal_gain.h"
 #include "sysid/diagnosis/causes/form.h"

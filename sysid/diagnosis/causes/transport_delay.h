@@ -1,5 +1,5 @@
 #pragma once
-// There is a dead time between command and pressure.
+// Defines a cause: there is a dead time between command and pressure.
 
 #include "model/blocks/transport_delay.h"
 #include "sysid/diagnosis/causes/form.h"
@@ -8,7 +8,8 @@ namespace softgrip::sysid::causes {
 
 struct TransportDelay : FormOf<model::TransportDelay> {
   static constexpr std::array<std::string_view, 1> confounded_with{"valve_lag"};
-  /// No mechanism is a pure dead time: a real effect that delays the response also slows it down.
+  /// No mechanism is a pure dead time, because every real effect that delays the response also makes it
+  /// slower.
   static constexpr bool is_ideal = true;
   static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{

@@ -1,6 +1,6 @@
 #pragma once
-// The valve ignores command changes smaller than a band. It follows the command with play, or it sticks and
-// jumps.
+// Defines a cause: the valve ignores command changes that are smaller than a band. It either follows the
+// command with play, or it sticks and jumps.
 
 #include <cmath>
 
@@ -19,14 +19,14 @@ struct ValveDeadband {
       {},
       {SizedBy::Of::number, "dead band of the valve", "kPa", "band_kpa"}};
 
-  /// The valve follows the command with play.
+  /// Form of the cause: the valve follows the command with play.
   struct Play : FormOf<model::ValveDeadband> {
     static Starts starts(const Scales& s) {
       return every({{"band_kpa", {0.01 * s.largest_kpa, 0.05 * s.largest_kpa, 0.15 * s.largest_kpa}}});
     }
   };
 
-  /// The valve sticks and then jumps to the command.
+  /// Form of the cause: the valve sticks and then jumps to the command.
   struct Stiction : FormOf<model::ValveStiction> {
     static Starts starts(const Scales& s) {
       Starts starts;
@@ -34,10 +34,10 @@ struct ValveDeadband {
       return starts;
     }
 
-    /// Returns start values of the band. The model error has a local minimum at every band for which the
-    /// stick-slip motion reaches the largest pressure with one jump more or less. Start values that differ by
-    /// one jump cover all minima, down to bands of 1/60 of the largest pressure. Smaller bands differ only
-    /// slightly in their effect, so these start values are 10 % apart.
+    /// Returns start values of the band. The model error has a local minimum at each band with which the
+    /// stick-slip motion reaches the largest pressure in a whole number of jumps. Start values whose numbers
+    /// of jumps differ by one cover all minima, down to bands of 1/60 of the largest pressure. Two similar
+    /// bands below this value have similar effects, so these start values are 10 % apart.
     static std::vector<double> bands_kpa(const Scales& s) {
       std::vector<double> bands;
       for (int steps = 5; steps < 60; ++steps) bands.push_back(s.largest_kpa / steps);

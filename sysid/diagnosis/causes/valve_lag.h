@@ -1,5 +1,5 @@
 #pragma once
-// The pressure lags behind the command because of the regulator and the tube.
+// Defines a cause: the pressure lags behind the command because of the regulator and the tube.
 
 #include "model/blocks/valve_lag.h"
 #include "sysid/diagnosis/causes/form.h"

@@ -20,11 +20,13 @@ constexpr std::size_t most_samples = 12000;
 constexpr std::size_t most_bins = 10;
 constexpr std::size_t fewest_in_bin = 20;
 constexpr std::size_t draws = 1999;
-/// Smallest block length in correlation times and in seconds [s], and smallest number of blocks.
+/// Smallest length of a block, in correlation times of the residual and in seconds, and smallest number of
+/// blocks.
 constexpr double memories_per_block = 8;
 constexpr double shortest_block_s = 4;
 constexpr std::size_t fewest_blocks = 12;
-/// If the unexplained variance is below this share of the noise variance, it is not divided among conditions.
+/// If the unexplained variance is below this share of the noise variance, no share of it is computed for the
+/// conditions.
 constexpr double worth = 0.01;
 
 /// Returns the correlation time of the coloured part of the residual: the integral of the autocorrelation
@@ -45,7 +47,7 @@ double memory_s(const Samples& samples, const std::vector<double>& residual, dou
   if (first < 4 / std::sqrt(static_cast<double>(residual.size()))) return interval_s;
   double sum = 0;
   const std::size_t furthest = residual.size() / fewest_blocks / 2;
-  // The step grows with the lag, because the correlation is smooth at large lags.
+  // The step between lags grows with the lag, because the autocorrelation is smooth at large lags.
   for (std::size_t lag = 1, step = 1; lag < furthest; lag += step) {
     const double r = correlation(lag) / first;
     if (r < 0.05) break;
@@ -72,7 +74,7 @@ std::vector<std::size_t> blocks_of(const Samples& samples, double block_s, std::
   return block;
 }
 
-/// Assigns each sample to a bin. none_bin: the sample is in no bin.
+/// Assigns each sample to a bin of a condition. none_bin: the sample belongs to no bin.
 struct Binning {
   static constexpr std::size_t none_bin = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> bin;
@@ -91,7 +93,7 @@ std::vector<double> edges_of(std::vector<double> values, bool logarithmic) {
     for (std::size_t k = 1; k < most_bins; ++k) edges.push_back(values[values.size() * k / most_bins]);
   }
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  // An edge at the smallest value would create an empty bin below it.
+  // If the first edge equals the smallest value, the bin below it would be empty, so the edge is removed.
   if (!edges.empty() && edges.front() <= values.front()) edges.erase(edges.begin());
   return edges;
 }
@@ -171,8 +173,8 @@ Sums sums_of(const Binning& binning, const std::vector<double>& residual,
   return s;
 }
 
-/// Returns the sum of squares between bins after the residual of each block was multiplied by the sign of the
-/// block.
+/// Returns the sum of squares between bins. Before, the residuals of each block are multiplied by the sign of
+/// this block.
 double between(const Sums& s, const std::vector<double>& counts, const std::vector<double>& sign,
                std::vector<double>& scratch) {
   scratch.assign(s.bins, 0.0);
@@ -202,8 +204,8 @@ double sign_flip_p(const Sums& s, std::uint64_t seed) {
   return static_cast<double>(as_large + 1) / static_cast<double>(draws + 1);
 }
 
-/// Returns the reduction of the squared error when each block is predicted by the bin means of the other
-/// blocks instead of their overall mean.
+/// Returns the amount by which the bin means predict the residual better than the overall mean [sum of
+/// squares]. For each block, both predictions are computed from the other blocks.
 double cross_validated_gain(const Sums& s) {
   std::vector<double> sum(s.bins), count(s.bins);
   for (std::size_t k = 0; k < s.bins; ++k) {
@@ -226,7 +228,8 @@ double cross_validated_gain(const Sums& s) {
       if (n == 0) continue;
       const double rest = count[k] - n;
       const double mean = rest > 0 ? (sum[k] - here) / rest : overall;
-      // This is the sum of (r - overall)^2 - (r - mean)^2 over the samples.
+      // The added value is the sum of (r - overall)^2 - (r - mean)^2 over the samples r in this bin of the
+      // block.
       gain += 2 * here * (mean - overall) + n * (square(overall) - square(mean));
     }
   }
@@ -295,7 +298,8 @@ void adjust(std::vector<ConditionEvidence>& list) {
   }
 }
 
-/// Returns the sum of squared differences between each sample and the mean of all other blocks.
+/// Returns the sum of squared differences between each sample and the mean of all blocks except the sample's
+/// own block.
 double squares_about_others(const std::vector<double>& residual, const std::vector<std::size_t>& block,
                             std::size_t blocks) {
   std::vector<double> sum(blocks, 0.0), count(blocks, 0.0);

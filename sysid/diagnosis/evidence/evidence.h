@@ -1,13 +1,13 @@
 #pragma once
-// Determines the conditions under which a model has an error, from the residual. The tests remain valid if
+// Determines from the residual of a model on which conditions its error depends. The tests are valid also if
 // adjacent errors are correlated.
 //
 // The samples are divided into blocks that are longer than the correlation time of the residual. The interval
-// of a conditional mean is that of a mean of clusters (Liang and Zeger 1986). Differences between conditional
-// means are tested with random signs of whole blocks (wild bootstrap, Liu 1988, on blocks). If the error does
-// not depend on the condition, both signs of the error of a block are equally likely. The test preserves the
-// correlation inside a block and unequal variances. The share that a condition explains is computed by
-// cross-validation: the means are computed without the block on which they are evaluated.
+// of the mean error under a condition is that of a mean of clusters (Liang and Zeger 1986). Differences
+// between these means are tested by random changes of the sign of whole blocks (wild bootstrap, Liu 1988). If
+// the error does not depend on the condition, both signs are equally likely. The test preserves the
+// correlation in a block and the variance of each block. The share of the variance that a condition explains
+// is cross-validated: the means that predict a block are computed from the other blocks.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +21,7 @@
 
 namespace softgrip::sysid {
 
-/// The residual in a narrow range (bin) of a condition.
+/// Statistics of the residual in one bin, a narrow range of a condition.
 struct ConditionBin {
   double value = 0;  ///< mean value of the condition in the bin
   std::string label;
@@ -35,36 +35,36 @@ struct ConditionBin {
 
 /// Dependence of a residual on one condition.
 struct ConditionEvidence {
-  Condition condition;  ///< the condition without its values at the samples
+  Condition condition;  ///< the condition; its vector of values is empty
   std::vector<ConditionBin> bins;
-  double share_percent = 0;  ///< share of the variance beyond the noise that the condition explains, on
-                             ///< held-out blocks; 0 if negative
-  double p_value = 1;        ///< probability that differences between the means are this large by chance
-  double p_adjusted = 1;     ///< p-value adjusted for the test of all conditions (Holm 1979)
-  bool clear = false;        ///< is_clear(p_adjusted, share_percent)
+  /// Share of the variance above the noise that the condition explains on held-out blocks; 0 if negative.
+  double share_percent = 0;
+  /// Probability that chance alone makes the differences between the means so large.
+  double p_value = 1;
+  double p_adjusted = 1;  ///< p-value adjusted for the number of tested conditions (Holm 1979)
+  bool clear = false;     ///< is_clear(p_adjusted, share_percent)
 };
 
-/// The spectrum of the residual.
+/// Spectrum of the residual and its most significant line.
 struct SpectrumEvidence {
   std::vector<double> frequency_hz;
   std::vector<double> density_mm2_per_hz;
   double peak_hz = 0;  ///< frequency of the most significant line
   double peak_amplitude_mm = 0;
-  double share_percent = 0;  ///< share of the variance beyond the noise that the line contains
-  double p_value = 1;  ///< probability of such a line in a smooth spectrum, for all frequencies together
-                       ///< (Bonferroni)
+  double share_percent = 0;  ///< share of the variance above the noise that the line contains
+  double p_value = 1;  ///< probability that a smooth spectrum has such a line at any frequency (Bonferroni)
   std::string why_not;
 };
 
 /// Complete description of the residual of one model.
 struct ResidualEvidence {
   double rms_mm = 0;
-  double structure_mm = 0;  ///< square root of the residual's variance beyond the noise
-  double memory_s = 0;      ///< correlation time of the residual without its white noise
+  double structure_mm = 0;  ///< square root of the part of the residual's variance that exceeds the noise
+  double memory_s = 0;      ///< correlation time of the residual after subtraction of its white noise
   double block_s = 0;
   std::size_t blocks = 0;
-  std::vector<ConditionEvidence> conditions;  ///< sorted by share, the largest first and untested conditions
-                                              ///< last
+  /// Sorted by decreasing share; conditions that were not tested come last.
+  std::vector<ConditionEvidence> conditions;
   SpectrumEvidence spectrum;
 };
 
@@ -77,7 +77,8 @@ struct ResidualEvidence {
                                                 const std::vector<Condition>& conditions, double noise_mm,
                                                 std::uint64_t seed);
 
-/// An indication that the refit has absorbed an effect outside its structure and has become unphysical.
+/// Indication that a refitted model is unphysical, because it has absorbed an effect that its structure does
+/// not contain.
 struct UnphysicalSign {
   std::string id;  ///< "wrong_way_first", "stiffness_near_zero", "creep_beyond_data", "at_bound"
   std::string sentence;
@@ -91,15 +92,15 @@ struct UnphysicalSign {
 struct Evidence {
   ResidualEvidence as_given;
   ResidualEvidence recalibrated;
-  ResidualEvidence extended;               ///< equal to `recalibrated` if nothing was added
-  std::vector<UnphysicalSign> unphysical;  ///< indications in the recalibrated model
+  ResidualEvidence extended;               ///< equal to `recalibrated` if the model was not extended
+  std::vector<UnphysicalSign> unphysical;  ///< indications that the recalibrated model is unphysical
 };
 [[nodiscard]] Evidence examine_fits(const std::vector<Record>& records, const StructureFit& as_given,
                                     const StructureFit& recalibrated, const StructureFit& extended,
                                     double noise_mm, std::uint64_t seed);
 
-/// Returns "The error depends on the rate of the pressure (41 %) and ...", or a sentence that the error
-/// depends significantly on no condition.
+/// Returns a sentence such as "The error depends on the rate of the pressure (41 %) and ...". If the error
+/// depends significantly on no condition, the sentence states this.
 [[nodiscard]] std::string dependence_sentence(const ResidualEvidence& evidence);
 
 }  // namespace softgrip::sysid

@@ -12,10 +12,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A branch counts as having a stiffness near zero if it moves the finger by more than this multiple of the
+/// A branch counts as having a stiffness near zero if the motion that it adds exceeds this multiple of the
 /// measured span.
 constexpr double spans_of_a_branch = 3;
-/// The data cannot determine a time constant longer than this share of the longest log.
+/// The data cannot determine a time constant that exceeds this share of the longest log.
 constexpr double share_of_log = 1.0;
 
 void add_branches(const model::Model& model, const std::vector<Record>& records,

@@ -16,20 +16,20 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Separation above which the result is practically certain, so that a larger separation has no further
-/// benefit.
+/// A larger separation than this value is counted as this value, because the result of the experiment is then
+/// practically certain.
 constexpr double certain_sigma = 40;
-/// Maximum number of alternatives that are tested for each cause.
+/// Maximum number of alternatives that are tested for each named cause.
 constexpr std::size_t most_alternatives = 4;
-/// Number of waveforms whose separation is confirmed by nonlinear fits.
+/// Number of waveforms for which nonlinear fits confirm the separation.
 constexpr std::size_t confirmed = 2;
 constexpr double usual_slew_kpa_per_s = 300;
 /// Time [s] in which a rig comes to rest before an experiment starts.
 constexpr double rest_before_s = 10;
 
-/// The alternative causes for one position, that is, for one named cause of the verdict.
+/// A named cause of the verdict and its alternatives, which an experiment should separate.
 struct Contest {
-  std::vector<Hypothesis> hypotheses;  ///< hypotheses, that of the named cause first
+  std::vector<Hypothesis> hypotheses;  ///< hypotheses; the first one contains the named cause
   std::vector<std::string> ids;
 };
 
@@ -50,7 +50,7 @@ std::vector<Cause> next_best(const NamedCause& named) {
   return causes;
 }
 
-/// Returns the reason why there are no causes to separate.
+/// Returns the reason why the diagnosis contains no causes that an experiment should separate.
 std::string without_pairs(const Diagnosis& d) {
   std::string open;
   for (const NamedCause& named : d.causes) {
@@ -121,7 +121,8 @@ class Designer {
     add_contest(rest, alternatives, std::string(named.cause.id), d_.extended);
   }
 
-  /// Compares the model without changes with the best rejected causes. Used if the verdict names no cause.
+  /// Adds a comparison of the refitted model with the best rejected causes. It is used if the verdict names
+  /// no cause.
   void add_contest_of_rejected() {
     std::vector<Cause> alternatives;
     for (const CandidateScore& score : d_.rejected) {
@@ -144,8 +145,8 @@ class Designer {
     contests_.push_back(std::move(contest));
   }
 
-  /// Returns the waveform as a record that follows the campaign. Its surroundings (such as the temperature)
-  /// are those at the end of the campaign.
+  /// Returns the waveform as a record that follows the last log. Conditions such as the temperature have the
+  /// values at the end of the last log.
   [[nodiscard]] Record record_of(const Waveform& waveform) const {
     const Record& last = d_.records.back();
     Record record;
@@ -174,7 +175,8 @@ class Designer {
 
   [[nodiscard]] double distance(const Record& record, const Pair& pair, Way way) const {
     const Contest& contest = contests_[pair.contest];
-    if (pair.indistinguishable) return 0;  // only the form of the catalogue blocks separates the two causes
+    // No waveform separates these causes; a computed distance would only be due to the form of the blocks.
+    if (pair.indistinguishable) return 0;
     const auto from = [&](std::size_t truth, std::size_t alternative) {
       const std::vector<double> truth_mm = contest.hypotheses[truth].prediction(record);
       const bool finite =
@@ -207,8 +209,8 @@ class Designer {
     rank();
   }
 
-  /// Computes the separations of the first `count` waveforms of the menu. The refit is the more accurate
-  /// method, and it may only reduce the result of the linear one.
+  /// Computes the separations of the first `count` waveforms of the menu. @param way  linear, or with a
+  /// refit. The refit is more accurate; its result replaces the linear result only if it is smaller.
   void separate(std::size_t count, Way way) {
     parallel_for(count * pairs_.size(), options_.threads, [&](std::size_t job) {
       JudgedWaveform& judged = result_.menu[job / pairs_.size()];
@@ -218,8 +220,8 @@ class Designer {
     });
   }
 
-  /// Ranks the waveforms by the squared separation per minute, because squared separations add up over
-  /// repetitions of an experiment.
+  /// Ranks the waveforms by the squared separation per minute. The squared separations of repeated
+  /// experiments add up.
   void rank() {
     for (JudgedWaveform& judged : result_.menu) {
       double learnt = 0;
@@ -248,7 +250,7 @@ class Designer {
     result_.predicted_separation_sigma = least;
   }
 
-  /// Returns true if a gauge can separate the pair and no waveform can.
+  /// Returns true if no waveform can separate the two causes but a gauge can.
   [[nodiscard]] bool asks_for_gauge(const Pair& pair, const AdviceFacts& facts) const {
     const auto one = find_cause(contests_[pair.contest].ids[pair.one]);
     const auto other = find_cause(contests_[pair.contest].ids[pair.other]);

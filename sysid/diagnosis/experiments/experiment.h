@@ -1,6 +1,7 @@
 #pragma once
-// Designs the next experiment: selects the waveform for which alternatives that explain the data equally well
-// differ most. Before a comparison, each alternative is refitted to the prediction of the other one.
+// Designs the next experiment: selects the waveform that best separates alternatives which explain the logs
+// equally well. Before two alternatives are compared, each of them is refitted to the prediction of the other
+// one.
 
 #include <optional>
 #include <string>
@@ -14,79 +15,79 @@
 namespace softgrip::sysid {
 
 struct ExperimentOptions {
-  /// Limits of the rig. Default: the largest pressure of the logs and 300 kPa/s.
+  /// Pressure limits of the rig. If not set, the limits are the largest pressure of the logs and 300 kPa/s.
   std::optional<RigLimits> limits;
-  /// True: if the verdict has no alternatives, design an experiment that compares it with the best rejected
+  /// True: if the verdict lists no alternatives, the experiment compares the verdict with the best rejected
   /// candidates.
   bool always = false;
-  /// True: the rig can record the measured pressure, although the logs do not contain it (for the advice).
+  /// True: the rig can record the measured pressure. The advice uses this if the logs do not contain it.
   bool pressure_recorded = false;
   double most_minutes = 10;
-  /// Names of waveforms that were already played. They are not proposed again.
+  /// Names of waveforms that the rig has already executed. They are not proposed.
   std::vector<std::string> done;
   unsigned threads = 0;
 };
 
-/// Predicted distance between two structures, in one experiment.
+/// Predicted distance between the responses of two structures in one experiment.
 struct Separation {
   std::string one;
   std::string other;
-  /// Root of the sum of squared differences that remain after the refit, in standard deviations of the noise.
-  /// The correlation of the noise is taken into account. The smaller value of two cases is used: `one` is
-  /// true and `other` is refitted, or the reverse.
+  /// Distance in standard deviations of the noise: the root of the sum of squared differences that remain
+  /// after a refit. The correlation of the noise is taken into account. There are two cases: `one` is true
+  /// and `other` is refitted, or the reverse. The smaller distance is used.
   double sigma = 0;
 };
 
 /// A waveform of the menu with its predicted separations.
 struct JudgedWaveform {
   Waveform waveform;
-  double minutes = 0;  ///< duration including the rest before the waveform
+  double minutes = 0;  ///< duration of the waveform and of the rest before it
   std::vector<Separation> separations;
-  double merit = 0;  ///< information per minute: sum of the squared separations, divided by `minutes`
+  double merit = 0;  ///< sum of the squared separations, divided by `minutes`
 };
 
-/// A check of the sensor at known positions. It can separate alternatives with different sensor shapes that
-/// no waveform separates.
+/// A proposed check of the sensor at known positions. It can separate alternatives that no waveform
+/// separates, if their sensors differ in shape.
 struct ProposedGaugeCheck {
-  std::vector<double> positions_mm;                       ///< positions in the order in which they are to be
-                                                          ///< read
+  std::vector<double> positions_mm;                       ///< positions in the order of reading
   model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of the positions
-  std::vector<std::string> separates;                     ///< ids of causes
+  std::vector<std::string> separates;                     ///< ids of the causes that the check separates
   double minutes = 0;
 };
 
-/// The proposed next experiment.
+/// Proposal for the next experiment.
 struct NextExperiment {
   std::optional<JudgedWaveform> best;
-  std::vector<std::string> separates;             ///< ids that `best` separates
-  double predicted_separation_sigma = 0;          ///< smallest separation among the pairs that `best`
-                                                  ///< separates
-  std::vector<JudgedWaveform> menu;               ///< all evaluated waveforms
-  std::optional<ProposedGaugeCheck> gauge_check;  ///< empty if a gauge check separates no causes or was
-                                                  ///< already made
-  /// Advice on actions that no waveform can replace, such as to record a column or to change a load. Full
-  /// sentences.
+  std::vector<std::string> separates;  ///< ids of the causes that `best` separates
+  /// Smallest separation of all pairs of causes that `best` separates.
+  double predicted_separation_sigma = 0;
+  std::vector<JudgedWaveform> menu;  ///< all waveforms that were evaluated
+  /// Absent if a gauge check separates no causes or was already made.
+  std::optional<ProposedGaugeCheck> gauge_check;
+  /// Advice on actions that no waveform can replace, such as recording a column or changing a load. Each
+  /// element is one or more sentences.
   std::vector<std::string> advice;
 };
 
-/// Name of the gauge file without readings that is written next to diagnosis.json if a gauge check is
+/// Name of the gauge file without readings. It is written next to diagnosis.json if a gauge check is
 /// proposed.
 inline constexpr const char* gauge_positions_file = "gauge_positions.csv";
 
-/// Smallest separation of two causes that counts as distinguishable.
+/// Two causes count as distinguishable from this separation on.
 inline constexpr double separation_needed_sigma = 5;
 
-/// Designs the next experiment. Returns an empty design if the verdict requires no experiment.
+/// Designs the next experiment for a diagnosis. If the verdict requires no experiment, the result contains no
+/// waveform.
 [[nodiscard]] NextExperiment design_experiment(const Diagnosis& diagnosis, const ExperimentOptions& options);
 
 /// Returns the proposed experiment as a sequence file for softgripd.
-/// @param channel  channel to drive; empty: all channels of the rig.
+/// @param channel  channel that the sequence drives; empty: all channels of the rig.
 [[nodiscard]] std::string sequence_yaml(const NextExperiment& experiment, const std::string& channel = "");
-/// Returns the sequence file of a given waveform.
+/// Returns the sequence file for one waveform.
 [[nodiscard]] std::string sequence_yaml(const Waveform& waveform, const std::string& channel);
 
-/// Adds next_experiment, gauge_check and experiment_advice to the content of diagnosis.json. gauge_check is
-/// null if none is proposed.
+/// Adds the keys next_experiment, gauge_check and experiment_advice to the content of diagnosis.json.
+/// gauge_check is null if no gauge check is proposed.
 void add_experiment(nlohmann::ordered_json& diagnosis_json, const NextExperiment& experiment,
                     const std::string& file);
 

@@ -18,7 +18,7 @@ constexpr const char* vary_temperature =
     "add a temperature_c column and repeat the run at a different temperature: a gain that depends on it is "
     "neither wear nor drift";
 
-/// Returns advice on how to separate the two causes if no waveform can.
+/// Returns advice on the separation of two causes that no waveform can separate.
 std::string instead_of_waveform(const Cause& one, const Cause& other, const std::string& names,
                                 bool gauge_made) {
   if (has(one, Advice::change_load) && has(other, Advice::change_load)) {

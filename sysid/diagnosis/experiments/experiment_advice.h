@@ -8,14 +8,14 @@
 namespace softgrip::sysid {
 
 struct AdviceFacts {
-  bool pressure_recorded = false;  ///< the logs have pressure_kpa
+  bool pressure_recorded = false;  ///< true: the logs have the column pressure_kpa
   bool temperature_varies = false;
-  bool separable = false;   ///< a waveform separates the two causes
-  bool gauge_made = false;  ///< the sensor was checked against a gauge already
+  bool separable = false;   ///< true: a waveform separates the two causes
+  bool gauge_made = false;  ///< true: the sensor was already checked against a gauge
 };
 
-/// Returns advice, one sentence per element, on how to separate two causes, given by their ids. The list is
-/// empty if a waveform is sufficient.
+/// Returns advice on the separation of two causes, given by their ids. Each element is a sentence. The list
+/// is empty if a waveform separates the causes.
 [[nodiscard]] std::vector<std::string> advice_for(std::string_view one, std::string_view other,
                                                   const AdviceFacts& facts);
 

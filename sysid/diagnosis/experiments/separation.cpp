@@ -14,14 +14,14 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Share of the information on a parameter that is added to its diagonal element. The system of equations
-/// then remains solvable in directions without information.
+/// This share of the information on a parameter is added to its diagonal element. The system of equations can
+/// then be solved even if the data contain no information on some combination of parameters.
 constexpr double ridge = 1e-9;
-/// The existing records are thinned to this interval for a fit together with the new record.
+/// Sample interval of the existing records in a fit together with the new record [s].
 constexpr double thinned_interval_s = 0.05;
 constexpr FitEffort few_iterations{.most_iterations = 10, .tolerance = 1e-6};
 
-/// Whitens the rows from `first` to `last` of every column.
+/// Whitens the rows `first` to `last` of each column of a matrix with the noise model.
 void whiten(Jacobian& matrix, std::size_t first, std::size_t last, const NoiseModel& noise) {
   const std::vector<double>& a = noise.coefficients;
   const auto row = [](std::size_t i) { return static_cast<Eigen::Index>(i); };
@@ -37,7 +37,8 @@ std::size_t readings_of(const Record& record) {
                                                 [](double y) { return std::isfinite(y); }));
 }
 
-/// Returns the Jacobian over all readings, whitened for each record. It is empty if the model is not defined.
+/// Returns the Jacobian of all readings, whitened record by record. The result is empty if the prediction of
+/// the model is not finite.
 Jacobian whitened_jacobian(const std::vector<Record>& records, const FitSpace& space, const FitPoint& point,
                            const NoiseModel& noise) {
   const auto residuals = residuals_for(records, space);

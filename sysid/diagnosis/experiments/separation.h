@@ -1,5 +1,5 @@
 #pragma once
-// Computes how far two fitted structures differ in a future experiment.
+// Computes the distance between the responses of two fitted structures in a future experiment.
 
 #include <vector>
 
@@ -10,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// A structure that may be true, with the information that the existing records contain about its parameters.
+/// A structure that may be true, with the information of the existing records on its parameters.
 class Hypothesis {
  public:
   /// `records` must outlive this object.
@@ -19,12 +19,12 @@ class Hypothesis {
   [[nodiscard]] const StructureFit& fit() const noexcept { return fit_; }
   /// Returns the prediction for a record that starts from rest.
   [[nodiscard]] std::vector<double> prediction(const Record& record) const;
-  /// Returns the distance to `truth_mm` in standard deviations of the noise, where `truth_mm` is the
-  /// prediction of another hypothesis for `record`. The parameters are first adjusted to `truth_mm` as far as
-  /// the existing records permit. The model is linearised.
+  /// Returns the distance from the prediction of this hypothesis to `truth_mm`, in standard deviations of the
+  /// noise. `truth_mm` is the prediction of another hypothesis for `record`. Before, the parameters are
+  /// fitted to `truth_mm` as far as the existing records permit. The model is linearised.
   [[nodiscard]] double linear_distance(const Record& record, const std::vector<double>& truth_mm) const;
-  /// Returns the same distance after a few nonlinear iterations of a fit to the existing records and the new
-  /// one.
+  /// Returns the distance of linear_distance() after a few nonlinear iterations of a fit to the existing
+  /// records and the new record.
   [[nodiscard]] double refitted_distance(const Record& record, const std::vector<double>& truth_mm) const;
 
  private:
@@ -36,7 +36,7 @@ class Hypothesis {
                                  ///< states
 };
 
-/// Returns the innovations of a series in units of their standard deviation. The innovations are white if the
+/// Returns the innovations of a series, divided by their standard deviation. They are white noise if the
 /// noise model is correct.
 [[nodiscard]] std::vector<double> whitened(const std::vector<double>& series, const NoiseModel& noise);
 

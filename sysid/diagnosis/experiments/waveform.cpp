@@ -7,13 +7,14 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Used share of the rig's slew limit, because a rig changes the shape of a command that reaches the limit.
+/// Share of the slew limit of the rig that a waveform uses. If a command reaches the limit, the rig changes
+/// its shape.
 constexpr double slew_share = 0.9;
-/// Rest before and after the waveform [s], so that the first and the last motion are recorded completely.
+/// Rest before and after a waveform [s]. The log then contains the complete first and last motion.
 constexpr double lead_s = 1;
 constexpr double tail_s = 5;
 
-/// Builds a waveform from corners. Levels are shares of the largest pressure.
+/// Builds a waveform corner by corner. Levels are shares of the largest pressure.
 class Pen {
  public:
   Pen(std::string name, std::string about, const RigLimits& limits) : limits_(limits) {
@@ -26,8 +27,7 @@ class Pen {
     const double target = level * limits_.pressure_max_kpa;
     const Corner last = waveform_.corners.back();
     const double fastest_s = std::abs(target - last.pressure_kpa) / (slew_share * limits_.slew_kpa_per_s);
-    // Round times to multiples of 1 ms, so that they are readable in the file and on the time grid of most
-    // rigs.
+    // Times are rounded to 1 ms, so that they are readable in the file and lie on the time grid of most rigs.
     const double taken_s = std::ceil(1000 * std::max(seconds, fastest_s) - 1e-9) / 1000;
     waveform_.corners.push_back({round_ms(last.time_s + std::max(taken_s, 0.001)), target});
     return *this;

@@ -1,13 +1,13 @@
 #pragma once
-// Waveforms of the proposed experiments: pressures over time that a rig can execute and that begin and end at
-// 0.
+// Defines the waveforms of the proposed experiments: pressures over time that a rig can execute. They begin
+// and end at zero pressure.
 
 #include <string>
 #include <vector>
 
 namespace softgrip::sysid {
 
-/// Limits of a rig for pressure commands.
+/// Limits of a rig for its pressure commands.
 struct RigLimits {
   double pressure_max_kpa = 60;
   double slew_kpa_per_s = 300;
@@ -21,18 +21,19 @@ struct Corner {
 
 /// One experiment of the menu. Its slew rate never exceeds the limit of the rig.
 struct Waveform {
-  std::string name;   ///< "rest_and_repeat"
+  std::string name;   ///< id of the waveform: "rest_and_repeat"
   std::string about;  ///< description in one line, for display
   std::vector<Corner> corners;
 
   [[nodiscard]] double duration_s() const { return corners.empty() ? 0 : corners.back().time_s; }
 };
 
-/// Returns the waveforms: rest and repeat; triangles at three rates over two decades; steps with holds; minor
-/// loops; increasing amplitudes; sharp steps. All of them are within the limits.
+/// Returns the waveforms of the menu: rest and repeat; triangles at three rates that span a factor of 100;
+/// steps with holds; minor loops; increasing amplitudes; sharp steps. All waveforms are within the limits of
+/// the rig.
 [[nodiscard]] std::vector<Waveform> experiment_menu(const RigLimits& limits);
 
-/// Returns samples of the command with the interval `interval_s`, from 0 to the end of the waveform.
+/// Returns the command at times from 0 to the end of the waveform, at intervals of `interval_s`.
 [[nodiscard]] std::vector<double> sampled_kpa(const Waveform& waveform, double interval_s);
 
 }  // namespace softgrip::sysid

@@ -16,23 +16,24 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Margin of the clipping limits beyond the range of the logs' readings, as a share of the range and in
-/// standard deviations of the noise. The margin is large enough to distinguish a sensor that saturates from
-/// one that does not.
+/// Distance of the clipping limits from the lowest and the highest reading of the logs, as a share of the
+/// range of these readings and in standard deviations of the noise. It is large enough to distinguish a
+/// sensor that saturates from a sensor that does not.
 constexpr double beyond_share = 0.05;
 constexpr double beyond_noise = 10;
-/// Tolerated share of the difference between two hypotheses.
+/// Share of the difference between two hypotheses that counts as tolerance in their comparison.
 constexpr double tolerated_share = 0.2;
-/// Tolerated share of the logs' noise. No log can show a smaller deviation.
+/// Tolerated error as a share of the noise of the logs. No log can show a smaller error of the sensor.
 constexpr double never_matters = 0.25;
-/// Smallest share of the range of the logs that the gauge readings must cover.
+/// The gauge readings must cover at least this share of the range of the readings in the logs.
 constexpr double least_covered_share = 0.5;
-/// Normal deviate that is exceeded with a probability of 1 in 1000 (one-sided).
+/// Value that a standard normal variable exceeds with a probability of 1 in 1000.
 constexpr double deviate = 3.09;
 
-using Line = std::pair<double, double>;  // value at 0 and slope
+using Line = std::pair<double, double>;  // value at 0, and slope
 
-/// Returns the chi-square value that is exceeded with a probability of 1 in 1000 (Wilson and Hilferty 1931).
+/// Returns the value that a chi-square variable with `freedom` degrees of freedom exceeds with a probability
+/// of 1 in 1000 (Wilson and Hilferty 1931).
 double chi_square_limit(double freedom) {
   if (freedom < 1) return std::numeric_limits<double>::infinity();
   const double v = 2 / (9 * freedom);
@@ -114,8 +115,9 @@ class Checker {
     return values;
   }
 
-  /// Returns start values of zero and scale: straight lines through all readings, through the readings that
-  /// are not clipped, and through the lower half of these, which a saturation does not affect.
+  /// Returns start values of zero and scale as straight lines. The first line is fitted to all readings, and
+  /// the second to the readings that are not clipped. The third is fitted to the lower half of the latter,
+  /// which a saturation does not affect. The last line has zero 0 and scale 1.
   [[nodiscard]] std::vector<Line> starts(double offset_mm) const {
     const double middle = (scales_.lowest_mm + scales_.highest_mm) / 2;
     const auto all = [](std::size_t) { return true; };
@@ -135,8 +137,8 @@ class Checker {
   using Bent = causes::SensorNonlinearity;
   using Ending = causes::SensorSaturation;
 
-  /// Fits zero and scale together with further parameters. `shape_of` converts these parameters to a sensor
-  /// shape, and `own` contains their start values.
+  /// Fits zero and scale together with the parameters of the sensor shape. @param shape_of  converts these
+  /// parameters to a sensor shape. @param own  start values of these parameters.
   [[nodiscard]] GaugeFit fitted_with(const std::function<SensorShape(Numbers own)>& shape_of,
                                      const std::vector<std::vector<double>>& own, double offset_mm) const {
     const auto residuals = [&](Numbers p, std::span<double> r) {
@@ -207,8 +209,8 @@ class Checker {
     return chi_square(fit, tolerance_mm) <= chi_square_limit(freedom);
   }
 
-  /// Compares every hypothesis with the most likely one and tolerates a share of the difference between the
-  /// two.
+  /// Compares every hypothesis with the most likely one. A share of the difference between the two is
+  /// tolerated.
   void compare() {
     std::vector<GaugeFit>& fits = result_.fits;
     const auto likelier = [](const GaugeFit& a, const GaugeFit& b) { return a.rms_mm < b.rms_mm; };
@@ -241,8 +243,8 @@ class Checker {
   }
 
   void judge_coverage() {
-    // The range comes from the fitted line, because the noise of a sensor that does not move must not count
-    // as coverage.
+    // The covered range is computed from the fitted line. If it were computed from the readings, the noise of
+    // a sensor that does not move would count as coverage.
     const auto [least, most] =
         std::minmax_element(result_.straight.predicted_mm.begin(), result_.straight.predicted_mm.end());
     result_.covered_share = (*most - *least) / std::max(1e-9, scales_.highest_mm - scales_.lowest_mm);
@@ -307,7 +309,8 @@ GaugeCheck::Departure GaugeCheck::departure() const {
     result.largest_mm = std::max(result.largest_mm, std::abs(apart));
   }
   result.rms_mm = std::sqrt(sum / n);
-  // The deviation is compared with the noise alone, because no hypothesis defines a tolerance.
+  // The deviation from a straight line is compared with the noise alone, because there is no second
+  // hypothesis that defines a tolerance.
   const double gained = n * (square(straight.rms_mm) - square(fit.rms_mm)) / (2 * square(noise_mm));
   const auto more = static_cast<double>(fit.free - straight.free);
   result.clear = n > static_cast<double>(fit.free) && gained - more >= gauge_log_likelihood_needed;

@@ -15,18 +15,20 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::size_t most_bytes = std::size_t{16} * 1024 * 1024;
-/// Positions within this distance count as equal.
+/// Two positions count as equal if their distance is at most this value.
 constexpr double same_mm = 1e-6;
 constexpr double beyond = 1.3;
 constexpr std::size_t fewest_planned = 9;
 
-/// Columns of the positions. The columns of the readings are those of a log (log_columns.h).
+/// Names of the columns that can contain the positions. The columns of the readings are those of a log
+/// (log_columns.h).
 constexpr std::array<std::string_view, reading_columns.size()> position_columns{"gauge_mm", "gauge_deg",
                                                                                 "gauge_rad"};
 constexpr std::size_t column_count = 3;
 constexpr std::size_t needed_columns = 2;
 
-/// Finds the column of the readings in a list of column names. Returns its index in reading_columns.
+/// Finds the column of the readings among the column names of a file. Returns the index of its name in
+/// reading_columns.
 std::size_t reading_column_in(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < reading_columns.size(); ++i) {
     const bool here = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
@@ -152,7 +154,7 @@ class GaugeReader {
   std::vector<GaugeReading> readings_;
 };
 
-/// Returns the largest round step with which the span contains enough positions.
+/// Returns the largest round step that gives enough positions in the span.
 double round_step(double span) {
   const double most = span / static_cast<double>(fewest_planned - 1);
   const double decade = std::pow(10.0, std::floor(std::log10(most)));
@@ -209,7 +211,7 @@ std::vector<double> planned_positions(double largest_reading_mm) {
   const double step = round_step(span);
   const auto last = static_cast<int>(std::ceil(span / step - 1e-9));
   for (int i = 0; i <= last; ++i) {
-    // Remove rounding errors from the decimal values, because users read them.
+    // Rounding errors are removed from the decimal values, because users read these values.
     up.push_back(std::copysign(std::round(1e6 * step * i) / 1e6, largest_reading_mm) + 0.0);
   }
   std::vector<double> all = up;

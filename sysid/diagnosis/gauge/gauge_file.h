@@ -5,10 +5,9 @@
 //   gauge_mm,displacement_mm[,samples][,...]
 //
 // For a bending angle the columns are gauge_deg and angle_deg, or gauge_rad and angle_rad. Radians are
-// converted to degrees.
-// Each row contains one reading, in the order in which the readings were taken. Positions may repeat and need
-// not increase. `samples` is the number of sensor samples that were averaged for the reading (1 without this
-// column). Other columns are ignored.
+// converted to degrees. Each row contains one reading, and the rows are in the order in which the readings
+// were taken. Positions may occur repeatedly and in any order. `samples` is the number of sensor samples that
+// were averaged for the reading (1 without this column). Other columns are ignored.
 
 #include <optional>
 #include <string>
@@ -21,50 +20,51 @@
 namespace softgrip::sysid {
 
 struct GaugeReading {
-  double position_mm = 0;  ///< position according to the gauge; its zero is arbitrary
+  double position_mm = 0;  ///< position that the gauge shows; its zero is arbitrary
   double reading_mm = 0;   ///< reading of the sensor
-  double samples = 1;      ///< number of sensor samples that were averaged, at least 1
+  double samples = 1;      ///< number of sensor samples that were averaged for the reading, at least 1
 
   bool operator==(const GaugeReading&) const = default;
 };
 
 struct GaugeFile {
-  std::string path;    ///< path as the user named it
-  std::string sha256;  ///< SHA-256 of the file, lower-case hexadecimal
+  std::string path;    ///< path of the file as the user wrote it
+  std::string sha256;  ///< SHA-256 of the bytes of the file, in lower-case hexadecimal
   std::vector<GaugeReading> readings;
   model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of positions and readings
 };
 
-/// Smallest number of positions: 3, because a straight line fits 2 positions exactly.
+/// Smallest number of different positions. A straight line fits 2 positions exactly, so at least 3 are
+/// needed.
 inline constexpr std::size_t fewest_gauge_positions = 3;
 
-/// Parses the text of a gauge file. Adds all problems to `problems` and returns an empty value if there is
-/// one. `file` is the name of the file in messages.
+/// Parses the text of a gauge file. Adds all problems to `problems` and returns nullopt if there is a
+/// problem. `file` is the name of the file in messages.
 [[nodiscard]] std::optional<GaugeFile> parse_gauge(const std::string& file, std::string_view text,
                                                    document::Problems& problems);
 
-/// Reads and parses a gauge file. Reports a file that cannot be read as a problem.
+/// Reads and parses a gauge file. If the file cannot be read, a problem is added.
 [[nodiscard]] std::optional<GaugeFile> read_gauge(const std::string& path, document::Problems& problems);
 
 /// Returns the readings as CSV text. parse_gauge() converts this text back to the same readings.
 [[nodiscard]] std::string format_gauge(const std::vector<GaugeReading>& readings,
                                        model::OutputUnit output_unit = model::OutputUnit::mm);
 
-/// Returns the distinct positions in increasing order.
+/// Returns the different values in a list of positions, in increasing order.
 [[nodiscard]] std::vector<double> distinct_positions(std::vector<double> positions_mm);
-/// Returns the distinct positions of readings.
+/// Returns the different positions of a list of readings, in increasing order.
 [[nodiscard]] std::vector<double> distinct_positions(const std::vector<GaugeReading>& readings);
 
-/// Returns the positions to read: at least nine positions in round steps from 0 to about 1.3 times the
-/// largest reading of the logs, so that a saturation of the sensor is visible. They are listed in increasing,
-/// decreasing and again in increasing order.
+/// Returns the positions for a gauge check: at least nine positions in round steps from 0 to about 1.3 times
+/// the largest reading of the logs. This range shows a saturation of the sensor. The positions are listed
+/// three times: in increasing, in decreasing and again in increasing order.
 [[nodiscard]] std::vector<double> planned_positions(double largest_reading_mm);
 
-/// Returns a gauge file without readings, as a template.
+/// Returns the text of a gauge file with positions and empty readings, as a template.
 [[nodiscard]] std::string positions_csv(const std::vector<double>& positions_mm,
                                         model::OutputUnit output_unit = model::OutputUnit::mm);
 
-/// Duration of one reading [s]: place the target, wait until the sensor is at rest, read.
+/// Time that one reading takes [s]: move to the position, wait until the sensor is at rest, read the sensor.
 inline constexpr double seconds_per_reading = 20;
 [[nodiscard]] inline double minutes_for(std::size_t readings) {
   return seconds_per_reading * static_cast<double>(readings) / 60;

@@ -14,21 +14,21 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest nonlinearity that gives a warning, as a share of the logs' noise. No log can show a smaller
-/// nonlinearity.
+/// Smallest nonlinearity of the sensor that gives a warning, as a share of the noise of the logs. No log can
+/// show a smaller nonlinearity.
 constexpr double worth_telling = 0.5;
 
-/// A possible cause for one position (one named cause) of the selection.
+/// A possible cause at one position of the selection. Each position is one named cause.
 struct Standing {
   Cause cause;
   StructureFit fit;
-  bool implied = false;  ///< true: the verdict of the logs does not list it as an alternative; only the gauge
-                         ///< check may add it
+  /// True: the logs do not list this cause as an alternative, but the gauge check may add it.
+  bool implied = false;
 };
 
-/// One possible explanation of the logs, with one cause for each position.
+/// A possible explanation of the logs, which contains one cause for each position.
 struct Explanation {
-  std::vector<std::size_t> standing;  ///< for each position: index of one of its possible causes
+  std::vector<std::size_t> standing;  ///< for each position, the index of one of its possible causes
   std::size_t shape = 0;
 };
 
@@ -59,7 +59,7 @@ class Weighing {
     const GaugeScales scales = gauge_scales(data_.records, question_.noise_mm);
     explain(false);
     evidence_.check = check_gauge(question_.file.readings, shapes_, scales);
-    // A cause that the logs ruled out is considered again only if no remaining cause explains the readings.
+    // A cause that the logs ruled out is considered only if no other cause explains the gauge readings.
     const std::size_t left_by_logs = shapes_.size();
     if (evidence_.check.outcome == GaugeOutcome::unexplained) explain(true);
     if (shapes_.size() > left_by_logs)
@@ -78,7 +78,7 @@ class Weighing {
     for (const Cause& cause : sensor_counterparts(chosen.cause)) {
       if (std::find(others.begin(), others.end(), cause) == others.end()) others.push_back(cause);
     }
-    // A gauge is relevant only if one of the causes is a nonlinear or saturated sensor.
+    // A gauge check is relevant only if one of the causes is a nonlinear or a saturated sensor.
     std::vector<Cause> all = others;
     all.push_back(chosen.cause);
     const bool matters =
@@ -100,8 +100,8 @@ class Weighing {
     return fit_without_cause(data_.records, selection_.extended, selection_.chosen[place].cause);
   }
 
-  /// Lists every combination of possible causes, one per position, with the sensor shape that results.
-  /// Combinations with implied causes are included on request.
+  /// Lists every combination of possible causes with one cause per position, and the resulting sensor shape.
+  /// @param with_implied  true: include implied causes.
   void explain(bool with_implied) {
     std::vector<std::size_t> at(places_.size(), 0);
     explanations_.clear();
@@ -143,7 +143,7 @@ class Weighing {
     return shapes_.size() - 1;
   }
 
-  /// Returns true if the gauge permits an explanation with this cause in this position.
+  /// Returns true if the gauge readings permit an explanation with this cause at this position.
   [[nodiscard]] bool survives(std::size_t place, std::size_t standing) const {
     return std::any_of(explanations_.begin(), explanations_.end(), [&](const Explanation& e) {
       return e.standing[place] == standing && !evidence_.check.fits[e.shape].ruled_out;
@@ -177,8 +177,8 @@ class Weighing {
     replace(now);
   }
 
-  /// Keeps the remaining alternatives of a position. If the gauge check added the first cause, the cause that
-  /// the logs named becomes an alternative to it.
+  /// Updates the alternatives at a position to those that the gauge readings permit. If the gauge check has
+  /// added the first cause, the cause that the logs named becomes an alternative to this cause.
   void keep(std::size_t place, const std::vector<std::size_t>& left, bool brought_in) {
     ChosenCause& chosen = selection_.chosen[place];
     const std::vector<Standing>& standing = places_[place];
@@ -186,7 +186,7 @@ class Weighing {
     for (const Cause& alternative : chosen.alternatives) {
       const auto fitted = std::find_if(standing.begin(), standing.end(),
                                        [&](const Standing& s) { return s.cause == alternative; });
-      // An alternative without a fit could not be tested, so it is kept.
+      // An alternative that was not fitted could not be tested, so it is kept.
       const bool stays = fitted == standing.end() ||
                          std::find(left.begin() + 1, left.end(),
                                    static_cast<std::size_t>(fitted - standing.begin())) != left.end();
@@ -264,7 +264,7 @@ class Weighing {
     return "saturated at " + significant(end.shape.at(1e6), 3) + unit();
   }
 
-  /// Returns true if the logs alone do not determine the sensor.
+  /// Returns true if the logs alone do not determine the shape of the sensor.
   [[nodiscard]] bool is_asked() const {
     return std::any_of(places_.begin(), places_.end(), [](const std::vector<Standing>& standing) {
       return std::any_of(standing.begin(), standing.end(), [&](const Standing& s) {
@@ -284,7 +284,7 @@ class Weighing {
            ": the sensor is the cause, not the finger.";
   }
 
-  /// Returns the result of the check if more than one shape remains possible.
+  /// Returns the sentence on the result of the check if more than one sensor shape remains possible.
   [[nodiscard]] std::string sentence_open(bool bent) const {
     const GaugeCheck& check = evidence_.check;
     std::string left, out;
@@ -338,8 +338,8 @@ class Weighing {
     }
   }
 
-  /// Handles a nonlinear sensor that no named cause describes. Named causes whose nonlinearity is elsewhere
-  /// get the sensor causes as alternatives.
+  /// Adds alternatives if the sensor is nonlinear but no named cause describes this. Each named cause with a
+  /// nonlinearity in another component gets the sensor causes as alternatives.
   void add_sensor_alternatives() {
     for (ChosenCause& chosen : selection_.chosen) {
       if (!chosen.alternatives.empty() || chosen.cause.is_static_sensor()) continue;

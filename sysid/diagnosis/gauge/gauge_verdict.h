@@ -1,6 +1,6 @@
 #pragma once
-// Applies a gauge check of the sensor to the causes that a search has selected. Removes the alternatives that
-// the gauge readings rule out. If they rule out a named cause, the remaining alternative replaces it.
+// Applies a gauge check of the sensor to the causes that a search has selected. Alternatives that the gauge
+// readings rule out are removed. If a named cause is ruled out, its remaining alternative replaces it.
 
 #include <cstdint>
 #include <string>
@@ -21,21 +21,22 @@ struct GaugeEvidence {
 
 struct GaugeQuestion {
   const GaugeFile& file;
-  double noise_mm = 0;  ///< noise of the logs
+  double noise_mm = 0;  ///< standard deviation of the noise in the logs
   std::uint64_t seed = 1;
-  /// False: named causes and their alternatives are not changed, because the alternatives were fitted to
-  /// other records.
+  /// False: the named causes and their alternatives are not changed, because the alternatives were not fitted
+  /// to the same records.
   bool may_replace = true;
 };
 
-/// Returns true if a gauge can separate the two causes because the static shapes of their sensors differ.
+/// Returns true if a gauge can separate the two causes because they imply different static shapes of the
+/// sensor.
 [[nodiscard]] bool gauge_tells_apart(const Cause& one, const Cause& other);
 
-/// Returns the noise and the range of the readings of a campaign.
+/// Returns the noise and the range of the readings in the logs.
 [[nodiscard]] GaugeScales gauge_scales(const std::vector<Record>& records, double noise_mm);
 
-/// Checks the hypotheses of a selection against the gauge readings and changes the selection accordingly.
-/// @param warnings  receives further warnings for the verdict.
+/// Tests the hypotheses of a selection with the gauge readings and changes the selection accordingly.
+/// @param warnings  list to which warnings for the verdict are added.
 [[nodiscard]] GaugeEvidence weigh_gauge(const GaugeQuestion& question, const SearchData& data,
                                         const Division& division, Selection& selection,
                                         std::vector<std::string>& warnings);

@@ -40,7 +40,7 @@ Json cause_json(const NamedCause& named, const Budget& budget) {
   return json;
 }
 
-/// Returns the dynamics between the command and the measured pressure.
+/// Returns the model of the dynamics between the command and the measured pressure as JSON.
 Json valve_json(const ValveFindings& in_valve) {
   const ValveStage& stage = in_valve.stage;
   return {{"delay_s", stage.delay_s},
@@ -50,7 +50,7 @@ Json valve_json(const ValveFindings& in_valve) {
           {"noise_kpa", in_valve.noise_kpa}};
 }
 
-/// Returns the error budget as mean squares of held-out readings.
+/// Returns the error budget as JSON. Its values are mean squares of held-out readings.
 Json budget_json(const Diagnosis& d, const Budget& budget) {
   Json causes = Json::object();
   for (const NamedCause& named : d.causes) causes[std::string(named.cause.id)] = spread(named.gain_mm2);
@@ -167,7 +167,7 @@ Json gauge_json(const GaugeEvidence& gauge) {
                                   {"zero_mm", fit.zero_mm},
                                   {"scale", fit.scale}});
   }
-  // Nonlinearity of the sensor from the gauge readings alone, independent of the logs.
+  // This nonlinearity of the sensor is determined from the gauge readings alone, without the logs.
   const GaugeCheck::Departure departure = check.departure();
   json["sensor_alone"] = {{"straight_rms_mm", check.straight.rms_mm},
                           {"bent_rms_mm", check.free_bend.rms_mm},
@@ -239,14 +239,14 @@ Json json_of(const Diagnosis& d) {
                           {"heldout_rmse_mm", stick_slip->heldout_rmse_mm},
                           {"gain_percent", spread(stick_slip->gain_percent)}};
   }
-  json["staircase"] = json["stick_slip"];  // deprecated
+  json["staircase"] = json["stick_slip"];  // deprecated key
   json["gauge"] = d.gauge ? gauge_json(*d.gauge) : Json(nullptr);
   json["not_tested"] = d.not_tested;
   json["partial_causes"] = Json::array();
   for (const NamedCause& named : d.partial) json["partial_causes"].push_back(cause_json(named, budget));
   json["unexplained_rms_mm"] = {{"recalibrated", d.unexplained_recalibrated.excess_mm},
                                 {"left", d.unexplained_error.excess_mm}};
-  json["structure_mm"] = json["unexplained_rms_mm"];  // deprecated
+  json["structure_mm"] = json["unexplained_rms_mm"];  // deprecated key
   Json candidates = Json::object();
   for (const auto* list : {&d.causes, &d.partial}) {
     for (const NamedCause& named : *list) {

@@ -32,10 +32,10 @@ Tone tone_of(Verdict verdict) {
   return Tone::bad;
 }
 
-/// Maximum number of parameters per cause in the first part of the report.
+/// Maximum number of parameters per cause that the first part of the report lists.
 constexpr std::size_t parameters_shown = 6;
 
-/// Returns the data that the diagnosis used, in one line. The hashes of the logs are in the appendix.
+/// Returns the entries that state the data of the diagnosis. The hashes of the logs are in the appendix.
 Terms looked_at(const DiagnosisReport& report) {
   const Diagnosis& d = report.result;
   std::size_t samples = 0;
@@ -83,7 +83,8 @@ void add_found(Page& page, const DiagnosisReport& report) {
   page.figure(error_figure(d, logs_by_gain(d).front()));
   if (const auto looped = first_with_loops(d)) page.figure(loops_figure(d, *looped));
   if (!report.closed_loop) return;
-  // A curve of the PID controller alone contains no information about the models.
+  // If there is only the curve of the PID controller, the figure contains no information about the models and
+  // is left out.
   if (report.closed_loop->schemes.size() > 1) {
     page.figure(closed_loop_figure(*report.closed_loop));
   } else {

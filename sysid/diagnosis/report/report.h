@@ -1,6 +1,6 @@
 #pragma once
-// Writes the diagnosis as an HTML page. The first sentence is for technicians, the rest for readers who check
-// the result.
+// Writes a diagnosis as an HTML page. Its first sentence is for technicians, and the rest is for readers who
+// check the result.
 
 #include <cstdint>
 #include <optional>
@@ -14,38 +14,39 @@
 
 namespace softgrip::sysid {
 
-/// An experiment that separates causes which the logs cannot separate.
+/// An experiment that separates causes that the logs cannot separate.
 struct ProposedExperiment {
-  std::string file;                    ///< file name in the folder of the report
-  std::vector<std::string> separates;  ///< ids of causes
+  std::string file;                    ///< name of the sequence file in the folder of the report
+  std::vector<std::string> separates;  ///< ids of the causes that the experiment separates
   double predicted_separation_sigma = 0;
   double rig_minutes = 0;
   std::string waveform;  ///< description of the waveform
 };
 
-/// Simulated tracking of a reference trajectory with each model as the feedforward.
+/// Simulated tracking of a reference trajectory. The feedforward of each scheme uses a different model.
 struct ClosedLoopCurves {
   struct Scheme {
-    std::string name;  ///< "PID alone", "recalibrated model", "extended model"; it determines the line style
+    /// "PID alone", "recalibrated model" or "extended model"; the name determines the line style.
+    std::string name;
     double rmse_mm = 0;
-    std::vector<double> displacement_mm;  ///< displacement at each time of `time_s`
+    std::vector<double> displacement_mm;  ///< displacement at the times in `time_s`
   };
   std::string reference;  ///< description of the reference trajectory
   std::vector<double> time_s;
   std::vector<double> reference_mm;
-  std::vector<Scheme> schemes;  ///< at most three schemes, the best last
+  std::vector<Scheme> schemes;  ///< at most three schemes; the best one comes last
   std::vector<std::string> notes;
   model::OutputUnit output_unit = model::OutputUnit::mm;
 };
 
-/// Data for the page.
+/// Data that the report page shows.
 struct DiagnosisReport {
   const Diagnosis& result;
   const std::vector<Log>& logs;
   const model::Model& given;
   std::uint64_t seed = 1;
   std::optional<ProposedExperiment> next_experiment;
-  std::vector<std::string> advice;  ///< further measurements that would help, one sentence each
+  std::vector<std::string> advice;  ///< proposed measurements, one sentence each
   std::optional<ClosedLoopCurves> closed_loop;
 };
 

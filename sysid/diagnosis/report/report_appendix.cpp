@@ -18,7 +18,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Maximum number of logs with figures, including the log in the first part of the report.
+/// Maximum number of logs for which the report contains figures, including the log in its first part.
 constexpr std::size_t logs_shown = 3;
 
 void add_other_logs(Page& page, const Diagnosis& d) {

@@ -1,6 +1,6 @@
 #pragma once
-// Writes the appendix for readers who check a diagnosis: further logs, candidates, conditions, equations,
-// parameters and hashes.
+// Writes the appendix of a report for readers who check the diagnosis: further logs, candidates, conditions,
+// equations, parameters and hashes.
 
 #include "sysid/diagnosis/report/report.h"
 #include "sysid/pages/page.h"

@@ -22,7 +22,7 @@ std::string letter(std::size_t i) {
   return {static_cast<char>('A' + static_cast<char>(i))};
 }
 
-/// Returns a text such as "0.012 mm²", in the square of the unit of the readings.
+/// Returns a mean square as text, such as "0.012 mm²". The unit is the square of the unit of the readings.
 std::string square_text(double mm2, model::OutputUnit unit) {
   return significant(mm2, 3) + model::in_unit(" mm\xc2\xb2", unit);
 }
@@ -31,9 +31,9 @@ std::string amount(double mm2, double whole_mm2, model::OutputUnit unit) {
   return square_text(mm2, unit) + ", " + fixed(100 * mm2 / whole_mm2, 1) + " %";
 }
 
-/// Draws the error of the given model as a bar and marks the part that a second bar shows enlarged below.
-/// Returns the top of the second bar. The space above that bar, between the connecting lines, is for its
-/// title.
+/// Draws the error of the given model as a bar. A second bar below it shows a marked part of the first bar
+/// enlarged. Returns the top of the second bar. The space above the second bar, between the connecting lines,
+/// is for its title.
 double given_bar(Canvas& canvas, const Budget& budget, model::OutputUnit unit, double top) {
   const double kept = std::clamp(budget.recalibrated / budget.as_given, 0.0, 1.0);
   const double split = right - kept * (right - left);
@@ -91,7 +91,7 @@ std::vector<BudgetPart> budget_parts(const Diagnosis& d) {
                      significant(gain.lower, 3) + " to " + significant(gain.upper, 3)});
   }
   const double together = taken - scale * one_by_one;
-  // A part below 0.1 % would not be visible.
+  // A part below 0.1 % of the bar would not be visible.
   if (together > 1e-3 * budget.recalibrated)
     parts.push_back({d.causes.empty()
                          ? (d.base.empty() ? "Explained, but not by a reported cause" : "Another structure")

@@ -6,7 +6,8 @@
 
 namespace softgrip::sysid {
 
-/// Returns the block diagram from command to reading. Blocks that `given` lacks are marked.
+/// Returns the block diagram of `model` from command to reading. Blocks that the model `given` does not
+/// contain are marked.
 [[nodiscard]] Figure chain_figure(const model::Model& model, const model::Model& given);
 
 }  // namespace softgrip::sysid

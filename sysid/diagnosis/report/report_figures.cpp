@@ -17,7 +17,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// One of the compared models.
+/// A model that the figures show.
 struct Shown {
   const char* label;
   Colour colour;
@@ -32,11 +32,12 @@ std::vector<Shown> shown(const Diagnosis& d) {
   return list;
 }
 
-/// Returns the final model of a diagnosis.
+/// Returns the fit of the final model of a diagnosis: the extended model if there is one, otherwise the
+/// recalibrated model.
 const StructureFit& final_fit(const Diagnosis& d) {
   return is_extended(d) ? d.extended : d.recalibrated;
 }
-/// Returns the model with which the final one is compared.
+/// Returns the fit of the model with which the figures compare the final model.
 const StructureFit& first_fit(const Diagnosis& d) {
   return is_extended(d) ? d.recalibrated : d.as_given;
 }
@@ -68,7 +69,7 @@ Series curve_of(const Shown& model, const std::vector<double>& x, const std::vec
   return series;
 }
 
-/// A rectangle in the pressure-displacement plane.
+/// A rectangle in the plane of pressure and displacement.
 struct Window {
   double lower_kpa, upper_kpa, lower_mm, upper_mm;
 
@@ -81,8 +82,8 @@ std::vector<double> prediction(const StructureFit& fit, const Record& record, st
   return predict(fit.point.model, record, fit.point.starts[k]);
 }
 
-/// Returns a window around the sample where the first and the final model differ most. The window covers a
-/// tenth of the pressure range and is high enough to show the difference.
+/// Returns a window around the sample at which the first and the final model differ most. The window covers a
+/// tenth of the pressure range. Its height is large enough to show the difference between the models.
 Window window_of(const Record& record, const std::vector<double>& first, const std::vector<double>& final) {
   std::size_t at = 0;
   double most = 0;
@@ -101,7 +102,7 @@ Window window_of(const Record& record, const std::vector<double>& first, const s
   return {kpa - half_kpa, kpa + half_kpa, mm - half_mm, mm + half_mm};
 }
 
-/// Returns the lowest and the highest value of a chart's curves, extended by a margin of 4 %.
+/// Returns the lowest and the highest value of the curves in a chart, extended by a margin of 4 %.
 std::pair<double, double> reach_of(const Chart& chart) {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
@@ -117,7 +118,7 @@ std::pair<double, double> reach_of(const Chart& chart) {
   return {lowest - margin, highest + margin};
 }
 
-/// Returns the part of a curve inside the window. Points outside are replaced by gaps.
+/// Returns the part of a curve that lies inside the window. Points outside the window become gaps.
 Series within(Series series, const Window& window) {
   for (std::size_t i = 0; i < series.x.size(); ++i) {
     if (!window.holds(series.x[i], series.y[i])) series.y[i] = none;
@@ -218,12 +219,13 @@ std::optional<std::size_t> first_with_loops(const Diagnosis& d) {
 
 Figure error_figure(const Diagnosis& d, std::size_t k) {
   const Record& record = d.records[k];
-  // A model with a very large error would compress the scale of the other curves.
+  // If the error of the given model exceeds that of the recalibrated model by this factor, its curve would
+  // compress the scale of the other curves.
   constexpr double far_off = 4;
   const bool given_far_off = std::sqrt(mean_square(d.as_given.residual_mm[k])) >
                              far_off * std::sqrt(mean_square(d.recalibrated.residual_mm[k]));
   Chart values, before, after;
-  // The titles name the quantities, so the axis labels contain only the unit.
+  // The titles of the charts name the quantities, so the axis labels contain only the unit.
   const std::string unit(model::name_of(record.output_unit));
   values.title = record.name + ": " + model::in_unit("displacement", record.output_unit);
   values.y.label = before.y.label = after.y.label = "[" + unit + "]";
@@ -336,7 +338,7 @@ Figure closed_loop_figure(const ClosedLoopCurves& curves) {
   values.series.push_back(curve("reference", Colour::measured, 2.4, curves.time_s, curves.reference_mm));
   std::string numbers;
   for (const ClosedLoopCurves::Scheme& scheme : curves.schemes) {
-    // Each model has the same line style in all figures, even if a figure does not show all models.
+    // A model has the same line style in all figures, including figures that do not show all models.
     const bool extended = scheme.name.starts_with("extended");
     const bool recalibrated = scheme.name.starts_with("recalibrated");
     const Colour colour = extended ? Colour::good : recalibrated ? Colour::model : Colour::other;
@@ -396,7 +398,8 @@ Figure spectrum_figure(const Diagnosis& d) {
   if (is_extended(d)) add(models[2], d.evidence->extended);
   const SpectrumEvidence& s = d.evidence->recalibrated.spectrum;
   if (!s.frequency_hz.empty()) {
-    // Spectral density of white noise with this standard deviation, up to half the sampling rate.
+    // This is the spectral density of white noise that has the standard deviation of the noise and extends to
+    // half the sampling rate.
     const double density = d.noise_mm * d.noise_mm / s.frequency_hz.back();
     chart.marks.push_back({Mark::Direction::horizontal, density, "noise of the readings"});
   }

@@ -1,6 +1,6 @@
 #pragma once
-// Draws the charts of a diagnosis. The line of the given model is always dotted, that of the recalibrated
-// model dashed, and that of the extended model solid.
+// Draws the charts of a diagnosis. In all charts, the line of the given model is dotted, the line of the
+// recalibrated model dashed, and the line of the extended model solid.
 
 #include <cstddef>
 #include <optional>
@@ -12,27 +12,28 @@
 
 namespace softgrip::sysid {
 
-/// Returns the indices of the logs, sorted by the error reduction with the extended model (the recalibrated
-/// model if there is no extended one), the largest first.
+/// Returns the indices of the logs in the order of decreasing error reduction. The reduction is that of the
+/// extended model or, if there is no extended model, that of the recalibrated model.
 [[nodiscard]] std::vector<std::size_t> logs_by_gain(const Diagnosis& diagnosis);
-/// Returns true if the pressure changes during at least 10 % of the time. A log that contains only pressure
-/// steps shows no loops.
+/// Returns true if the pressure changes during at least 10 % of the time. Otherwise the log contains only
+/// pressure steps, and a plot over the pressure shows no loops.
 [[nodiscard]] bool has_loops(const Record& record);
-/// Returns the first log in the order of logs_by_gain() that contains loops; see has_loops().
+/// Returns the index of the first log in the order of logs_by_gain() for which has_loops() is true.
 [[nodiscard]] std::optional<std::size_t> first_with_loops(const Diagnosis& diagnosis);
 
-/// Returns the measured and predicted displacement over time, with the errors of two models (before and after
-/// the extension or refit) on the same time axis.
+/// Returns the measured and the predicted displacement over time. A second chart with the same time axis
+/// shows the errors of two models, before and after the extension or refit.
 [[nodiscard]] Figure error_figure(const Diagnosis& diagnosis, std::size_t record);
-/// Returns the error of every available model on each run, which was left out of the fit.
+/// Returns the error of each available model on each run. The models were fitted to the other runs.
 [[nodiscard]] Figure runs_figure(const Diagnosis& diagnosis);
-/// Returns displacement over pressure in two charts: the complete loops, and the part where the models differ
-/// most.
+/// Returns two charts of the displacement over the pressure: the complete loops, and the region where the
+/// models differ most.
 [[nodiscard]] Figure loops_figure(const Diagnosis& diagnosis, std::size_t record);
 /// Returns two charts: the reference with the tracked displacements, and the tracking errors.
 [[nodiscard]] Figure closed_loop_figure(const ClosedLoopCurves& curves);
-/// Returns the mean error with its interval over each condition on which the error depends significantly, two
-/// charts per row. Without such a condition, the figure has no charts.
+/// Returns one chart for each condition on which the error depends significantly: the mean error and its
+/// interval over the condition. Two charts are side by side. If there is no such condition, the figure has no
+/// charts.
 [[nodiscard]] Figure conditions_figure(const Diagnosis& diagnosis);
 [[nodiscard]] Figure spectrum_figure(const Diagnosis& diagnosis);
 

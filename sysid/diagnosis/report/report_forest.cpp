@@ -22,11 +22,12 @@ constexpr double inclusion_px = 742;
 constexpr double row_px = 24;
 constexpr double top_px = 34;
 
-/// One row of the plot.
+/// A row of the forest plot.
 struct Row {
   std::string name;
   bool alternative = false;
-  const Spread* gain = nullptr;  ///< nullptr: no command separates the cause from the cause of the row above
+  /// Error reduction; nullptr: no command separates this cause from the cause in the row above.
+  const Spread* gain = nullptr;
   double inclusion = 0;
 };
 

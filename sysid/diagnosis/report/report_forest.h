@@ -1,12 +1,12 @@
 #pragma once
-// Draws a forest plot of the error reductions by all causes and their alternatives.
+// Draws a forest plot of the error reductions by the named causes and their alternatives.
 
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "sysid/pages/figure.h"
 
 namespace softgrip::sysid {
 
-/// Returns the plot. Requires at least one named cause or partial explanation.
+/// Returns the forest plot. The diagnosis must contain at least one named cause or partial explanation.
 [[nodiscard]] Figure forest_figure(const Diagnosis& diagnosis);
 
 }  // namespace softgrip::sysid

@@ -7,11 +7,11 @@
 
 namespace softgrip::sysid {
 
-/// Returns a chart of readings and hypotheses over the gauge position. Both are drawn relative to the
-/// straight line that fits the readings best.
+/// Returns a chart of the readings and the predictions of the hypotheses over the gauge position. The
+/// straight line that fits the readings best is subtracted from both.
 [[nodiscard]] Chart gauge_chart(const GaugeEvidence& gauge);
 
-/// Adds the section to the page.
+/// Adds the section about the gauge check to the page.
 void add_gauge_section(Page& page, const GaugeEvidence& gauge);
 
 }  // namespace softgrip::sysid

@@ -19,7 +19,7 @@ std::string range(const Spread& s, int decimals) {
          ")";
 }
 
-/// Returns the reason why alternatives are listed for a cause.
+/// Returns the sentence that explains why alternatives are listed for a cause.
 std::string alternatives_text(const NamedCause& named, const model::Model& extended) {
   std::string alike, indistinguishable;
   for (const Cause& alternative : named.alternatives) {
@@ -40,7 +40,7 @@ std::string alternatives_text(const NamedCause& named, const model::Model& exten
   return text;
 }
 
-/// Adds the frequency at which the search finds a cause in simulated data that contain none.
+/// Adds a paragraph that states how often the search finds a cause in simulated data that contain no cause.
 void add_null_calibration(Page& page, const NullCalibration& nulls) {
   page.paragraph("The same search was applied to " + std::to_string(nulls.campaigns) +
                  " simulated campaigns that contain only the recalibrated model and correlated noise. It "

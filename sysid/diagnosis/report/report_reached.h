@@ -1,6 +1,6 @@
 #pragma once
-// Writes method and evidence of a diagnosis: the errors of the models, the conditions on which these errors
-// depend, the reasons for the named causes, and the limitations of the data.
+// Writes the part of a report on the method and the evidence of the diagnosis: errors of the models,
+// conditions on which these errors depend, reasons for the named causes, and limitations of the data.
 
 #include "sysid/diagnosis/report/report.h"
 #include "sysid/pages/page.h"

@@ -39,8 +39,8 @@ std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double
          significant(chosen_rmse_mm, 3) + " " + std::string(model::name_of(unit));
 }
 
-/// Returns the candidates, their errors, and the reason why each was rejected.
-/// @param chosen  cause in whose place the candidates were tested; nullptr: they were tested as a further
+/// Returns a table of the candidates with their errors and the reason why each was rejected.
+/// @param chosen  cause in whose place the candidates were tested; nullptr: they were tested as an additional
 /// cause.
 Table candidate_table(const std::vector<CandidateScore>& candidates, const NamedCause* chosen,
                       double chosen_rmse_mm, model::OutputUnit unit, std::string caption) {
@@ -120,7 +120,7 @@ Table condition_table(const Evidence& evidence, bool extended) {
                           after != nullptr ? p_text(after->p_adjusted) : dash, e.clear ? "clear" : ""});
   }
   if (extended) return table;
-  constexpr long first = 4, count = 2;  // columns of the extended model
+  constexpr long first = 4, count = 2;  // position and number of the columns of the extended model
   table.header.erase(table.header.begin() + first, table.header.begin() + first + count);
   table.numeric.erase(table.numeric.begin() + first, table.numeric.begin() + first + count);
   for (auto& row : table.rows) row.erase(row.begin() + first, row.begin() + first + count);
@@ -181,7 +181,7 @@ Table cause_parameter_table(const Diagnosis& d, std::size_t most) {
     const bool short_enough = size <= most;
     std::size_t shown = 0;
     for (const CauseParameter& p : named->parameters) {
-      // If a cause has many parameters, only those with a determined interval are listed.
+      // If a cause has many parameters, the table lists only parameters whose interval is determined.
       if (!short_enough && (!p.determined() || shown + 1 >= most)) continue;
       table.rows.push_back(row(*named, p));
       ++shown;

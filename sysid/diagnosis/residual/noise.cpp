@@ -18,7 +18,7 @@ void add_third_differences(const std::vector<double>& y, std::vector<double>& si
   }
 }
 
-/// Returns the finite readings in order, as if the gaps between them did not exist.
+/// Returns the finite readings in their order. Gaps between readings are ignored.
 std::vector<double> readings_alone(std::vector<double> y) {
   y.erase(std::remove_if(y.begin(), y.end(), [](double value) { return !std::isfinite(value); }), y.end());
   return y;
@@ -27,19 +27,21 @@ std::vector<double> readings_alone(std::vector<double> y) {
 }  // namespace
 
 double measured_noise_mm(const std::vector<Record>& records) {
-  // For white noise, the variance of the third difference is 1 + 9 + 9 + 1 = 20 times that of the noise.
+  // The variance of the third difference of white noise is 1 + 9 + 9 + 1 = 20 times the variance of the
+  // noise.
   constexpr double inflation = 20.0;
   std::vector<double> sizes;
   for (const Record& record : records) {
-    // If the sensor is slower than the log, four adjacent samples with a reading are rare.
+    // Third differences are computed from consecutive readings. If the sensor is slower than the log, four
+    // adjacent samples that all have a reading are rare.
     const std::vector<double> readings = readings_alone(record.reading_mm);
     const bool is_slow = 5 * readings.size() < 4 * record.reading_mm.size();
     add_third_differences(is_slow ? readings : record.reading_mm, sizes);
   }
   if (sizes.empty()) return 0;
-  // The median alone would have the resolution of the quantisation. Therefore the median only defines a limit
-  // that excludes wrong samples and corners of the motion. A limit of 4 deviations removes 0.1 % of a normal
-  // variance.
+  // The median of quantised readings has a coarse resolution, so it is not the estimate. It only defines a
+  // limit that excludes wrong samples and corners of the motion. A limit of 4 standard deviations removes 0.1
+  // % of the variance of a normal distribution.
   std::vector<double> sorted = sizes;
   const double bound = 4 * median_of(std::span(sorted)) / 0.6745;
   double sum = 0;
@@ -78,9 +80,10 @@ UnexplainedError unexplained_error_of(const std::vector<std::vector<double>>& re
     if (pairs[lag] > 0) sum += product[lag] / pairs[lag] / mean_square;
   }
   structure.slow_correlation = sum / lags;
-  // The mean over 25 lags of white noise has a standard deviation of 1/sqrt(25 n). A correlation below 1 % of
-  // the variance is not reported, even if it is significant. A mean square above the noise also counts as
-  // unexplained error if the difference exceeds the uncertainty of the noise.
+  // The mean autocorrelation of white noise over 25 lags has a standard deviation of 1/sqrt(25 n). A
+  // correlation below 1 % of the variance is not reported, even if it is significant. A mean square above
+  // that of the noise also counts as unexplained error if their difference exceeds the uncertainty of the
+  // noise.
   const double worth = 0.01;
   const double known_to = 4 * std::sqrt(6.0 / static_cast<double>(count));
   structure.present = structure.slow_correlation > worth + 4 / std::sqrt(lags * static_cast<double>(count)) ||

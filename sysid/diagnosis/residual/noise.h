@@ -1,5 +1,5 @@
 #pragma once
-// Measures the noise of the readings without a model, and tests whether a residual exceeds it.
+// Measures the noise of the readings without a model, and tests whether a residual exceeds the noise.
 
 #include <vector>
 
@@ -7,23 +7,23 @@
 
 namespace softgrip::sysid {
 
-/// Returns the standard deviation of the random changes from sample to sample [mm], from third differences.
-/// Smooth motion and single wrong samples do not contribute; quantisation does.
+/// Returns the standard deviation of the random change between consecutive samples [mm], computed from third
+/// differences. Smooth motion and single wrong samples do not contribute to the result; quantisation does.
 [[nodiscard]] double measured_noise_mm(const std::vector<Record>& records);
 
-/// Wrong readings are not reported if they increase the error by less than this share of the noise, because
-/// they may be corners of a motion.
+/// Wrong readings are not reported if they increase the error by less than this share of the noise. Such
+/// readings may be corners of a motion.
 inline constexpr double distorting_share = 0.25;
 
-/// The unexplained error: the part of a residual that exceeds the measurement noise.
+/// The part of a residual that exceeds the measurement noise.
 struct UnexplainedError {
-  double excess_mm = 0;         ///< square root of (mean square of the residual - noise squared); 0 if
-                                ///< negative
-  double slow_correlation = 0;  ///< mean autocorrelation over the first 25 lags
+  /// Square root of (mean square of the residual - noise squared); 0 if this difference is negative.
+  double excess_mm = 0;
+  double slow_correlation = 0;  ///< mean autocorrelation of the residual over the first 25 lags
   bool present = false;         ///< true: the residual contains more than noise
 };
 
-/// Returns the unexplained error of a residual.
+/// Returns the unexplained error in a residual.
 /// @param residual_mm  one vector per record; NaN for samples without a reading.
 [[nodiscard]] UnexplainedError unexplained_error_of(const std::vector<std::vector<double>>& residual_mm,
                                                     double noise_mm);

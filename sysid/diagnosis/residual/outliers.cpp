@@ -12,11 +12,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest distance of an outlier to the median of four neighbours, in standard deviations of the noise. For
-/// a normal reading, the standard deviation of this distance is about 1.15, so it exceeds the limit less than
-/// once in 10 million readings.
+/// Smallest distance between an outlier and the median of four neighbours, in standard deviations of the
+/// noise. For a normal reading, this distance has a standard deviation of about 1.15. It exceeds the limit
+/// less than once in 10 million readings.
 constexpr double beyond = 6.0;
-/// Smallest number of outliers that is reported. Fewer outliers are not significant.
+/// Smallest number of outliers that is reported, because fewer outliers are not significant.
 constexpr std::size_t fewest = 5;
 
 double neighbours_median(const std::vector<double>& y, std::size_t i) {
@@ -25,23 +25,24 @@ double neighbours_median(const std::vector<double>& y, std::size_t i) {
   return 0.5 * (near[1] + near[2]);
 }
 
-/// Returns the change of the reading over the neighbourhood, so that a fast motion does not count as an
-/// outlier.
+/// Returns the change of the reading across its neighbours. With this change, a reading in a fast motion is
+/// not taken for an outlier.
 double motion(const std::vector<double>& y, std::size_t i) {
   return std::abs(0.5 * (y[i + 1] + y[i + 2]) - 0.5 * (y[i - 1] + y[i - 2]));
 }
 
-/// Maximum distance of a neighbour in samples, and smallest number of neighbours on each side.
+/// Largest distance between a reading and its neighbours in samples, and smallest number of neighbours on
+/// each side.
 constexpr std::size_t reach = 3;
 constexpr std::size_t fewest_neighbours = 2;
-/// A reading is isolated if its deviation from the median of its neighbours exceeds this multiple of their
-/// spread.
+/// A reading is isolated if its distance from the median of its neighbours exceeds this multiple of the
+/// spread of the neighbours.
 constexpr double alone = 4.0;
-/// Uncertainty of clocks, latencies and the times of corners, in samples.
+/// Uncertainty of a time in samples, due to clocks, latencies and the corners of a motion.
 constexpr double timing_samples = 1.5;
 
-/// Median of the neighbours (readings or residuals) and their spread. The spread is the second largest
-/// distance to the median, because one neighbour may be an outlier too.
+/// Median and spread of the neighbours of a reading or residual. The spread is the second largest distance
+/// from the median, because the neighbour with the largest distance may be an outlier.
 struct Neighbourhood {
   double median_mm = 0;
   double spread_mm = 0;
@@ -108,7 +109,7 @@ void weigh(OutlierEvidence& evidence, double noise_mm) {
   const double deviation = std::sqrt(std::max(0.0, fourth / count - square / count * square / count) / count);
   evidence.size_low_mm = std::sqrt(std::max(0.0, square / count - z * deviation));
   evidence.size_high_mm = std::sqrt(square / count + z * deviation);
-  // Noise alone does not exceed the limit of `beyond`, but a few outliers may come from a knock on the table.
+  // Noise alone does not exceed the limit `beyond`, but a knock on the table can cause a few outliers.
   evidence.distorts = evidence.excess_mm > distorting_share * noise_mm;
   evidence.present = evidence.count >= fewest && evidence.distorts;
 }
@@ -133,7 +134,7 @@ void hide_codes(Record& record, OutlierEvidence& evidence) {
   }
 }
 
-/// The finite readings and their sample indices.
+/// The finite readings of a record and the indices of their samples.
 struct Readings {
   std::vector<std::size_t> samples;
   std::vector<double> mm;
@@ -149,8 +150,8 @@ Readings readings_of(const Record& record) {
   return readings;
 }
 
-/// Tests the first and the last readings, which have too few neighbours for the other test. The value 0 is
-/// always permitted, because a log may begin with the last readings before a step.
+/// Tests the first and the last readings of a record, which have too few neighbours for the other test. A
+/// reading of 0 is never an outlier here, because a log may begin with the last readings before a step.
 void hide_far_ends(Record& record, OutlierEvidence& evidence) {
   constexpr std::size_t ends = 2;
   constexpr double far_outside = 3;

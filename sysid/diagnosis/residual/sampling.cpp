@@ -9,16 +9,17 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest number of intervals of equal readings. With fewer of them, the sampling rate of the sensor is
-/// uncertain.
+/// Smallest number of intervals of equal readings from which the sampling rate of the sensor is computed.
+/// With fewer intervals, the result is uncertain.
 constexpr std::size_t fewest_stretches = 20;
-/// The smallest changes of a sensor with a fine resolution are below this share of its typical change.
+/// If a sensor has a fine resolution, its smallest changes are below this share of its typical change.
 constexpr double fine_share = 0.25;
-/// A frozen interval is at least this many times as long as the 95 % quantile of the intervals, and the drive
-/// changes by at least this share of its range during it.
+/// The reading counts as frozen in an interval under two conditions. The interval is at least `frozen_ratio`
+/// times as long as the 95 % quantile of the intervals of equal readings. The drive changes in the interval
+/// by at least `moved_share` of its range.
 constexpr double frozen_ratio = 5, moved_share = 0.1;
 
-/// Consecutive equal readings, given by indices in `samples`.
+/// An interval of equal consecutive readings. `samples` contains the samples that its indices refer to.
 struct Stretch {
   std::size_t first = 0, length = 0;
 };
@@ -45,7 +46,8 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
-/// Returns the lengths of all intervals except the first and the last, which may be incomplete.
+/// Returns the lengths of all intervals of equal readings except the first and the last, which may be
+/// incomplete.
 std::vector<double> whole_lengths(const Stretches& readings) {
   std::vector<double> lengths;
   for (std::size_t k = 1; k + 1 < readings.stretches.size(); ++k)
@@ -85,8 +87,8 @@ bool is_frozen(const Record& record, const Stretches& readings, const Stretch& s
   return *most - *least > moved_share * (*highest - *lowest);
 }
 
-/// Returns the sum of squared distances between the hidden readings and the line through the kept readings
-/// around them.
+/// Returns the sum of the squared distances of the hidden readings from straight lines. Each line connects
+/// the kept readings before and after the hidden reading.
 double squares_beside_lines(const Record& before, const Record& after) {
   double squares = 0;
   std::size_t last = after.size();

@@ -5,14 +5,15 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Largest permitted ratio of the unexplained mean square with the causes to that of the refitted model.
+/// Largest permitted ratio of two unexplained mean squares: that of the model with the causes, and that of
+/// the refitted model.
 constexpr double may_be_left = 0.15;
-/// Stricter limits if the remaining error is clearly above the noise. Then the data contain enough
-/// information to fit the complete cause, so a large remainder has another source. A smaller remainder may
-/// result from the inexact form of an equation.
+/// A stricter limit for an error that is clearly above the noise. The data are then sufficient to fit the
+/// complete cause, so a large remaining error has another source. A smaller remaining error may be due to the
+/// approximate equation of the cause.
 struct UnexplainedLimit {
-  double noises;  ///< the limit applies to an error above this multiple of the noise
-  double share;   ///< largest permitted ratio of the mean squares; see may_be_left
+  double noises;  ///< the limit applies if the error exceeds this multiple of the noise
+  double share;   ///< largest permitted ratio of the mean squares, used in place of may_be_left
 };
 constexpr std::array unexplained_limits{UnexplainedLimit{3, 0.05}, UnexplainedLimit{5, 0.02}};
 

@@ -15,10 +15,11 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::size_t named_readings = 3;
-/// Lower limit of the noise as a share of the span, which applies to readings that have almost no noise.
+/// Lower limit of the noise as a share of the span. It applies to readings that contain almost no noise.
 constexpr double least_noise_share = 1e-3;
 
-/// Returns the range between the 5 % and the 95 % quantile, which wrong readings do not affect.
+/// Returns the range between the 5 % and the 95 % quantile of the readings. Wrong readings do not affect this
+/// range.
 double usual_span_mm(const Record& record) {
   std::vector<double> sorted;
   std::copy_if(record.reading_mm.begin(), record.reading_mm.end(), std::back_inserter(sorted),

@@ -19,7 +19,7 @@ constexpr double least_explained_share = 0.2;
 constexpr double apart_share = 0.1;
 
 /// Returns the share of the variance of the readings that the fit explains. The share is negative if the mean
-/// of the readings fits better.
+/// of the readings fits better than the model.
 double explained_share(const std::vector<Record>& records, const StructureFit& fit) {
   double sum = 0, squares = 0, count = 0;
   for (const Record& record : records) {
@@ -35,7 +35,7 @@ double explained_share(const std::vector<Record>& records, const StructureFit& f
   return variance > 0 ? 1 - fit.mean_square_mm2 / variance : 0;
 }
 
-/// Returns the ratio of the measured motion of a log to the motion that a model predicts for the log.
+/// Returns the ratio of two motions of a log: the measured motion and the motion that a model predicts.
 double relative_gain(const Record& record, const std::vector<double>& prediction_mm) {
   double count = 0, p = 0, y = 0, pp = 0, py = 0;
   for (std::size_t i = 0; i < record.size(); ++i) {
@@ -63,13 +63,13 @@ model::Model amplified(model::Model model, double gain) {
   return model;
 }
 
-/// Returns the RMSE over all logs after the structure was fitted to every log separately, starting from the
-/// common fit.
+/// Returns the RMSE over all logs after the structure was fitted to each log separately. Each fit starts at
+/// the common fit to all logs.
 double rmse_apart_mm(const std::vector<Record>& records, const StructureFit& fit) {
   double squares = 0, count = 0;
   for (std::size_t k = 0; k < records.size(); ++k) {
     std::vector<Record> one{records[k]};
-    // Fit the sensor zero of each log, because it differs between rigs.
+    // The sensor zero is fitted for each log, because it differs between rigs.
     one.front().offset_free = true;
     const double gain = relative_gain(records[k], predict(fit.point.model, records[k], fit.point.starts[k]));
     const FitPoint from{fit.point.model, {fit.point.starts[k]}};

@@ -14,11 +14,11 @@ namespace softgrip::sysid {
 [[nodiscard]] std::optional<std::string> why_not_about(const std::vector<Record>& records,
                                                        const StructureFit& recalibrated);
 
-/// Returns a warning if the logs are inconsistent, for example because they come from two rigs or the rig was
-/// changed between them. Logs are inconsistent if separate parameters for each log leave at most 10 % of the
-/// mean square that common parameters leave.
-/// @param together_mm2  mean square of the common fit with the causes that were found. They are included
-/// because a drift also makes logs inconsistent, but is explained by a cause.
+/// Returns a warning if the logs are inconsistent, for example because they come from two rigs or because the
+/// rig was changed between two logs. Logs are inconsistent if fits of each log alone leave at most 10 % of
+/// the mean square that a common fit leaves.
+/// @param together_mm2  mean square of the common fit with the causes that were found. The causes are
+/// included, because a drift also makes logs inconsistent but is explained by a cause.
 [[nodiscard]] std::optional<std::string> inconsistent_among(const std::vector<Record>& records,
                                                             const StructureFit& recalibrated,
                                                             double together_mm2);

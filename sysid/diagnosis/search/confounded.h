@@ -1,6 +1,6 @@
 #pragma once
-// Fits causes that can absorb part of the effect of an already selected cause (Cause::confounded_with), and
-// tests each of them.
+// Fits causes that can absorb part of the effect of a selected cause (Cause::confounded_with), and tests
+// whether the data require each of them.
 
 #include <vector>
 
@@ -9,15 +9,15 @@
 
 namespace softgrip::sysid {
 
-/// A structure to which a cause was added that is confounded with one of its causes.
+/// A structure with one additional cause. This cause is confounded with another cause of the structure.
 struct Confounded {
   Cause cause;
   StructureFit fit;
-  BlockLosses losses;  ///< held-out losses
+  BlockLosses losses;  ///< losses on held-out blocks
 };
 
-/// For each cause that is confounded with a cause of the structure but not part of it, fits the structure
-/// with that cause added. All parameters are fitted together.
+/// Fits the structure with one more cause, for each cause that is confounded with a cause of the structure
+/// but is not part of the structure. Each fit changes all parameters together.
 [[nodiscard]] std::vector<Confounded> fit_confounded(const SearchData& data, const StructureFit& structure,
                                                      const Division& division);
 

@@ -7,9 +7,9 @@
 namespace softgrip::sysid {
 namespace {
 
-/// The refits keep the initial states of the logs, which are not part of the model structure. Without the
-/// first block, the initial state would be undetermined, and the simulation of the other blocks would start
-/// from an arbitrary state.
+/// Effort of the refits. They keep the initial states of the logs, which are not part of the model structure.
+/// If the first block of a log is held out, its initial state would otherwise be undetermined, and the
+/// simulation of the other blocks would start at an arbitrary state.
 constexpr FitEffort refit{.most_iterations = 8, .tolerance = 1e-6, .hold_starts = true};
 
 }  // namespace
@@ -30,7 +30,7 @@ BlockLosses held_out_losses(const std::vector<Record>& records, const Division& 
 BlockLosses left_out_losses(const std::vector<Record>& records, const Division& by_unit,
                             const StructureFit& fit) {
   return held_out_losses(records, by_unit, [&](const std::vector<Record>& rest) {
-    // No fit is possible if the other units contain no readings.
+    // If the other units contain no readings, no fit is possible.
     const bool is_fitted =
         std::any_of(rest.begin(), rest.end(), [](const Record& r) { return r.readings > 0; });
     FitPoint point = is_fitted ? fit_structure(rest, fit.causes, fit.point, refit).point : fit.point;

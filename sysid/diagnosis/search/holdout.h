@@ -1,5 +1,5 @@
 #pragma once
-// Computes held-out losses of a structure by refits (linear_holdout.h computes them without refits).
+// Computes held-out losses of a structure with refits. linear_holdout.h computes them without refits.
 
 #include <vector>
 
@@ -10,19 +10,21 @@
 
 namespace softgrip::sysid {
 
-/// Length of the blocks on which causes are compared [s]. Residuals rarely have longer correlation times.
+/// Length of the blocks in which the losses of causes are compared [s]. The correlation time of a residual is
+/// rarely longer.
 inline constexpr double block_length_s = 8;
 
-/// Returns the losses of each block under a refit without the fold of that block. The initial states of the
-/// records are those in `fit`.
+/// Returns the loss of each block. The structure is refitted without the fold of this block. The initial
+/// states of the records are those in `fit`.
 [[nodiscard]] BlockLosses held_out_losses(const std::vector<Record>& records, const Division& division,
                                           const StructureFit& fit);
-/// Returns the losses of each unit (sysid/evidence/units.h) under a refit without that unit. If a log is left
-/// out completely, its first readings determine its initial state (sysid/fitting/start_estimate.h).
+/// Returns the loss of each unit (sysid/evidence/units.h). The structure is refitted without this unit. If a
+/// log is left out completely, its first readings determine its initial state
+/// (sysid/fitting/start_estimate.h).
 /// @param by_unit  result of divide_by_unit(records).
 [[nodiscard]] BlockLosses left_out_losses(const std::vector<Record>& records, const Division& by_unit,
                                           const StructureFit& fit);
-/// Returns the losses of a fitted structure without a refit.
+/// Returns the losses of a fitted structure on the blocks without a refit.
 [[nodiscard]] BlockLosses losses_of(const StructureFit& fit, const Division& division);
 
 }  // namespace softgrip::sysid

@@ -17,16 +17,16 @@ namespace {
 
 constexpr std::size_t most_tracks = 40;
 constexpr std::size_t most_jump_targets = 24;
-/// Of all path hypotheses whose positions differ by less than this multiple of the resolution, only the best
-/// is followed, so that the limited number of hypotheses covers different paths.
+/// Path hypotheses whose positions differ by less than this multiple of the resolution count as equal, and
+/// only the best of them is continued. The limited number of hypotheses therefore covers different paths.
 constexpr double same_place = 1;
-/// A path is given up if its squared error exceeds that of the best path by this multiple of the squared
-/// resolution (converted to mm).
+/// A path is removed if its squared error exceeds that of the best path by more than this multiple of the
+/// squared resolution (converted to mm).
 constexpr double hopeless_resolutions = 4000;
-/// The paths are compared after this number of samples even if no jump has occurred.
+/// The paths are compared after each jump. If no jump occurs, they are compared after this number of samples.
 constexpr std::size_t look_again = 32;
-/// The time of a jump is well resolved if the command moves by less than this share of the band during the
-/// sample.
+/// The time of a jump counts as well resolved if the command changes in its sample by less than this share of
+/// the band.
 constexpr double slow_share = 0.2;
 
 constexpr std::size_t no_jump = std::numeric_limits<std::size_t>::max();
@@ -36,7 +36,7 @@ struct Jump {
   double held_kpa = 0;
   double distance_kpa = 0;
   bool resolved = false;
-  std::size_t before = no_jump;  ///< index of the previous jump
+  std::size_t before = no_jump;  ///< index of the jump before this jump
 };
 
 struct Track {
@@ -46,8 +46,8 @@ struct Track {
   std::size_t last = no_jump;
 };
 
-/// A list of tracks that avoids memory allocation: a removed track keeps its memory, into which a later track
-/// is copied.
+/// A list of tracks that avoids memory allocation. A removed track keeps its memory, and the next added track
+/// is copied into it.
 class Tracks {
  public:
   void clear() { count_ = 0; }
@@ -62,7 +62,7 @@ class Tracks {
       all_[count_] = track;
     return all_[count_++];
   }
-  /// Moves `track` into the list. Afterwards, the argument is in a valid but unspecified state.
+  /// Moves `track` into the list. After the call, `track` has a valid but unspecified value.
   Track& take(Track& track) {
     if (count_ == all_.size())
       all_.push_back(track);
@@ -76,8 +76,8 @@ class Tracks {
   std::size_t count_ = 0;
 };
 
-/// Removes the whole samples from a transport delay and returns their number. A jump becomes visible in the
-/// readings only after this number of samples, and until then the paths are indistinguishable.
+/// Removes the whole samples from a transport delay and returns their number. The readings show a jump only
+/// after this number of samples. Until then, they do not distinguish the paths.
 std::size_t take_whole_samples(model::Model& model, const Record& record) {
   model::BlockSpec* delay = model::find_block<model::TransportDelay>(model);
   if (delay == nullptr || record.sample_time_s <= 0) return 0;
@@ -150,8 +150,8 @@ class JumpTracker {
     if (!std::isnan(error)) track.cost_mm2 += error * error;
   }
 
-  /// Returns the possible positions after a jump of a valve at position `held`, while the command moves from
-  /// `from` to `to`.
+  /// Returns the possible positions after a jump of the valve from the position `held`. The command changes
+  /// from `from` to `to` in this sample.
   const std::vector<double>& jump_targets_of(double held, double from, double to) {
     jump_targets_.clear();
     if (from == to) {
@@ -172,14 +172,14 @@ class JumpTracker {
     return jump_targets_;
   }
 
-  /// Keeps the best paths, and only one path per position.
+  /// Removes all paths except the best ones, and keeps one path per position.
   void prune() {
     order_.resize(next_.size());
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     std::sort(order_.begin(), order_.end(),
               [&](std::size_t a, std::size_t b) { return next_[a].cost_mm2 < next_[b].cost_mm2; });
     const double least_mm2 = next_[order_.front()].cost_mm2;
-    is_beaten_ = least_mm2 > worth_mm2_;  // the sum of squares can only grow with further samples
+    is_beaten_ = least_mm2 > worth_mm2_;  // the sum of squares does not decrease with additional samples
     const double most_mm2 = least_mm2 + give_up_mm2_;
     tracks_.clear();
     for (const std::size_t at : order_) {
@@ -210,7 +210,7 @@ class JumpTracker {
 
   const Record& record_;
   double band_kpa_, resolution_kpa_, worth_mm2_;
-  std::size_t seen_later_ = 0;  ///< number of samples between a jump and the first reading that shows it
+  std::size_t seen_later_ = 0;  ///< number of samples from a jump to the first reading that shows this jump
   double give_up_mm2_ = 0;
   bool is_beaten_ = false;
   std::vector<double> start_mm_;

@@ -12,16 +12,17 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Damping of the step as a share of the diagonal of the normal matrix.
+/// Damping of the Gauss-Newton step, as a share of the diagonal elements of the normal matrix.
 constexpr double block_damping = 1e-3;
 
-/// Rows of the Jacobian for the readings of a block, and for the readings around them that are not fitted.
+/// Rows of the Jacobian for the readings in a block, and for the readings near the block that are not fitted.
 struct BlockRows {
   Eigen::Index first, last, hidden_first, hidden_last;
 };
 
 std::vector<BlockRows> rows_of(const std::vector<Record>& records, const Division& division) {
-  std::vector<std::vector<Eigen::Index>> before(records.size());  // number of readings before sample i
+  // For each sample i, the number of readings before this sample.
+  std::vector<std::vector<Eigen::Index>> before(records.size());
   Eigen::Index row = 0;
   for (std::size_t k = 0; k < records.size(); ++k) {
     before[k].reserve(records[k].size() + 1);

@@ -24,35 +24,34 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Candidates are tested on held-out blocks if they are among the best medium fits and their mean square is
-/// at most this multiple of the smallest one. The refit of a base structure can absorb half of a cause, but
-/// never nearly all of it.
+/// Largest number of candidates that are tested on held-out blocks, and largest ratio of their mean square
+/// after the medium fit to the smallest one. The refit of a base structure can absorb half of the effect of a
+/// cause, but never nearly all of it.
 constexpr std::size_t most_finalists = 5;
 constexpr double hopeless_ratio = 4;
-/// Number of alternating fits: the base structure with the cause fixed, then the cause with the base
-/// structure fixed.
+/// Number of rounds of alternating fits. Each round fits the base structure with the cause fixed, and then
+/// the cause with the base structure fixed.
 constexpr int turns = 2;
 constexpr int look_iterations = 15;
-/// Tried shares of the linear response of the base structure to a cause. The fit starts at the best share,
-/// because the full step is too large for a strongly nonlinear base structure.
+/// Shares of the base structure's linear response to a cause that are tried. The fit starts at the best
+/// share. For a strongly nonlinear base structure, the full response is too large.
 constexpr std::array answers{1.0, 0.5, 0.2, 0.0};
-/// One cause rules out another one if the logarithm of the ratio of their block losses exceeds this value.
-/// Between a contact and a sensor saturation, the ratio is 0.01 in every block (textbook test cases).
+/// One cause rules out another cause if the mean logarithm of the ratio of their block losses exceeds this
+/// value. For a contact and a sensor saturation, this logarithm is 0.01 in every block (textbook test cases).
 constexpr double clearly_ahead = 0.05;
-/// A reduction counts as one in most blocks if the mean logarithm of the ratios of the block losses exceeds
-/// this value; see LeastTaken.
+/// The losses of most blocks count as reduced if the mean logarithm of the ratio of the block losses exceeds
+/// this value (see LeastTaken).
 constexpr double in_most_blocks = 0.15;
-/// Upper limit of the elastic share of play operators (elastic_share()) below which they may compensate for a
-/// backlash.
+/// Play operators may compensate for a backlash if elastic_share() is at most this value.
 constexpr double little_elastic = 0.3;
 /// Largest number of alternatives that may fit nearly as well as the named cause.
 constexpr std::size_t most_undecided = 2;
-/// Smallest share of the remaining mean square beyond the noise that a further cause must remove. If a second
-/// effect is present, the correct cause removes almost all of this mean square.
+/// Smallest share of the remaining mean square above the noise that a further cause must remove. If the data
+/// contain a second effect, its true cause removes almost all of this mean square.
 constexpr double most_of_the_rest = 0.6;
 
-/// Residuals as a function of the parameters of one cause, after removal of the part that the base structure
-/// can absorb.
+/// Residuals that remain after the base structure has absorbed as much as possible. They are a function of
+/// the parameters of one cause.
 class ResidualsBesideBase final : public Residuals {
  public:
   ResidualsBesideBase(const Scan& base, const std::vector<Record>& records, const FitSpace& of_the_cause)
@@ -78,13 +77,13 @@ class ResidualsBesideBase final : public Residuals {
   std::unique_ptr<Residuals> inner_;
 };
 
-/// A cause that was fitted to thinned records together with the linear response of the base structure.
+/// A cause that was fitted to thinned records. The base structure responds linearly to the cause.
 struct Look {
-  FitPoint beside;  ///< model with the fitted parameters of the cause and the unchanged parameters of the
-                    ///< base structure
+  /// Model with the fitted parameters of the cause; the parameters of the base structure are not changed.
+  FitPoint beside;
   Eigen::VectorXd left;
-  double mean_square_mm2 = std::numeric_limits<double>::infinity();  ///< mean square after the linear
-                                                                     ///< response
+  /// Mean square after the linear response of the base structure.
+  double mean_square_mm2 = std::numeric_limits<double>::infinity();
 };
 
 Look look_from(const std::vector<Record>& records, const Scan& base, const Cause& cause,
@@ -101,7 +100,7 @@ Look look_from(const std::vector<Record>& records, const Scan& base, const Cause
   return {numbers.point(minimum.z), std::move(left), minimum.rmse_mm * minimum.rmse_mm};
 }
 
-/// A start point of a fit and the mean square of its residual.
+/// A start point of a fit, and the mean square of its residual.
 struct Start {
   FitPoint point;
   double left_mm2 = std::numeric_limits<double>::infinity();
@@ -143,8 +142,9 @@ class SelectorUpon {
   }
 
  private:
-  /// Returns the fits of all causes that the structure lacks, sorted by mean square, the smallest first. A
-  /// cause with a free form has two entries: its best physical law and its best free form.
+  /// Returns the fits of all causes that the structure does not contain, in the order of increasing mean
+  /// square. A cause with a free form has two elements: the fit of its best physical law, and the fit of its
+  /// free form.
   std::vector<std::pair<Cause, Look>> looks(const Scan& scan) {
     const StructureFit& current = result_.extended;
     if (!scan.usable()) return {};
@@ -154,7 +154,8 @@ class SelectorUpon {
           unanswerable(cause, scales_).empty())
         causes.push_back(cause);
     }
-    std::vector<std::array<Look, 2>> best(causes.size());  // two elements per cause: physical law, free form
+    // For each cause, the best physical law and the best free form.
+    std::vector<std::array<Look, 2>> best(causes.size());
     std::atomic<std::size_t> tried{0};
     parallel_for(causes.size(), data_.threads, [&](std::size_t i) {
       for (const FitPoint& start : best_starts({&scan, 1}, causes[i], scales_, fewest_looks)) {
@@ -178,8 +179,9 @@ class SelectorUpon {
     return list;
   }
 
-  /// Fits the base structure and the last of `causes` alternately, each to the readings without the effect of
-  /// the other. A base structure that was fitted without the cause has absorbed a part of its effect.
+  /// Fits the base structure and the last cause of `causes` alternately. Each of the two is fitted to the
+  /// readings minus the effect of the other. This is necessary because a base structure that was fitted
+  /// without the cause has absorbed part of the cause's effect.
   [[nodiscard]] FitPoint settled(Start best, const std::vector<Cause>& causes) const {
     if (!options_.base_again) return best.point;
     const Cause& cause = causes.back();
@@ -204,8 +206,8 @@ class SelectorUpon {
     return best.point;
   }
 
-  /// Fits the structure with `causes` to all readings and computes the held-out losses. The fit starts at
-  /// `best`, in which the last cause is new.
+  /// Fits the structure with `causes` to all readings and computes its held-out losses. The fit starts at
+  /// `best`. The last element of `causes` is the cause that was added.
   [[nodiscard]] ScoredCandidate finished(Start best, const std::vector<Cause>& causes) const {
     ScoredCandidate one;
     one.candidate.cause = causes.back();
@@ -238,9 +240,9 @@ class SelectorUpon {
     return scored;
   }
 
-  /// Returns a fit with a backlash that starts at reduced thresholds of the play operators, or an empty value
-  /// if the operators cannot represent a backlash. From the current fit, the optimum with a backlash would be
-  /// too far away.
+  /// Returns a fit with a backlash, which starts at reduced thresholds of the play operators. A fit that
+  /// starts at the current thresholds would not reach the optimum. Returns nullopt if the operators cannot
+  /// compensate for a backlash.
   [[nodiscard]] std::optional<ScoredCandidate> play_as_backlash() const {
     const FitPoint& point = result_.extended.point;
     if (elastic_share(point.model) > little_elastic) return std::nullopt;
@@ -294,7 +296,7 @@ class SelectorUpon {
            (gain.lower > 0 || ratio.lower > 0);
   }
 
-  /// Accepts the best candidate for one position if its evidence is sufficient.
+  /// Adds the best candidate to the selection if its evidence is sufficient. Returns true if it was added.
   bool take(const std::vector<ScoredCandidate>& scored) {
     const ScoredCandidate& best = scored.front();
     ChosenCause chosen =
@@ -308,9 +310,10 @@ class SelectorUpon {
     return true;
   }
 
-  /// Tests whether both causes are needed. The first cause was selected, and the base structure fitted,
-  /// without the second one. Therefore each cause is now fitted alone, starting from the common fit, and
-  /// compared with the fit of both causes. A cause without a sufficient error reduction is removed.
+  /// Tests whether both causes are needed. When the first cause was selected and the base structure fitted,
+  /// the second cause was missing. Therefore each cause is now fitted alone, starting from the common fit,
+  /// and compared with the fit of both causes. If a cause does not reduce the error sufficiently, it is
+  /// removed.
   bool both_stay(const BlockLosses& beside_the_first) {
     const Cause first = result_.extended.causes.front(), second = result_.extended.causes.back();
     ScoredCandidate first_alone = alone(first, second);
@@ -327,13 +330,14 @@ class SelectorUpon {
     return false;
   }
 
-  /// Returns true if the error reduction by one of the two causes is sufficient.
-  /// @param before  the losses without that cause.
+  /// Returns true if one of the two causes reduces the error sufficiently.
+  /// @param before  losses of the structure without this cause.
   [[nodiscard]] bool is_worth_its_place(const BlockLosses& before) const {
     return is_gain(before, result_.extended_losses, further_share_mm2(before));
   }
 
-  /// Returns the fit with `cause` and without `other`, starting from the common fit.
+  /// Returns the fit of the structure with `cause` but without `other`. The fit starts at the common fit of
+  /// both causes.
   [[nodiscard]] ScoredCandidate alone(const Cause& cause, const Cause& other) const {
     FitPoint rest = result_.extended.point;
     rest.model = without(std::move(rest.model), other);
@@ -364,14 +368,15 @@ class SelectorUpon {
     return std::pow(rmse_mm(losses), 2) - noise_mm_ * noise_mm_;
   }
 
-  /// Returns true if the remaining error is large enough for a further cause.
+  /// Returns true if the remaining error is so large that a further cause can be accepted.
   [[nodiscard]] bool more_can_be_worth() const {
     const double least_mm2 = options_.least_taken.in_most_blocks * noise_mm_ * noise_mm_;
     return beyond_noise_mm2(result_.extended_losses) > std::max(least_mm2, share_worth_mm2());
   }
 
-  /// Returns true if the candidate can be named, alone or with a few alternatives. A candidate that is not
-  /// clearly worse is an alternative. Too many alternatives make the result undecided.
+  /// Returns true if the candidate can be named, alone or with a few alternatives. Every other candidate that
+  /// the best one does not clearly beat is an alternative. If there are too many alternatives, no cause is
+  /// named.
   [[nodiscard]] bool stands(ChosenCause& chosen, const std::vector<ScoredCandidate>& scored) const {
     const ScoredCandidate& best = scored.front();
     const auto beats = [&](const BlockLosses& losses) {

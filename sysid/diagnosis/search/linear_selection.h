@@ -1,18 +1,17 @@
 #pragma once
-// Selects causes on a base structure with many parameters of its own (play operators, a Kelvin-Voigt chain).
-// The search varies only the few parameters of the cause, and the parameters of the base structure respond
-// linearly.
+// Selects causes if the base structure has many parameters (play operators, a Kelvin-Voigt chain). The search
+// varies only the few parameters of the cause. The parameters of the base structure respond linearly.
 
 #include "sysid/diagnosis/search/selection.h"
 
 namespace softgrip::sysid {
 
-/// Effort of the final fit of base structure and causes, which starts at the result of the selection.
+/// Effort of the final fit of base structure and causes. This fit starts at the result of the selection.
 inline constexpr FitEffort finishing_effort{.most_iterations = 15, .tolerance = 1e-6};
 
-/// Selects causes on a base structure.
-/// @param base  base structure fitted to data.records.
-/// @param options  one_cause_stands and to_beat_mm2 are ignored.
+/// Selects causes in addition to a base structure.
+/// @param base  base structure that was fitted to data.records.
+/// @param options  the members one_cause_stands and to_beat_mm2 are not used.
 [[nodiscard]] Selection select_causes_upon(const SearchData& data, StructureFit base, double noise_mm,
                                            const Division& division, const SelectionOptions& options);
 

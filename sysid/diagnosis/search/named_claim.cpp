@@ -19,7 +19,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Returns the range of the signal with this unit; infinity for other units.
+/// Returns the range of the signal that has this unit. Returns infinity for any other unit.
 double range_of(const std::vector<Record>& records, std::string_view unit) {
   double span_mm = 0, largest_kpa = 0, length_s = 0;
   for (const Record& record : records) {
@@ -57,12 +57,13 @@ void claim_size(Claim& claim, const std::vector<Record>& records, const Cause& c
     farthest = distance;
     claim.size =
         Interval{free.to_value(z[j] - half) - spec.neutral, free.to_value(z[j] + half) - spec.neutral};
-    // The neutral value of a limit is far above all signals, so the distance to this value has no meaning.
+    // A limit has no effect if it is far above all signals. The distance of a limit from such a neutral value
+    // has no meaning.
     claim.largest_size = spec.neutral == 0 ? range_of(records, spec.unit) : infinity;
   }
 }
 
-/// Returns one flag per reading, in the order of the records: true if the cause must have an effect on the
+/// Returns, for each reading in the order of the records, true if the cause must have an effect on this
 /// reading.
 std::vector<bool> required_readings(const std::vector<Record>& records, Appears appears,
                                     const StructureFit& without) {
@@ -79,12 +80,12 @@ std::vector<bool> required_readings(const std::vector<Record>& records, Appears 
   return required_at(appears, conditions);
 }
 
-/// Returns the sums of squared residuals with and without the cause in each block, over the readings on which
-/// the cause must have an effect.
+/// Returns for each block the sums of squared residuals with and without the cause. Only readings on which
+/// the cause must have an effect are included.
 PairedLosses losses_there(const std::vector<Record>& records, const std::vector<bool>& required,
                           const StructureFit& with, const StructureFit& without) {
   PairedLosses losses;
-  std::vector<std::size_t> before{0};  // number of readings in earlier records
+  std::vector<std::size_t> before{0};  // for each record, the number of readings in the records before
   for (const Record& record : records) before.push_back(before.back() + record.readings);
   std::vector<std::size_t> next = before;
   for (const Block& block : divide(records, limits::block_s).blocks) {
@@ -124,7 +125,7 @@ Veto veto_of(const std::vector<Record>& records, const Cause& cause, const Struc
 bool put_nameable_first(std::vector<ScoredCandidate>& scored, const std::vector<Record>& records,
                         const StructureFit& without, const std::function<bool(const ScoredCandidate&)>& gains,
                         const LeftOutLosses& left_out, std::uint64_t seed) {
-  std::optional<BlockLosses> losses_without;  // losses without the cause, which are equal for all candidates
+  std::optional<BlockLosses> losses_without;  // losses without the cause; all candidates share them
   const LeftOutLosses once = [&](const StructureFit& fit) {
     if (&fit != &without) return left_out(fit);
     if (!losses_without) losses_without = left_out(without);

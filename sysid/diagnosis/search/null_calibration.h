@@ -1,5 +1,6 @@
 #pragma once
-// Estimates how often the search names a cause in simulated data without a cause, using the measured inputs.
+// Estimates how often the search names a cause in simulated data that contain no cause. The simulation uses
+// the measured inputs.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,30 +12,31 @@
 
 namespace softgrip::sysid {
 
-/// Significance level: an error reduction is not significant if it occurs in the null data with a higher
-/// probability.
+/// Significance level. An error reduction is significant if its probability in data without a cause is at
+/// most this value.
 inline constexpr double null_level = 0.05;
-/// Smallest number of campaigns for which the p-value can be as small as `null_level`.
+/// With fewer campaigns than this number, the p-value cannot be as small as `null_level`.
 inline constexpr std::size_t enough_nulls = 19;
 
-/// Result of the search on null campaigns, which the refitted model generates.
+/// Result of the search on simulated campaigns without a cause. The refitted model generates these campaigns.
 struct NullCalibration {
   std::size_t campaigns = 0;
-  std::size_t named = 0;            ///< campaigns in which the search named a cause
-  double largest_gain_percent = 0;  ///< largest held-out error reduction of the named causes
-  /// (1 + number of campaigns with at least the measured error reduction) / (1 + campaigns). The smallest
-  /// possible value is 1/(1 + campaigns).
+  std::size_t named = 0;            ///< number of campaigns in which the search named a cause
+  double largest_gain_percent = 0;  ///< largest held-out error reduction by a named cause
+  /// (1 + number of campaigns with at least the measured error reduction) / (1 + number of campaigns). Its
+  /// smallest possible value is 1/(1 + number of campaigns).
   double p_value = 1;
 
-  /// Returns true if the error reduction is not significant, because the search reaches it too often in data
-  /// without a cause.
+  /// Returns true if the measured error reduction is not significant, because the search often reaches it in
+  /// data without a cause.
   [[nodiscard]] bool reach_the_gain() const { return campaigns >= enough_nulls && p_value > null_level; }
 };
 
 struct NullOptions {
   std::size_t campaigns = enough_nulls;
   std::uint64_t seed = 1;
-  std::function<void(std::size_t done)> progress;  ///< called from any thread, never concurrently
+  /// Called from any thread, but never from two threads at once.
+  std::function<void(std::size_t done)> progress;
 };
 
 /// Simulates campaigns with the measured inputs and applies the search to them. The readings are the

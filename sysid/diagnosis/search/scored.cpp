@@ -11,8 +11,9 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A candidate is not an alternative if its mean square exceeds that of the best candidate by more than this
-/// share of the reduction by the best candidate, even if the blocks show no significant difference.
+/// A candidate is an alternative only if its mean square is close to that of the best candidate. The
+/// difference may be at most this share of the reduction by the best candidate. This also applies if the
+/// blocks show no significant difference.
 constexpr double alternative_share = 0.05;
 
 }  // namespace
@@ -45,8 +46,8 @@ ChosenCause weigh(const Cause& cause, const ChosenBetween& between,
     if (is_free_form(s)) continue;
     chosen.inclusion = std::min(chosen.inclusion, winning_share(between.with_losses, s.losses, between.seed));
     const Spread behind = mean_difference(s.losses, between.with_losses, between.seed);
-    // An object in contact is distinguished from a sensor that saturates by the compliance of the object. For
-    // a hard object, only a few readings contain this information.
+    // An object in contact and a saturated sensor differ only by the compliance of the object. If the object
+    // is hard, only a few readings show this difference.
     const bool stops = s.candidate.cause.is_stop && cause.is_stop;
     const double negligible = (stops ? 0.02 : 0.002) * between.noise_mm * between.noise_mm;
     if (behind.value <= std::max(behind.standard_error, negligible) &&

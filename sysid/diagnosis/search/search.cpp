@@ -14,27 +14,28 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Sample interval of the records for all fits except the final one [s]. It must resolve the lag of a valve.
-/// A resonance above half this rate remains visible, because prediction and readings are thinned in the same
-/// way.
+/// Sample interval of the records for all fits except the final fit [s]. A valve lag must be longer than this
+/// interval. A resonance above half the sampling rate remains visible, because prediction and readings are
+/// thinned in the same way.
 constexpr double look_interval_s = 0.02;
-/// Sample interval of the records for the preselection of causes [s].
+/// Sample interval of the records from which causes are preselected [s].
 constexpr double glance_interval_s = 0.04;
-/// Coarse fits start at every start point. Medium fits continue those that may become the best candidate or
-/// an alternative.
+/// Effort of the coarse fits, which start at every start point. A medium fit continues a coarse fit that may
+/// become the best candidate or an alternative.
 constexpr FitEffort coarse_fit{.most_iterations = 8, .tolerance = 1e-5};
 constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
-/// Number of causes that always get a medium fit. A further cause gets one if the mean square of its coarse
-/// fit is below this multiple of the smallest one.
+/// Number of causes that always get a medium fit, and ratio of mean squares for the others. A further cause
+/// gets a medium fit if the mean square of its coarse fit is below this ratio times the smallest one.
 constexpr std::size_t always_looked_at = 7;
 constexpr double worth_a_look = 1.5;
 constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
-/// Number of medium fits per cause that are continued to a full fit.
+/// Number of medium fits per cause that are continued by a full fit.
 constexpr std::size_t followed = 2;
-/// Smallest relative reduction of the mean square by which a form with more parameters is preferred.
+/// A form with more parameters is preferred if it reduces the mean square by at least this share.
 constexpr double more_numbers_gain = 0.02;
-/// Number of candidates that always get a full fit, on thinned records and on all samples. A further
-/// candidate gets one if its mean square is below this multiple of the smallest one.
+/// Numbers of candidates that always get a full fit on thinned records and on all samples, and ratios of mean
+/// squares for the others. A further candidate gets a full fit if its mean square is below the ratio times
+/// the smallest one.
 constexpr std::size_t always_followed = 5;
 constexpr double near_enough = 1.4;
 constexpr std::size_t always_finished = 4;
@@ -48,17 +49,17 @@ void sort_and_keep(std::vector<StructureFit>& fits, std::size_t count) {
   if (fits.size() > count) fits.resize(count);
 }
 
-/// Returns the points from which the search for a further cause may start.
+/// Returns scans at the points from which the search for a further cause may start.
 std::vector<Scan> places(const SearchData& data, const StructureFit& current) {
   std::vector<Scan> scans;
   scans.emplace_back(data.glimpsed, current.causes, current.point);
-  // Also start from the given model, because the refit may have absorbed the effect and be far from the true
-  // parameters.
+  // The search also starts at the given model. The refit may have absorbed the effect, and its parameters may
+  // then be far from the true parameters.
   if (current.causes.empty()) scans.emplace_back(data.glimpsed, current.causes, data.given);
   return scans;
 }
 
-/// Returns the best coarse fits of one candidate to thinned records, the best first.
+/// Returns coarse fits of one candidate to thinned records. The best fit comes first.
 std::vector<StructureFit> coarse_fits(const SearchData& data, const StructureFit& current,
                                       std::span<const Scan> scans, const Cause& cause) {
   std::vector<Cause> causes = current.causes;
@@ -71,7 +72,7 @@ std::vector<StructureFit> coarse_fits(const SearchData& data, const StructureFit
   return fits;
 }
 
-/// Returns the best medium fits, which start from the coarse fits.
+/// Returns the best medium fits. Each of them starts at a coarse fit.
 std::vector<StructureFit> looks(const SearchData& data, const std::vector<StructureFit>& from) {
   std::vector<StructureFit> fits;
   fits.reserve(from.size());
@@ -81,8 +82,8 @@ std::vector<StructureFit> looks(const SearchData& data, const std::vector<Struct
   return fits;
 }
 
-/// Returns true if `fit` is better than `best`. A form with more parameters must be better by more than
-/// chance.
+/// Returns true if `fit` has a smaller mean square than `best`. If one of the two has more parameters, it
+/// must be better by at least more_numbers_gain.
 bool is_better(const StructureFit& fit, const StructureFit& best) {
   double needed = 1;
   if (fit.free_parameters > best.free_parameters) needed = 1 - more_numbers_gain;
@@ -100,8 +101,8 @@ StructureFit follow(const SearchData& data, const std::vector<StructureFit>& fro
   return best;
 }
 
-/// Fits the candidates for one structure in stages of increasing effort. A candidate that is much worse than
-/// the best after one stage is not continued.
+/// Fits the candidates for one structure in stages of increasing effort. If a candidate is much worse than
+/// the best candidate after a stage, the next stage leaves it out.
 class CandidateFitter {
  public:
   CandidateFitter(const SearchData& data, const StructureFit& current, const CandidateSearch& search)
@@ -123,7 +124,7 @@ class CandidateFitter {
   }
 
  private:
-  /// Returns every permitted cause that the structure lacks.
+  /// Returns every permitted cause that the structure does not contain.
   [[nodiscard]] std::vector<Candidate> wanted() const {
     std::vector<Candidate> list;
     for (const Cause& cause : search_.only.empty() ? all_causes() : std::span(search_.only)) {
@@ -155,8 +156,8 @@ class CandidateFitter {
     });
   }
 
-  /// Fits the best candidate completely before the others, because the comparison with another explanation
-  /// needs this full fit.
+  /// Fits the best candidate completely before all others, and returns true if the others need no full fit.
+  /// The comparison with another explanation needs the full fit of the best candidate.
   bool is_hopeless() {
     if (!search_.is_hopeless) return false;
     leader_ = ranking().front();
@@ -188,7 +189,7 @@ class CandidateFitter {
 
   [[nodiscard]] double best_of(std::size_t i) const { return fits_[i].front().mean_square_mm2; }
 
-  /// Returns the indices of the candidates that have a fit, the one with the smallest mean square first.
+  /// Returns the indices of the candidates that have a fit, in the order of increasing mean square.
   [[nodiscard]] std::vector<std::size_t> ranking() const {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < fits_.size(); ++i) {
@@ -203,10 +204,10 @@ class CandidateFitter {
   const StructureFit& current_;
   const CandidateSearch& search_;
   std::vector<Candidate> candidates_;
-  std::vector<std::vector<StructureFit>> fits_;  ///< fits of each candidate to thinned records, the best fit
-                                                 ///< first
-  std::optional<std::size_t> leader_;            ///< index of the candidate that received its full fit before
-                                                 ///< the others
+  /// For each candidate, its fits to thinned records; the best fit comes first.
+  std::vector<std::vector<StructureFit>> fits_;
+  /// Index of the candidate that got its full fit before the others.
+  std::optional<std::size_t> leader_;
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// Searches for causes. Every candidate is fitted together with the base structure, from several start points.
+// Searches for causes. Every candidate is fitted together with the base structure from several start points.
 
 #include <cstddef>
 #include <functional>
@@ -11,20 +11,21 @@
 
 namespace softgrip::sysid {
 
-/// The records of a campaign, prepared for the search.
+/// The records of a campaign in the forms that the search needs.
 struct SearchData {
   std::vector<Record> records;
-  std::vector<Record> thinned;   ///< records for all fits of a candidate except the final one
-  std::vector<Record> glimpsed;  ///< records with fewer samples than `thinned`, for the preselection
+  std::vector<Record> thinned;  ///< thinned records for all fits of a candidate except the final fit
+  /// Records with fewer samples than `thinned`, from which causes are preselected.
+  std::vector<Record> glimpsed;
   Scales scales;
-  unsigned threads = 0;  ///< 0: one per core
-  FitPoint given;        ///< the given model, which is a second start point
+  unsigned threads = 0;  ///< number of threads; 0: one per core
+  FitPoint given;        ///< the given model, which is a second start point of the search
 };
 
-/// Prepares records for the search: computes thinned copies and scales.
+/// Prepares the records of a campaign for the search: computes thinned copies and the scales.
 [[nodiscard]] SearchData make_search_data(std::vector<Record> records, const model::Model& given);
 
-/// A fitted candidate. If there is no fit, `why_not` states the reason.
+/// A cause and its fit. If the fit is missing, `why_not` states the reason.
 struct Candidate {
   Cause cause;
   std::optional<StructureFit> fit;
@@ -32,14 +33,15 @@ struct Candidate {
 };
 
 struct CandidateSearch {
-  std::vector<Cause> only = {};  ///< causes to be tested; empty: all
-  /// Called with the smallest mean square of all candidates. Returns true if the other candidates need no
-  /// full fit.
+  std::vector<Cause> only = {};  ///< causes that are tested; empty: all causes
+  /// Called with the smallest mean square of all candidates. A result of true means that the other candidates
+  /// need no full fit.
   std::function<bool(double best_mm2)> is_hopeless = {};
-  std::function<void(std::size_t tried, std::size_t of)> progress = {};  ///< called from any thread
+  /// Called from any thread with the number of tested causes.
+  std::function<void(std::size_t tried, std::size_t of)> progress = {};
 };
 
-/// Fits `current` together with each cause that it does not contain, in the order of all_causes().
+/// Fits the structure `current` with each cause that it does not contain, in the order of all_causes().
 [[nodiscard]] std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit& current,
                                                     const CandidateSearch& search = {});
 

@@ -14,15 +14,15 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Number of candidates that are refitted for held-out losses.
+/// Number of candidates whose held-out losses are computed by refits.
 constexpr std::size_t finalists = 4;
-/// A further cause with a small effect must remove at least the first share of the excess mean square of the
-/// base structure, and leave at most the second share of the previous unexplained mean square. A cause that
-/// only compensates for the inexact form of another cause leaves more.
+/// Limits for a further cause with a small effect. It must remove at least `small_share` of the excess mean
+/// square of the base structure. It must leave at most `left_by_a_small_one` of the unexplained mean square
+/// before. A cause that only compensates for the inexact form of another cause leaves more than this.
 constexpr double small_share = 0.01;
 constexpr double left_by_a_small_one = 0.1;
-/// The other candidates for a further cause are fitted if the mean square of the best one is at most this
-/// multiple of that of another explanation.
+/// Largest ratio of two mean squares: that of the best further cause, and that of another explanation. Above
+/// this ratio, the other candidates for a further cause are not fitted.
 constexpr double near_the_other = 1.25;
 /// A mean square below this multiple of the squared noise counts as explained.
 constexpr double near_the_noise = 2;
@@ -58,8 +58,8 @@ class Selector {
  private:
   using Scored = ScoredCandidate;
 
-  /// Fits all candidates for a cause in addition to `current` and computes the held-out losses of the best
-  /// ones. Returns the candidates, the best first.
+  /// Fits all candidates for an additional cause of `current` and computes the held-out losses of the best
+  /// ones. Returns the candidates; the best one comes first.
   std::vector<Scored> score(const StructureFit& current) {
     CandidateSearch search;
     if (!result_.extended.causes.empty() && options_.to_beat_mm2)
@@ -96,8 +96,8 @@ class Selector {
     return scored;
   }
 
-  /// Returns true if another explanation leaves a much smaller mean square than the best further cause.
-  /// Returns false without a comparison if that cause reduces the error nearly to the noise.
+  /// Returns true if another explanation leaves a much smaller mean square than the best further cause. If
+  /// the best further cause reduces the error nearly to the noise, returns false without this comparison.
   bool is_far_behind(double best_mm2) {
     if (best_mm2 <= near_the_noise * square(noise_)) return false;
     if (!to_beat_mm2_) to_beat_mm2_ = options_.to_beat_mm2();
@@ -105,7 +105,7 @@ class Selector {
   }
 
   /// Returns true if the reduction of the losses from `before` to `after` is significant and large enough.
-  /// `without` and `with` are the corresponding structures.
+  /// @param without, with  structures to which `before` and `after` belong.
   [[nodiscard]] bool is_gain(const BlockLosses& before, const BlockLosses& after, const StructureFit& without,
                              const StructureFit& with) const {
     const Spread difference = mean_difference(before, after, options_.seed);
@@ -158,7 +158,7 @@ class Selector {
     without_.clear();
   }
 
-  /// Returns the refitted structure without one of its causes. The refit is made once and stored.
+  /// Returns the refitted structure without one of its causes. The refit is computed once and stored.
   const StructureFit& without(std::size_t index) {
     if (result_.extended.causes.size() == 1) return result_.base;
     std::optional<StructureFit>& fit = without_[index].fit;
@@ -174,8 +174,8 @@ class Selector {
     return *losses;
   }
 
-  /// Tests whether another cause is better in the place of an earlier one, now that a further cause has been
-  /// added.
+  /// After a further cause was added, tests whether another cause would now be better in the place of an
+  /// earlier cause.
   void swap_others() {
     for (std::size_t i = 0; i + 1 < result_.extended.causes.size(); ++i) {
       const Cause old = result_.extended.causes[i];
@@ -191,8 +191,8 @@ class Selector {
       best.why_not = reason_of(veto);
       if (better && veto == Veto::none) {
         take(scored.front());
-        // The new cause is the last one now. The stored results of the other causes are invalid, because they
-        // were computed with the replaced cause.
+        // The new cause is now the last cause. The stored results of the other causes are no longer valid,
+        // because they were computed with the replaced cause.
         fresh_[result_.extended.causes.size() - 1] = std::move(scored);
         return;
       }
@@ -200,7 +200,8 @@ class Selector {
     }
   }
 
-  /// Removes the least effective cause if it has no effect any more after another cause was replaced.
+  /// Removes the least effective cause if it has no significant effect after another cause was replaced.
+  /// Returns true if a cause was removed.
   bool drop_idle_one() {
     std::size_t least = 0;
     for (std::size_t i = 1; i < result_.extended.causes.size(); ++i) {
@@ -212,9 +213,9 @@ class Selector {
     return true;
   }
 
-  /// Adds a confounded cause if it is necessary. Such a cause reduces the error only slightly if the other
-  /// cause is present, but it explains why the parameter of the other cause is wrong. Therefore a significant
-  /// reduction is sufficient, even if it is small.
+  /// Adds a confounded cause if it significantly reduces the loss. A small reduction is sufficient. Without
+  /// the confounded cause, the parameter of the selected cause is wrong, but the error is only slightly
+  /// larger. Returns true if a cause was added.
   bool add_confounded() {
     result_.undecided = fit_confounded(data_, result_.extended, division_);
     for (Confounded& one : result_.undecided) {
@@ -245,15 +246,17 @@ class Selector {
   const SelectionOptions& options_;
   Division by_unit_;
   Selection result_;
-  std::optional<double> to_beat_mm2_;  ///< mean square of another explanation, if it was computed
-  /// The structure without one of its causes: its fit and its held-out losses, if they were computed.
+  std::optional<double> to_beat_mm2_;  ///< mean square that another explanation leaves, if it was computed
+  /// The structure after removal of one of its causes: its fit and its held-out losses, if they were
+  /// computed.
   struct Without {
     std::optional<StructureFit> fit;
     std::optional<BlockLosses> losses;
   };
-  std::map<std::size_t, std::vector<Scored>> fresh_;  ///< candidates that are still valid, by the index of
-                                                      ///< the cause
-  std::map<std::size_t, Without> without_;            ///< structures by the index of the removed cause
+  /// For each index of a cause, the candidates that are still valid.
+  std::map<std::size_t, std::vector<Scored>> fresh_;
+  /// For each index of a cause, the structure without this cause.
+  std::map<std::size_t, Without> without_;
 };
 
 }  // namespace

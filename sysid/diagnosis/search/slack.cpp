@@ -16,7 +16,7 @@ struct Operator {
 };
 
 /// Returns the play operators of the model in the order of their thresholds. The list is empty if the model
-/// has none.
+/// contains no play operators.
 std::vector<Operator> operators_of(const model::Model& model) {
   std::vector<Operator> operators;
   const model::BlockSpec* const plays = model::find_block<model::PrandtlIshlinskii>(model);

@@ -16,17 +16,18 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Ratio of consecutive trial bands. The tracker tolerates a larger error of the band.
+/// Ratio of neighbouring trial values of the band. The tracker works with a larger error of the band than
+/// this ratio causes.
 constexpr double next_band = 1.3;
-/// Limits of the trial bands as shares of the largest pressure.
+/// Smallest and largest trial value of the band, as shares of the largest pressure.
 constexpr double narrowest = 0.004, widest = 0.25;
-/// The dead band and the model behind the valve are estimated alternately. The iteration ends when the
-/// relative changes of the band and of the remaining mean square are below these limits.
+/// Limits of the iteration that estimates the dead band and the model behind the valve alternately. It ends
+/// if the relative changes of the band and of the remaining mean square are below band_stays and rest_stays.
 constexpr int most_rounds = 20;
 constexpr double band_stays = 5e-4, rest_stays = 0.01;
-/// After this number of rounds, the distances of a true band scatter less than random ones.
+/// After this number of rounds, the jump distances of a real band must scatter less than random distances.
 constexpr int rounds_of_chance = 6;
-/// Ratio of two sums of squares above which their difference is not a rounding error.
+/// Two sums of squares differ by more than rounding errors if their ratio exceeds this value.
 constexpr double clearly_more = 1 + 1e-9;
 
 struct ValvePaths {
@@ -45,8 +46,8 @@ ValvePaths track_all(const std::vector<Record>& records, const FitPoint& point, 
   return all;
 }
 
-/// Returns the band whose paths leave the smallest error (the first of several equal ones). A band is given
-/// up as soon as its error exceeds the total error of another band.
+/// Returns the band whose paths leave the smallest error. If several bands leave equal errors, returns the
+/// first one. A band is given up as soon as its error exceeds the total error of another band.
 double best_band(const std::vector<Record>& records, const FitPoint& point, const std::vector<double>& bands,
                  double resolution_kpa, unsigned threads) {
   std::vector<double> left(bands.size(), std::numeric_limits<double>::infinity());
@@ -63,7 +64,7 @@ double best_band(const std::vector<Record>& records, const FitPoint& point, cons
   return bands[static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin())];
 }
 
-/// Returns the bands whose jumps the readings can resolve.
+/// Returns trial values of the band whose jumps the readings can resolve.
 std::vector<double> bands_of(const Scales& scales, double resolution_kpa) {
   std::vector<double> bands;
   double band = std::max(narrowest * scales.largest_kpa, 4 * resolution_kpa);
@@ -74,7 +75,7 @@ std::vector<double> bands_of(const Scales& scales, double resolution_kpa) {
   return bands;
 }
 
-/// Returns the distances of the valve's jumps, sorted.
+/// Returns the sorted jump distances of all records.
 std::vector<double> distances_of(const ValvePaths& paths) {
   std::vector<double> distances;
   for (const ValvePath& path : paths.by_record)
@@ -87,8 +88,8 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Computes mean and scatter of the distances without the outermost 10 %, because a jump that is detected one
-/// sample late has a wrong distance.
+/// Computes mean and scatter of the sorted jump distances without the smallest 5 % and the largest 5 %. A
+/// jump that is detected one sample late has a wrong distance.
 void measure_band(std::span<const double> distances, StickSlip& found) {
   found.jumps = distances.size();
   if (distances.size() < fewest_jumps) return;
@@ -106,8 +107,8 @@ std::vector<Record> driven(const std::vector<Record>& records, const ValvePaths&
   return all;
 }
 
-/// Estimates the stick-slip motion iteratively from a start value of the band. Returns an empty value if
-/// there are too few jumps or if their distances scatter like random ones.
+/// Estimates the stick-slip motion iteratively from a start value of the band. Returns nullopt if there are
+/// too few jumps or if their distances scatter like random distances.
 std::optional<StickSlip> stick_slip_from(const std::vector<Record>& records, const StructureFit& behind,
                                          double band_kpa, double resolution_kpa, unsigned threads) {
   StickSlip found;
@@ -165,9 +166,9 @@ std::optional<StickSlip> find_stick_slip(const std::vector<Record>& records, con
   const std::vector<double> bands = bands_of(scales, resolution_kpa);
   if (bands.empty()) return std::nullopt;
   const double band_kpa = best_band(records, behind.point, bands, resolution_kpa, threads);
-  // With a start value below the true band, a path can reach nearly every position with short jumps. Until
-  // the model behind the valve is accurate, such a path has a smaller error than the correct one. Therefore
-  // twice the band is tried as well.
+  // If the start value is below the true band, a path can reach nearly every position with short jumps. As
+  // long as the model behind the valve is inaccurate, this path has a smaller error than the true path.
+  // Therefore twice the band is tried too.
   for (const double start_kpa : {band_kpa, 2 * band_kpa}) {
     auto found = stick_slip_from(records, behind, start_kpa, resolution_kpa, threads);
     if (found && is_a_band(*found, resolution_kpa) && found->fit.mean_square_mm2 < behind.mean_square_mm2)

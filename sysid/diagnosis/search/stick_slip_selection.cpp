@@ -13,10 +13,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Largest unexplained error of a path with a few wrong jumps, as a multiple of the noise.
+/// Largest unexplained error that a few wrong jumps in a path can cause, as a multiple of the noise.
 constexpr double a_jump_off = 0.5;
 
-/// Returns the dead-band cause in its smooth form, which is the mean of all stick-slip motions.
+/// Returns the cause "dead band" with its smooth form only. This form is the mean of all possible stick-slip
+/// motions.
 Cause dragged_along(Cause dead_band) {
   constexpr std::size_t play = model::block_type<model::ValveDeadband>();
   const auto form = std::find_if(dead_band.forms.begin(), dead_band.forms.end(),
@@ -25,8 +26,8 @@ Cause dragged_along(Cause dead_band) {
   return dead_band;
 }
 
-/// Returns a structure with the dead band in its smooth form, fitted again if the dead band was missing. A
-/// model without a dead band has absorbed the mean lag of the valve.
+/// Returns a structure that contains the dead band in its smooth form. If the dead band was missing, the
+/// structure is refitted, because a model without a dead band has absorbed the mean lag of the valve.
 std::optional<StructureFit> with_mean_of_stick_slip(const SearchData& data, const StructureFit& selected,
                                                     const Cause& dead_band) {
   if (position_of(selected.point.model, dead_band)) return selected;
@@ -35,7 +36,7 @@ std::optional<StructureFit> with_mean_of_stick_slip(const SearchData& data, cons
 }
 
 /// Adds the cause that best explains the error that the mean stick-slip motion leaves. This cause is a second
-/// effect that was not selected as long as one cause had to represent both effects.
+/// effect. It was not selected before, because a single cause had to represent both effects.
 std::optional<StructureFit> with_second_effect(const SearchData& data, const StructureFit& beside) {
   std::optional<StructureFit> best;
   for (Candidate& candidate : fit_candidates(data, beside)) {
@@ -46,7 +47,7 @@ std::optional<StructureFit> with_second_effect(const SearchData& data, const Str
 }
 
 /// Removes a cause that was selected as a substitute for the stick-slip motion. If the selection has two
-/// causes, one of them is unnecessary if a fit without it leaves no more error.
+/// causes, a cause is removed if a fit without it leaves no larger error.
 StickSlip without_stand_in(const SearchData& data, StickSlip found, double noise_mm) {
   if (found.fit.causes.size() < 2) return found;
   const std::vector<Cause> causes = found.fit.causes;
@@ -57,14 +58,14 @@ StickSlip without_stand_in(const SearchData& data, StickSlip found, double noise
   return found;
 }
 
-/// Searches for a stick-slip motion in front of several structures and keeps the one with the smallest
+/// Searches for a stick-slip motion in front of several structures. Keeps the result with the smallest
 /// remaining error.
 class BestStickSlip {
  public:
   BestStickSlip(const SearchData& data, const Cause& dead_band, double noise_mm)
       : data_(data), dead_band_(dead_band), noise_mm_(noise_mm) {}
 
-  /// @param beside  a structure with the dead band in its smooth form.
+  /// @param beside  structure that contains the dead band in its smooth form.
   void look(const std::optional<StructureFit>& beside) {
     if (!beside) return;
     auto found = find_stick_slip(data_.records, without_cause(*beside, dead_band_), noise_mm_, data_.threads);
@@ -72,7 +73,7 @@ class BestStickSlip {
     if (!found || (best_ && found->fit.mean_square_mm2 > best_->fit.mean_square_mm2)) return;
     best_ = std::move(found);
   }
-  /// Returns true if so little error remains that at most a few jumps are wrong.
+  /// Returns true if the remaining error is so small that at most a few jumps are wrong.
   [[nodiscard]] bool meets_all() const {
     return best_ &&
            unexplained_error_of(best_->fit.residual_mm, noise_mm_).excess_mm < a_jump_off * noise_mm_;
@@ -86,10 +87,10 @@ class BestStickSlip {
   std::optional<StickSlip> best_;
 };
 
-/// Returns the stick-slip motion in front of the base structure or of the whole selection: the motion that
-/// leaves the smaller error. A cause that was selected without stick-slip may be a second effect or a
-/// substitute for the motion. If neither structure leads to a stick-slip motion, the base structure with a
-/// second effect is tried.
+/// Searches for stick-slip motions in front of the base structure and in front of the whole selection.
+/// Returns the motion that leaves the smaller error. A cause that was selected without stick-slip may be a
+/// second effect or a substitute for the stick-slip motion. If no stick-slip motion is found with either
+/// structure, the base structure with a second effect is tried.
 std::optional<StickSlip> stick_slip_before(const SearchData& data, const Selection& plain,
                                            const Cause& dead_band, double noise_mm) {
   BestStickSlip stick_slip(data, dead_band, noise_mm);
@@ -101,14 +102,14 @@ std::optional<StickSlip> stick_slip_before(const SearchData& data, const Selecti
   return stick_slip.best();
 }
 
-/// Returns the base structure alone, fitted to records whose drive is the valve position.
+/// Returns the fit of the base structure alone to records whose drive is the valve position.
 StructureFit base_behind(const StickSlip& found) {
   StructureFit base = found.fit;
   for (const Cause& cause : found.fit.causes) base = without_cause(base, cause);
   return found.fit.causes.empty() ? base : fit_structure(found.records, {}, base.point);
 }
 
-/// Returns the point with the valve block inserted again.
+/// Returns the point after the valve block was inserted into its model.
 template <template <class> class Valve>
 FitPoint with_valve(const FitPoint& behind, double band_kpa) {
   FitPoint point = behind;
@@ -116,8 +117,8 @@ FitPoint with_valve(const FitPoint& behind, double band_kpa) {
   return point;
 }
 
-/// Extends the model for a simulation from the command alone. Uses the stick-slip motion if its simulated
-/// jumps stay synchronous with the readings, and its mean otherwise.
+/// Extends the model for a simulation from the command alone. If the simulated jumps of the stick-slip motion
+/// stay synchronous with the readings, this motion is used; otherwise its mean is used.
 void extend(Selection& selection, const SearchData& data, const StructureFit& behind, const Cause& dead_band,
             double band_kpa, const Division& division) {
   std::vector<Cause> causes{dead_band};
@@ -148,7 +149,7 @@ std::optional<StickSlipSelection> select_behind_stick_slip(const SearchData& dat
   driven.threads = data.threads;
   StructureFit base = base_behind(*found);
   driven.scales.residual_lines = spectrum_peaks(driven.records, base.residual_mm);
-  // A path with a few wrong jumps leaves an error that is not a second cause.
+  // A few wrong jumps in a path leave an error that must not be taken for a second cause.
   SelectionOptions behind = options;
   if (!leaves_too_much(unexplained_error_of(base.residual_mm, noise_mm), plain.base_unexplained, noise_mm))
     behind.most_causes = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Selects further causes if the valve shows stick-slip.
+// Selects further causes if the valve shows a stick-slip motion.
 
 #include <cstddef>
 #include <optional>
@@ -10,26 +10,26 @@
 
 namespace softgrip::sysid {
 
-/// Parameters of a stick-slip motion and its error reduction.
+/// Parameters of a stick-slip motion, and the error reduction by this motion.
 struct StickSlipEvidence {
   double band_kpa = 0;
   Interval band_ci95;
-  std::size_t jumps = 0;       ///< number of jumps from which the band was estimated
+  std::size_t jumps = 0;       ///< number of jumps from whose distances the band was estimated
   double scatter = 0;          ///< standard deviation of the jump distances, divided by their mean
-  double heldout_rmse_mm = 0;  ///< held-out RMSE with the jump times from the readings
+  double heldout_rmse_mm = 0;  ///< held-out RMSE if the jump times are determined from the readings
   Spread gain_percent;         ///< held-out error reduction relative to the refitted model
 };
 
 struct StickSlipSelection {
-  /// The selection contains the dead band first, then the causes behind the valve. `extended` and its losses
-  /// are simulated from the command alone. `left` and the error reductions use the jump times from the
-  /// readings.
+  /// Selection that contains the dead band first and then the causes behind the valve. `extended` and its
+  /// losses are simulated from the command alone. `left` and the error reductions use jump times that are
+  /// determined from the readings.
   Selection selection;
   StickSlipEvidence evidence;
 };
 
-/// Searches for stick-slip of the valve in front of the selected structure, then for one more cause behind
-/// the valve. Returns an empty value if there is no stick-slip, or if the model already has a dead band.
+/// Searches for stick-slip of the valve in front of the selected structure, and then for one more cause
+/// behind the valve. Returns nullopt if there is no stick-slip, or if the model contains a dead band.
 /// @param plain  selection without stick-slip.
 /// @param options  options of the search for causes behind the valve.
 [[nodiscard]] std::optional<StickSlipSelection> select_behind_stick_slip(const SearchData& data,

@@ -15,15 +15,16 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Largest share of the mean square beyond the noise that the correct cause may leave because its form is
+/// Largest share of the mean square above the noise that the true cause may leave because its form is
 /// inexact. Softening leaves 0.009 in the test cases of tests/blind. A cause that only imitates a hysteresis
 /// loop of another shape leaves 0.1 (textbook test cases).
 constexpr double left_by_its_own_cause = 0.03;
-/// If another base structure leaves more than this multiple of the noise, a small effect may be missing.
-/// Without any effect, the inexact form of a finger model leaves 0.5 to 1 (textbook test cases).
+/// If another base structure leaves more than this multiple of the noise, a small effect may be missing. If
+/// no effect is missing, the inexact form of a finger model leaves 0.5 to 1 (textbook test cases).
 constexpr double worth_asking = 0.5;
 
-/// Largest ratio of the held-out RMSE of a rejected base structure to that of the selection on the given one.
+/// Largest ratio of two held-out RMSEs: that of a rejected base structure, and that of the selection on the
+/// given base structure.
 constexpr double about_as_well = 1.1;
 
 }  // namespace

@@ -21,25 +21,26 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Largest ratio of the held-out RMSE of a richer base structure to that of the selection on the given one.
+/// Largest ratio of two held-out RMSEs: that of a richer base structure, and that of the selection on the
+/// given base structure.
 constexpr double worth_having = 0.9;
-/// Upper limit of the ridge regularisation if causes are added to a richer base structure. While a cause is
-/// missing, the choice of the ridge and of the simplest structure is unreliable.
+/// Upper limit of the ridge regularisation when causes are added to a richer base structure. As long as a
+/// cause is missing, the choice of the ridge and of the simplest structure is unreliable.
 constexpr double most_ridge = 1e-5;
-/// Smallest increase of the held-out mean square when a cause is removed that proves its presence, as a
-/// multiple of the squared noise. The increase is 1.9 to 100 for causes hidden at 2 and 8 times the noise,
-/// and 0.001 to 0.5 for absent causes (60 textbook test cases).
+/// A cause is present if its removal increases the held-out mean square by at least this multiple of the
+/// squared noise. The increase is 1.9 to 100 for causes that are present with an effect of 2 or 8 times the
+/// noise. It is 0.001 to 0.5 for causes that are not present (60 textbook test cases).
 constexpr double least_missed = 1;
-/// Largest ratio of two held-out RMSEs: that of another base structure with a subset of the causes, and that
-/// of the given base structure with all of them.
+/// Largest ratio of two held-out RMSEs: that of another base structure with some of the causes, and that of
+/// the given base structure with all of them.
 constexpr double as_good_with_fewer = 1.25;
-/// Number of start points for a fit of the published element. The element was already fitted with a full
-/// search, and this fit only checks that it is not far behind.
+/// Number of start points for this fit of the published element. A full search has already fitted the
+/// element, and this fit only checks that its error is not much larger.
 constexpr std::size_t published_starts = 6;
 
-/// Returns true if the richer base structure, fitted to the first halves of the logs, predicts the second
-/// halves significantly better than the given base structure. Also returns true if the given model has an
-/// inverse response, because no finger has one.
+/// Returns true if the richer base structure predicts better than the given one. For this, both are fitted to
+/// the first half of each log and predict the second half. Also returns true if the given model has an
+/// inverse response, because no finger has an inverse response.
 bool foretells_better(const std::vector<Record>& records, const StructureTrial& chosen, const FitPoint& given,
                       Drive drive) {
   if (beta_over_gain(given.model) > 1) return true;
@@ -57,9 +58,9 @@ double slowest_branch_s(const model::Model& model) {
   return slowest_s;
 }
 
-/// Returns the time constant [s] from which creep counts as slow if the given base structure has creep
-/// branches. The fit may have made these branches too fast to compensate for a missing component, and a refit
-/// without a slower branch may have given them the time constant of that component.
+/// Returns the time constant [s] above which creep counts as slow. It depends on the creep branches of the
+/// given base structure. The fit may have made these branches too fast, in order to compensate for a missing
+/// component. A refit may have given a branch the time constant of a slower branch that is missing.
 double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
   double longest_s = 0;
   for (const Record& record : data.records) longest_s = std::max(longest_s, record.length_s());
@@ -67,8 +68,8 @@ double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
   return std::max(longest_s / 10, std::min(2 * slowest_s, longest_s));
 }
 
-/// A structure that predicts better than the given one, and the same structure without each of its
-/// components.
+/// A structure that predicts better than the given structure. Also contains the fits of this structure after
+/// removal of each component.
 struct BetterStructure {
   StructureTrial chosen;
   std::vector<WithoutIngredient> ablation;
@@ -78,14 +79,15 @@ std::optional<BetterStructure> better_structure(const std::vector<Record>& recor
                                                 const StructureChoiceOptions& options) {
   const StructureChoice choice = choose_structure(records, options);
   const StructureTrial& chosen = choice.trials[choice.chosen];
-  // A published element with delay and lag equals the given base structure with two causes, and the search
-  // for causes covers that combination.
+  // A published element with delay and lag equals the given base structure with two causes. The search for
+  // causes already covers this combination.
   if (chosen.structure.published || !foretells_better(records, chosen, given, options.drive))
     return std::nullopt;
   return BetterStructure{chosen, ablation_of(records, choice, options, named_ingredients())};
 }
 
-/// Returns true if the base structure may have absorbed a cause that is confounded with the finding.
+/// Returns true if one of the causes is confounded with the finding, so that the base structure may have
+/// absorbed the effect of this cause.
 bool is_confounded(const NamedCause& finding, const std::vector<Cause>& causes) {
   return std::any_of(causes.begin(), causes.end(),
                      [&](const Cause& cause) { return cause.is_confounded_with(finding.cause); });
@@ -115,23 +117,23 @@ void renumber(BaseFindings& found, const SearchData& data) {
   }
 }
 
-/// Fits the structure to the original readings with free time constants. With the fixed grid of time
-/// constants, a cause would absorb the error of the grid.
+/// Fits the structure to the original readings with free time constants. The choice of the structure used a
+/// fixed grid of time constants, and a cause would absorb the error of this grid.
 StructureFit fit_off_grid(const StructureTrial& trial, const SearchData& data, Drive drive) {
   return fit_structure(data.records, {}, fit_again(trial, data.records, drive), finishing_effort);
 }
 
-/// Tests a nonlinearity in the same way as the other components. The choice had omitted it because a simpler
-/// structure was equally good.
-/// @param straight  the base structure without the nonlinearity.
+/// Tests a nonlinearity in the same way as the other components. The choice of the structure had left it out,
+/// because a simpler structure was equally good.
+/// @param straight  base structure without the nonlinearity.
 void name_the_bend(BaseFindings& found, StructureTrial straight, const BaseSearch& search) {
   const StructureFit fit = fit_off_grid(straight, search.data, search.question.drive);
   straight.block_losses_mm2 = linear_held_out_losses(search.data.records, search.question.division, fit);
   name_ingredients(found, {{Ingredient::characteristic, std::move(straight)}}, search);
 }
 
-/// Refits the base structure without causes, with the same free parameters as the base structure with a
-/// cause. Otherwise the error reduction of these parameters would be attributed to the cause.
+/// Refits the base structure without causes. Its free parameters are the same as in the fit with a cause.
+/// Otherwise the error reduction by additional free parameters would be attributed to the cause.
 void free_the_base(BaseFindings& found, const StructureTrial& as_beside_causes, const BaseSearch& search) {
   const auto& [data, plain, question] = search;
   const bool is_free = found.chosen.structure == as_beside_causes.structure &&
@@ -156,7 +158,7 @@ void free_the_base(BaseFindings& found, const StructureTrial& as_beside_causes, 
   renumber(found, data);
 }
 
-/// Removes a cause from the alternatives of each finding if that cause was found as well.
+/// Removes a cause from the alternatives of each finding if this cause is itself one of the findings.
 void take_back_alternatives(BaseFindings& found) {
   for (NamedCause& finding : found.named) {
     std::erase_if(finding.alternatives, [&](const Cause& alternative) {
@@ -166,8 +168,8 @@ void take_back_alternatives(BaseFindings& found) {
   }
 }
 
-/// Removes causes that are not needed. The base structure was refitted together with the causes and may now
-/// have a smaller error by itself. A cause is kept only if a refit without it has a significantly larger
+/// Removes causes that are not needed. The base structure was refitted together with the causes, and it may
+/// now have a small error without them. A cause is kept only if a refit without it has a significantly larger
 /// loss.
 /// @param losses  held-out losses of `with`.
 void drop_what_is_not_missed(StructureFit& with, BlockLosses& losses, std::vector<ChosenCause>& chosen,
@@ -182,8 +184,8 @@ void drop_what_is_not_missed(StructureFit& with, BlockLosses& losses, std::vecto
   });
 }
 
-/// Returns true if the causes on the richer base structure are a proper subset of the selection on the given
-/// one.
+/// Returns true if the causes on the richer base structure are some, but not all, of the causes on the given
+/// base structure, and no others.
 bool has_some_of(const BaseFindings& found, const Selection& plain) {
   const std::vector<Cause>&some = found.fit.causes, &all = plain.extended.causes;
   const auto is_in_all = [&](const Cause& cause) {
@@ -192,8 +194,8 @@ bool has_some_of(const BaseFindings& found, const Selection& plain) {
   return !some.empty() && some.size() < all.size() && std::all_of(some.begin(), some.end(), is_in_all);
 }
 
-/// Selects causes with thinned records, because fits of a base structure with many parameters are expensive.
-/// Thinned records are sufficient to determine which causes are present.
+/// Selects causes from thinned records, because each fit of a base structure with many parameters takes a
+/// long time. Thinned records are sufficient to determine which causes are present.
 Selection select_among_thinned(const FitPoint& base, const SearchData& data, const BaseQuestion& question,
                                const SelectionOptions& options) {
   SearchData thinned = data;
@@ -218,8 +220,8 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
   options.progress = question.progress;
   options.published_yields_below = worth_having;
   options.starts = published_starts;
-  // An effect that no structure contains may increase the error of all structures. Therefore the search is
-  // repeated with readings from which the causes found so far, or a drift, have been subtracted.
+  // An effect that no structure contains may increase the errors of all structures. Therefore the search is
+  // repeated with modified readings: the causes found so far, or a drift, are subtracted.
   using Readings = std::vector<Record>;
   std::vector<std::function<Readings(const Readings&)>> views{std::identity{}};
   if (!plain.extended.causes.empty()) {
@@ -251,8 +253,8 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
 }
 
 bool has_lower_loss(const BaseFindings& found, const Selection& plain, double noise_mm, bool plain_explains) {
-  // If the selection leaves too much error, none of its causes is named. A base structure with a slightly
-  // lower loss and named components is then more informative.
+  // If the selection leaves too much error, none of its causes is named. Then a base structure whose loss is
+  // only slightly lower gives more information, because its components are named.
   const bool says_more = !plain_explains && !plain.extended.causes.empty() && !found.named.empty();
   const bool needs_fewer = plain.left.excess_mm > noise_mm && has_some_of(found, plain);
   const double at_most = needs_fewer ? as_good_with_fewer : says_more ? 1 : worth_having;

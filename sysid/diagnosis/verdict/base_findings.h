@@ -1,6 +1,6 @@
 #pragma once
-// Searches for a richer base structure (sysid/structure) if no cause on the given base structure explains the
-// data. Each component of the richer structure that reduces the held-out error is named.
+// Searches for a richer base structure (sysid/structure) if no cause explains the data on the given base
+// structure. Names each component of the richer structure that reduces the held-out error.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,14 +17,14 @@
 namespace softgrip::sysid {
 
 struct BaseFindings {
-  StructureFit fit;  ///< the richer base structure with the causes that were found on it
+  StructureFit fit;  ///< fit of the richer base structure with the causes that were found on it
   StructureTrial
-      chosen;  ///< the richer base structure as it was chosen first, or as refitted together with causes
-  bool off_grid = false;  ///< true: `fit` uses the original readings and has free time constants
+      chosen;  ///< richer base structure as it was chosen, or as it was refitted together with causes
+  bool off_grid = false;  ///< true: `fit` was fitted to the original readings with free time constants
   std::string description;
-  BlockLosses losses;                ///< losses on the held-out blocks of the diagnosis
-  std::vector<NamedCause> named;     ///< causes with full_inclusion or more
-  std::vector<NamedCause> possible;  ///< causes with less than full_inclusion
+  BlockLosses losses;                ///< losses of `fit` on the held-out blocks of the diagnosis
+  std::vector<NamedCause> named;     ///< causes whose inclusion frequency is at least full_inclusion
+  std::vector<NamedCause> possible;  ///< causes whose inclusion frequency is below full_inclusion
 };
 
 struct BaseQuestion {
@@ -36,41 +36,43 @@ struct BaseQuestion {
   std::function<void(const std::string&)> progress;
 };
 
-/// Inputs of a search for a base structure, with the selection on the given base structure.
+/// Input of a search for a base structure: the data, and the selection on the given base structure.
 struct BaseSearch {
   const SearchData& data;
   const Selection& plain;
   const BaseQuestion& question;
 };
 
-/// Returns an empty value unless a richer base structure, fitted to the first halves of the logs, predicts
-/// the second halves significantly better than the given base structure.
+/// Searches for a richer base structure. It is fitted to the first half of each log. Returns nullopt if the
+/// given base structure predicts the second halves about as well and has no inverse response.
 [[nodiscard]] std::optional<BaseFindings> find_base(const BaseSearch& search);
 
-/// Limits for causes on a richer base structure. No base structure matches a finger exactly, and a cause can
-/// absorb part of the difference.
+/// Limits for causes that are added to a richer base structure. No base structure matches a finger exactly,
+/// and a cause can absorb part of the resulting error.
 struct CausesUpon {
-  std::size_t most;    ///< maximum number of causes
-  double least_share;  ///< smallest share of the mean square left by the base structure that the causes must
-                       ///< remove together
-  bool parts;          ///< true: causes that remove less than this share are reported as partial explanations
+  std::size_t most;  ///< maximum number of causes
+  /// Smallest share of the mean square of the base structure that all causes together must remove.
+  double least_share;
+  bool parts;  ///< true: causes that remove less than this share are reported as partial explanations
 };
 inline constexpr CausesUpon upon_much_left{2, 0.3, true};
-/// Limits if the base structure leaves little error. Most of that error is due to the inexact form of the
-/// structure. With the command as input, the form of the valve model contributes as well, so that limit is
-/// stricter.
+/// Limits for a base structure that leaves a small error. Most of this error is due to the inexact form of
+/// the structure. If the input is the command, the form of the valve model adds to the error, so that limit
+/// is stricter.
 inline constexpr CausesUpon upon_little_left{1, 0.65, false};
 inline constexpr CausesUpon upon_little_left_measured{1, 0.35, false};
 
-/// Continues the search for causes on a richer base structure and adds its results to `found`.
+/// Continues the search for causes on a richer base structure. Adds the causes to `found`.
 void find_causes_upon(BaseFindings& found, const BaseSearch& search, const CausesUpon& allowed);
 
-/// Returns true if the richer base structure and its causes have a held-out RMSE of less than 90 % of that of
-/// the selection on the given base structure. Any lower RMSE is sufficient if nothing can be named on the
-/// given base structure. Any lower mean square is sufficient if the selection is unphysical. Up to 125 % of
-/// the RMSE is sufficient if the causes are a proper subset of those of the selection and the selection
-/// leaves more than the noise.
-/// @param plain_explains  true if the error left by the selection is small enough for its causes to be named.
+/// Returns true if the richer base structure and its causes have a sufficiently low held-out RMSE compared
+/// with the selection on the given base structure. The following limits apply:
+/// - In general, the RMSE must be below 90 % of that of the selection.
+/// - If nothing can be named on the given base structure, any lower RMSE is sufficient.
+/// - If the selection is unphysical, any lower mean square is sufficient.
+/// - If the causes are some of those of the selection, and the selection leaves more than the noise, up to
+///   125 % of its RMSE is sufficient.
+/// @param plain_explains  true: the error of the selection is so small that its causes can be named.
 [[nodiscard]] bool has_lower_loss(const BaseFindings& found, const Selection& plain, double noise_mm,
                                   bool plain_explains);
 

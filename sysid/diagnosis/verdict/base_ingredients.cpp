@@ -33,22 +33,23 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest error reduction by a component, as a share of the mean square that the refitted given model
-/// leaves beyond the noise.
+/// Smallest error reduction by a component, as a share of the mean square above the noise that the refitted
+/// given model leaves.
 constexpr double least_share = 0.01;
-/// A held-out fold has diverged if its RMSE exceeds this multiple of the RMSE of the fit.
+/// A held-out fold counts as diverged if its RMSE exceeds this multiple of the RMSE of the fit.
 constexpr double ran_off_above = 3;
 
-/// If a smaller share of the play operators than this limit follows a reversal at once, the operators behave
-/// like a backlash. The share is 0.09 to 0.81 in 20 textbook fingers, and 0.01 to 0.15 with a hidden backlash
-/// of 8 times the noise.
+/// Play operators act like a backlash if less than this share of them follows a reversal at once. The share
+/// is 0.09 to 0.81 in 20 textbook fingers. It is 0.01 to 0.15 if a hidden backlash has an effect of 8 times
+/// the noise.
 constexpr double stands_still_below = 0.07;
 
-/// The cause that a component is reported as, and the type of its block in the model.
+/// Assigns a component to the cause as which it is reported, and to the type of its block in the model.
 struct FindingName {
   Ingredient ingredient;
   std::string_view id;
-  std::string_view alternative;  ///< id of a cause with the same readings for every command; empty: none
+  /// Id of a cause that gives the same readings for every command; empty: no such cause.
+  std::string_view alternative;
   std::size_t (*block)(const BaseStructure& structure, Drive drive);
 };
 constexpr std::array names{
@@ -72,8 +73,8 @@ constexpr std::array names{
     FindingName{Ingredient::characteristic, causes::Stiffening::id, causes::SensorNonlinearity::id,
                 [](const BaseStructure&, Drive) { return model::block_type<model::Characteristic>(); }}};
 
-/// Returns the held-out mean square of the refitted given model beyond the noise [mm^2]. The value is
-/// limited, because a fold that diverged does not show how large the unexplained error is.
+/// Returns the held-out mean square of the refitted given model minus that of the noise [mm^2]. The result
+/// has an upper limit, because a diverged fold does not show how large the unexplained error is.
 double left_by_the_given_mm2(const BaseSearch& search) {
   const double noise_mm = search.question.noise_mm;
   const double held_out_mm2 = std::pow(rmse_mm(search.plain.base_losses), 2) - noise_mm * noise_mm;
@@ -89,7 +90,7 @@ const StructureTrial* trial_without(const std::vector<WithoutIngredient>& ablati
 
 class Labeller {
  public:
-  /// @param point  the chosen structure fitted to all readings.
+  /// @param point  the chosen structure with its parameters after a fit to all readings.
   Labeller(const SearchData& data, const StructureTrial& chosen, const FitPoint& point,
            const BaseQuestion& question)
       : chosen_(chosen),
@@ -105,10 +106,10 @@ class Labeller {
     if (!finding.alternative.empty()) named.alternatives.push_back(*find_cause(finding.alternative));
     if (finding.ingredient == Ingredient::play_operators && stands_still_)
       named.alternatives.push_back(*find_cause(causes::Backlash::id));
-    // The lag may be in the valve or in the sensor.
+    // The data do not show whether the lag is in the valve or in the sensor.
     if (finding.ingredient == Ingredient::lag)
       named.alternatives.push_back(*find_cause(causes::SensorLag::id));
-    // A second lag in series resembles a delay.
+    // A second lag in series has nearly the same effect as a delay.
     if (finding.ingredient == Ingredient::delay && chosen_.structure.lag)
       named.alternatives.push_back(*find_cause(causes::ValveLag::id));
     named.heldout_gain_percent =
@@ -122,15 +123,16 @@ class Labeller {
  private:
   const StructureTrial& chosen_;
   const BaseQuestion& question_;
-  bool stands_still_;  ///< true: after a reversal, the finger does not move until the pressure has changed by
-                       ///< some kPa
+  /// True: after a reversal, the finger stands still until the pressure has changed by some kPa.
+  bool stands_still_;
   FitSpace space_;
   UncertainPoint at_;
 };
 
-/// Returns the latency (delay or lag) as a finding. A delay and a lag can largely replace each other, so the
-/// data may require neither of them although the finger responds late. The one whose removal causes the
-/// larger loss represents both. Returns an empty value if one of them is already named.
+/// Returns the latency of the finger (delay or lag) as a finding. A delay can largely replace a lag, and a
+/// lag a delay. The data may then require neither of the two, although the finger responds late. The one
+/// whose removal increases the loss more is reported for both. Returns nullopt if a delay or lag is already
+/// named.
 std::optional<NamedCause> latency_of(const std::vector<WithoutIngredient>& ablation, const Labeller& labeller,
                                      const BaseFindings& found) {
   const StructureTrial* const neither = trial_without(ablation, Ingredient::latency);

@@ -1,6 +1,6 @@
 #pragma once
-// Measures how much the error increases when a component of a richer base structure is removed, and names the
-// components.
+// Removes each component of a richer base structure, measures how much the error increases, and names the
+// components whose removal increases the error.
 
 #include <vector>
 
@@ -11,11 +11,12 @@
 
 namespace softgrip::sysid {
 
-/// Returns the components for which name_ingredients() needs a fit without them.
+/// Returns the components that name_ingredients() can name. It needs a fit without each of them.
 [[nodiscard]] std::vector<Ingredient> named_ingredients();
 
-/// Adds the components of `found.chosen` that reduce the error sufficiently as named causes. Components with
-/// an uncertain reduction become possible causes. `found.fit` is the base structure fitted to all readings.
+/// Tests the components of `found.chosen`. A component that reduces the error sufficiently becomes a named
+/// cause. A component whose error reduction is uncertain becomes a possible cause. `found.fit` must be the
+/// base structure fitted to all readings.
 void name_ingredients(BaseFindings& found, const std::vector<WithoutIngredient>& ablation,
                       const BaseSearch& search);
 

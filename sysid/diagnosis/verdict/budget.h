@@ -1,5 +1,6 @@
 #pragma once
-// Computes the error budget: mean squares of held-out readings, from the given model down to the noise.
+// Computes the error budget, which consists of mean squares of held-out readings: from the error of the given
+// model down to the noise.
 
 #include <algorithm>
 
@@ -7,7 +8,7 @@
 
 namespace softgrip::sysid {
 
-/// The error budget. All values are mean squares [mm^2].
+/// Error budget of a diagnosis. All values are mean squares [mm^2].
 struct Budget {
   double as_given = 0;
   double recalibrated = 0;
@@ -18,7 +19,8 @@ struct Budget {
   [[nodiscard]] double excess() const { return std::max(recalibrated - noise, 0.0); }
   /// Returns the mean square of the extended model minus that of the noise.
   [[nodiscard]] double left() const { return std::max(extended - noise, 0.0); }
-  /// Returns the share of excess() that one cause explains, measured by its removal [%], from 0 to 100.
+  /// Returns the share of excess() that one cause explains, from 0 to 100 %. It is measured by the removal of
+  /// this cause.
   [[nodiscard]] double share_percent(const NamedCause& named) const {
     return excess() > 0 ? std::clamp(100 * named.gain_mm2.value / excess(), 0.0, 100.0) : 0.0;
   }

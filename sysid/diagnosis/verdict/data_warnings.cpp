@@ -12,7 +12,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Adds a warning for the causes that cannot be tested because a column is missing or constant.
+/// Adds a warning about causes that cannot be tested because a log column is missing or constant.
 void warn_of_columns(const Scales& scales, std::vector<std::string>& warnings) {
   for (const Column column : {Column::temperature_c, Column::supply_kpa}) {
     std::string ids;

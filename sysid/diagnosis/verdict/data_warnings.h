@@ -1,5 +1,5 @@
 #pragma once
-// Adds warnings to a verdict: limits of the data and of a refitted model.
+// Adds warnings to a diagnosis, about limits of the data and about the refitted model.
 
 #include <string>
 #include <vector>
@@ -11,13 +11,14 @@
 
 namespace softgrip::sysid {
 
-/// Warns if the refitted model is unphysical.
+/// Adds a warning if the refitted model is unphysical.
 void warn_unphysical(const model::Model& model, std::vector<std::string>& warnings);
 
-/// Warns about limits of the data that restrict the diagnosis.
+/// Adds warnings about limits of the data that restrict the diagnosis.
 void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vector<std::string>& warnings);
 
-/// Warns if the readings differ from the given model by a factor that equals the ratio of two units.
+/// Adds a warning if the readings differ from the predictions of the given model by a factor that is the
+/// ratio of two units.
 /// @param residual_mm  reading minus prediction, one vector per record
 void warn_of_scale(const std::vector<Record>& records, const std::vector<std::vector<double>>& residual_mm,
                    std::vector<std::string>& warnings);

@@ -1,6 +1,7 @@
 #pragma once
-// Averages logs with far more samples than a finger needs. The computing time of a diagnosis grows with the
-// number of readings, but further readings within the response time of a finger add no information.
+// Averages logs that have far more samples than a diagnosis needs. The computing time of a diagnosis grows
+// with the number of readings. Additional readings within the response time of a finger contain no additional
+// information.
 
 #include <string>
 #include <vector>
@@ -9,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// Longest time over which close readings are averaged [s]: half a sample interval at 100 Hz.
+/// Longest time over which neighbouring readings are averaged [s]: half a sample interval at 100 Hz.
 inline constexpr double averaged_interval_s = 0.005;
 
 /// Averages the records if they have more readings than enough_readings (`sysid/logs/resampled_record.h`),

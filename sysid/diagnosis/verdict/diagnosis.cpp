@@ -32,8 +32,8 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr double clearly_correlated = 0.05;
 constexpr std::size_t fewest_samples = 200;
-/// Refits the base structure from two starts: the given model, and start points from the scale of the data,
-/// because the given model may be far from the data.
+/// Refits the base structure from the given model and from start points at the scale of the data, because the
+/// given model may be far from the data.
 tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, const DiagnosisOptions& options) {
   StructureFit best = fit_structure(data.records, {}, data.given);
   IdentifyOptions wide;
@@ -44,7 +44,7 @@ tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, cons
   auto found = identify(data.records, data.given.model, wide);
   if (found) {
     FitPoint point{found->fitted, rest_starts(found->fitted, data.records)};
-    // Use the initial states from the identification.
+    // The initial states of the records are those of the identification.
     for (std::size_t k = 0; k < data.records.size(); ++k) point.starts[k] = found->scores[k].start;
     StructureFit other = fit_structure(data.records, {}, point);
     if (other.mean_square_mm2 < best.mean_square_mm2 * (1 - 1e-4)) best = std::move(other);
@@ -54,7 +54,7 @@ tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, cons
   return best;
 }
 
-/// Returns the RMSE of each run, or of each half if there is a single run.
+/// Returns the RMSE of each run. If there is a single run, returns the RMSE of each half.
 std::vector<RunError> run_errors(const std::vector<Record>& records, const Division& by_unit,
                                  const BlockLosses& given, const BlockLosses& recalibrated,
                                  const BlockLosses& extended) {
@@ -164,7 +164,7 @@ class Diagnostician {
     return {};
   }
 
-  /// Removes the causes that were already found in the displacement.
+  /// Removes the valve causes that were already found in the displacement.
   void take_out_named(ValveFindings& in_valve) {
     std::erase_if(in_valve.named, [&](const NamedCause& one) { return is_among(d_.causes, one.cause); });
   }
@@ -178,8 +178,8 @@ class Diagnostician {
                      " readings in total: too few to separate a cause from noise (" +
                      std::to_string(fewest_samples) + " are needed)");
     }
-    // The zero of the first log is arbitrary. A zero that changes from log to log is a drift, which is a
-    // possible cause.
+    // The zero of the first log is arbitrary. If the zero changes from log to log, this is a drift, which is
+    // a possible cause.
     const bool zero_free = records.front().offset_free && !records.front().start_unknown;
     for (Record& record : records) record.offset_free = zero_free || record.start_unknown;
     d_.sampling = hide_repeated(records);
@@ -203,8 +203,8 @@ class Diagnostician {
     d_.as_given_rmse_mm = std::sqrt(d_.as_given.mean_square_mm2);
   }
 
-  /// Hides outliers during a motion, which become visible after the recalibration. The fit without them is
-  /// better and may show further outliers, so the search is repeated.
+  /// Hides outliers in a motion, which can be found only from the residual of the refitted model. The fit
+  /// without these outliers is more accurate and may show other outliers, so the search is repeated.
   void hide_more_outliers(StructureFit& base) {
     constexpr int most_rounds = 3;
     for (int round = 0; round < most_rounds; ++round) {
@@ -215,9 +215,9 @@ class Diagnostician {
     }
   }
 
-  /// Handles logs that begin without pressure before the finger has settled. If the given structure with
-  /// estimated start states explains the logs better than all causes found, it replaces the recalibrated
-  /// model. Returns true in this case.
+  /// Handles logs that begin without pressure before the finger has settled. The given structure is fitted
+  /// with estimated initial states. If this fit explains the logs better than all causes found, it replaces
+  /// the recalibrated model, and the result is true.
   bool open_starts(const Selection& selection, const Division& division) {
     const auto is_given = [](const Record& r) { return r.start != Start::automatic || r.start_unknown; };
     if (!selection.left.present || std::all_of(data_.records.begin(), data_.records.end(), is_given))
@@ -233,7 +233,7 @@ class Diagnostician {
     if (!is_missed(selection.extended_losses, held_out_losses(open, division, fit),
                    0.01 * square(d_.noise_mm), options_.seed))
       return false;
-    // Creep that never settles can compensate for any difference between logs of two rigs.
+    // Creep that never settles can compensate for any difference between the logs of two rigs.
     if (inconsistent_among(data_.records, selection.base, fit.mean_square_mm2)) return false;
     use(std::move(open));
     d_.recalibrated = std::move(fit);
@@ -243,8 +243,8 @@ class Diagnostician {
     return true;
   }
 
-  /// Includes a shift of the drive in the error reduction. The errors of the given and of the refitted model
-  /// are those with the original drive.
+  /// Corrects the error reduction if the drive was shifted, so that the reduction includes the shift. The
+  /// errors of the given and the refitted model are then those with the original drive.
   void count_shift(const BlockLosses& extended) {
     if (!d_.lead) return;
     d_.as_given_rmse_mm = unshifted_.as_given_rmse_mm;
@@ -252,7 +252,8 @@ class Diagnostician {
     d_.gain = gain_percent(unshifted_.recalibrated, extended, options_.seed);
   }
 
-  /// Shifts the drive if the readings lead their command. Returns true if the search must be repeated.
+  /// Shifts the drive if the readings react before the command changes. Returns true if the search must be
+  /// repeated.
   bool shift_drive(const Selection& selection, const Division& division) {
     std::optional<LeadFit> shifted = fit_lead(data_, selection, d_.noise_mm);
     if (!shifted) return false;
@@ -265,8 +266,8 @@ class Diagnostician {
     return true;
   }
 
-  /// Returns true if the selection leaves too much error: more than its causes may leave, or, without causes,
-  /// more than the noise explains.
+  /// Returns true if the selection leaves too large an error. If it contains causes, the limit is what these
+  /// causes may leave. Otherwise the limit is the noise.
   [[nodiscard]] bool leaves_too_much(const Selection& selection) const {
     if (!selection.left.present) return false;
     if (selection.extended.causes.empty()) {
@@ -275,9 +276,9 @@ class Diagnostician {
     return sysid::leaves_too_much(selection.left, selection.base_unexplained, d_.noise_mm);
   }
 
-  /// Searches for stick-slip of the valve, whose effect no simulation from the command alone can predict.
-  /// Returns true if stick-slip was the missing effect; `selection` then contains the causes found with the
-  /// valve's stick-slip motion as input.
+  /// Searches for stick-slip of the valve. No simulation from the command alone can predict its effect.
+  /// Returns true if stick-slip was the missing effect. `selection` then contains the causes that were found
+  /// with the positions of the valve as input.
   bool look_for_stick_slip(Selection& selection, const Division& division) {
     if (options_.record.drive != Drive::command) return false;
     if (options_.progress) options_.progress("search for stick-slip");
@@ -287,8 +288,8 @@ class Diagnostician {
     one_more.progress = options_.progress;
     auto found = select_behind_stick_slip(data_, selection, d_.noise_mm, division, one_more);
     if (!found || leaves_too_much(found->selection)) return false;
-    // A path of many small steps can fit any residual. Therefore stick-slip must explain at least 75 % of the
-    // remaining mean square.
+    // A path of many small steps can fit any residual. Stick-slip is therefore accepted only if it explains
+    // at least 75 % of the remaining mean square.
     if (square(found->selection.left.excess_mm) > left_by_what_was_missing * square(selection.left.excess_mm))
       return false;
     selection = std::move(found->selection);
@@ -296,8 +297,8 @@ class Diagnostician {
     return true;
   }
 
-  /// Returns true if another base structure may be searched for now. A gauge or null campaigns must test the
-  /// selection first.
+  /// Returns true if the search for another base structure may begin at once. If there are gauge readings or
+  /// null campaigns, they must test the selection before.
   [[nodiscard]] bool may_ask_at_once() const { return !options_.gauge && options_.null_campaigns == 0; }
 
   void look_for_base(AnotherBase& another, const Selection& selection) {
@@ -373,7 +374,8 @@ class Diagnostician {
     d_.unexplained_error = selection.left;
     d_.extended_rmse_mm = rmse_mm(selection.extended_losses);
     d_.gain = gain_percent(selection.base_losses, selection.extended_losses, options_.seed);
-    // Compare the refitted with the given parameters, both with fitted initial states.
+    // The parameters of the refitted model are compared with those of the given model. In both models, the
+    // initial states are fitted.
     const StructureFit given = fit_starts(data_.records, {}, data_.given);
     recalibration_gain_ = mean_difference(losses_of(given, division), selection.base_losses, options_.seed);
     d_.unexplained_percent =
@@ -408,10 +410,10 @@ class Diagnostician {
     d_.null_calibration = calibrate_on_nulls(data_, d_.recalibrated, d_.gain.value, division, nulls);
   }
 
-  /// Returns the model under a name of its own. Equal names for two models would make files and figures
+  /// Returns the model with a different name. If two models had the same name, files and figures would be
   /// ambiguous.
   [[nodiscard]] model::Model named_model(model::Model model, const std::string& how) const {
-    // The daemon uses the command as input, so the valve blocks are inserted again.
+    // The daemon uses the command as input, so the blocks of the valve are inserted into the model.
     if (options_.record.drive == Drive::measured && d_.in_valve)
       model = with_valve(std::move(model), d_.in_valve->stage);
     model.name = given_.name + '_' + how.substr(0, how.find(' '));
@@ -444,8 +446,8 @@ class Diagnostician {
     }
     for (NamedCause& named : chosen) {
       if (d_.stick_slip && named.cause.id == causes::ValveDeadband::id) {
-        // Report the band of the stick-slip motion, because the extended model may contain the band of the
-        // mean motion.
+        // The reported band is that of the stick-slip motion, because the extended model may contain the band
+        // of the mean motion.
         named.parameters.front() = {"band_kpa", "kPa", d_.stick_slip->band_kpa, d_.stick_slip->band_ci95,
                                     true};
       }
@@ -453,16 +455,16 @@ class Diagnostician {
     }
   }
 
-  /// Returns true if the remaining error is due to undetected wrong samples. These are isolated, but the
-  /// effect of a cause is correlated from sample to sample.
+  /// Returns true if the remaining error is due to wrong readings that were not found. Wrong readings are
+  /// isolated. The effect of a cause, in contrast, is correlated from sample to sample.
   [[nodiscard]] bool left_by_outliers(const UnexplainedError& structure) const {
     return d_.outliers.present && structure.slow_correlation <= clearly_correlated &&
            structure.excess_mm < d_.noise_mm;
   }
 
   void conclude(const Selection& selection) {
-    // If the gauge selected one of two indistinguishable causes, the remaining error of that cause is not
-    // considered.
+    // If the gauge readings selected one of two indistinguishable causes, the remaining error of this cause
+    // has no influence on the verdict.
     const bool placed_by_gauge = d_.gauge && d_.gauge->replaced;
     const bool too_much_left = !placed_by_gauge && leaves_too_much(selection);
     const bool by_chance = d_.null_calibration && d_.null_calibration->reach_the_gain();
@@ -499,7 +501,7 @@ class Diagnostician {
   const model::Model& given_;
   const DiagnosisOptions& options_;
   SearchData data_;
-  /// Errors with the original drive, and held-out losses with the shifted drive.
+  /// Errors of the models with the original drive, and held-out losses with the shifted drive.
   struct Unshifted {
     double as_given_rmse_mm = 0;
     BlockLosses recalibrated, shifted;

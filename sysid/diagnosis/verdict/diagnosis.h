@@ -1,5 +1,6 @@
 #pragma once
-// Diagnoses a model: determines its error and the cause, extends it, and measures the error reduction.
+// Diagnoses a model: determines its error and the causes of this error, extends the model, and measures the
+// error reduction.
 
 #include <chrono>
 #include <cstdint>
@@ -35,45 +36,54 @@ struct DiagnosisOptions {
   RecordOptions record;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  /// Number of simulated data sets without a cause that calibrate the search if it names a cause; 0: none.
+  /// Number of simulated data sets without a cause. They calibrate the search if the search names a cause; 0:
+  /// no calibration.
   std::size_t null_campaigns = 0;
-  /// Sensor readings at known positions; empty: the operator has measured none.
+  /// Readings of the sensor at known positions. Not set: the operator has made no gauge check.
   std::optional<GaugeFile> gauge;
   std::function<void(const std::string&)> progress;
 };
 
-/// RMSE of one run, or of one half if there is a single run, for the models that a diagnosis compares [mm].
+/// RMSE of one run for each model that a diagnosis compares [mm]. If there is a single run, RMSE of one half
+/// of the run.
 struct RunError {
   std::string run;
   double given = 0;
-  double recalibrated = 0;  ///< fitted to the other runs
-  double extended = 0;      ///< fitted to the other runs; equal to `recalibrated` without an extended model
+  double recalibrated = 0;  ///< RMSE of the refitted model, which was fitted to the other runs
+  /// RMSE of the extended model, which was fitted to the other runs; `recalibrated` if there is no such
+  /// model.
+  double extended = 0;
 };
 
 struct Diagnosis {
-  Verdict verdict = Verdict::unexplained;  ///< verdict from the displacement alone; see whole_verdict()
-  std::vector<NamedCause> causes;          ///< named causes for the verdicts cause_found, ambiguous and
-                                           ///< partly_explained
-  std::vector<NamedCause> partial;         ///< partial explanations of an unexplained error
+  /// Verdict from the displacement only; whole_verdict() also uses the measured pressure.
+  Verdict verdict = Verdict::unexplained;
+  std::vector<NamedCause> causes;  ///< named causes for the verdicts cause_found, ambiguous and
+                                   ///< partly_explained
+  /// Causes that explain only part of the error, for the verdict unexplained.
+  std::vector<NamedCause> partial;
   std::vector<CandidateScore> rejected;
   double noise_mm = 0;
   Spread gain;  ///< held-out error reduction by the extended model, relative to the refitted model [%]
-  double as_given_rmse_mm = 0;  ///< RMSE over all readings; initial states by sysid/fitting/start_estimate.h
+  /// RMSE of the given model over all readings; initial states by sysid/fitting/start_estimate.h.
+  double as_given_rmse_mm = 0;
   double recalibrated_rmse_mm = 0;  ///< RMSE on held-out blocks
   double extended_rmse_mm = 0;      ///< RMSE on held-out blocks
-  /// RMSE on logs that were held out completely; empty if there is a single log.
+  /// RMSE on logs that were completely held out; not set if there is a single log.
   std::optional<double> recalibrated_other_logs_rmse_mm;
   std::optional<double> extended_other_logs_rmse_mm;
   std::vector<RunError> runs;
   double unexplained_percent = 0;
-  std::optional<NullCalibration> null_calibration;  ///< present if requested and if a cause was found
+  /// Present if the calibration was requested and a cause was found.
+  std::optional<NullCalibration> null_calibration;
   OutlierEvidence outliers;
   SamplingEvidence sampling;
-  std::optional<ReadingLead> lead;              ///< present if the drive of the records was shifted
+  std::optional<ReadingLead> lead;              ///< present if the drive of the records was shifted in time
   std::optional<StickSlipEvidence> stick_slip;  ///< present if the named dead band shows stick-slip
   std::optional<GaugeEvidence> gauge;           ///< present if gauge readings were given
-  std::optional<ValveFindings> in_valve;  ///< present if the pressure was measured; contains none of `causes`
-  /// components of a richer base structure; empty: the given base structure is sufficient
+  /// Present if the pressure was measured; does not repeat causes in `causes`.
+  std::optional<ValveFindings> in_valve;
+  /// Description of a richer base structure; empty: the given base structure is sufficient.
   std::string base;
   UnexplainedError unexplained_recalibrated;
   UnexplainedError unexplained_error;
@@ -84,27 +94,28 @@ struct Diagnosis {
   model::Model recalibrated_model;
   std::vector<Record> records;
   std::vector<std::string> warnings;
-  /// Untested causes by id: the logs never contain the condition in which the cause has an effect. The value
-  /// names the recording that would test the cause.
+  /// Causes that were not tested, by id, because the logs never contain the condition in which the cause has
+  /// an effect. The value describes the recording that would test the cause.
   std::map<std::string, std::string, std::less<>> not_tested;
-  std::optional<Evidence> evidence;  ///< conditions on which the errors depend; see examine()
+  std::optional<Evidence> evidence;  ///< conditions on which the errors depend; set by examine()
   double wall_s = 0;
-  std::vector<std::pair<std::string, double>> stages_s;  ///< wall time by stage
+  /// For each stage of the diagnosis, its name and its wall time.
+  std::vector<std::pair<std::string, double>> stages_s;
 };
 
-/// Returns true if the extended model differs from the refitted one.
+/// Returns true if the extended model differs from the refitted model.
 [[nodiscard]] inline bool is_extended(const Diagnosis& d) {
   return !d.extended.causes.empty() || !d.base.empty();
 }
 
-/// Returns the verdict that also includes the causes found in the measured pressure.
+/// Returns the verdict from the displacement and from the measured pressure.
 [[nodiscard]] Verdict whole_verdict(const Diagnosis& d);
 
-/// Measures the wall time of the stages of a diagnosis in sequence.
+/// Measures the wall times of consecutive stages of a diagnosis.
 class StageClock {
  public:
   explicit StageClock(Diagnosis& diagnosis) : diagnosis_(diagnosis) {}
-  /// Assigns the time since the construction or since the last call of ended() to this stage.
+  /// Ends a stage. Its time is the time since the previous call of ended(), or since the construction.
   void ended(std::string stage) {
     const auto now = std::chrono::steady_clock::now();
     const double took_s = std::chrono::duration<double>(now - began_).count();
@@ -123,8 +134,7 @@ class StageClock {
                                                             const model::Model& given,
                                                             const DiagnosisOptions& options = {});
 
-/// Adds the evidence to a diagnosis: the conditions on which the remaining error depends. The verdict stays
-/// unchanged.
+/// Adds to a diagnosis the conditions on which the remaining error depends. The verdict does not change.
 void examine(Diagnosis& diagnosis, const DiagnosisOptions& options);
 
 /// Returns the verdict as one sentence for a technician.

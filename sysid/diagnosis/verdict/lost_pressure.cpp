@@ -8,12 +8,12 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A leak must reach at least this share of the error reduction that a sensor gain achieves. The share is at
-/// least 0.99 if the cause is a leak or a wrong scale, and 0.84 if the pressure saturates at 90 % of the
+/// A leak must reduce the error at least by this share of the reduction by a sensor gain. The share is at
+/// least 0.99 if the cause is a leak or a wrong scale. It is 0.84 if the pressure saturates at 90 % of the
 /// range.
 constexpr double taken_by_a_leak = 0.95;
-/// A leak must explain at least this share of the error without leak and gain. Otherwise most of that error
-/// has another cause.
+/// A leak must explain at least this share of the error that remains without leak and gain. Otherwise most of
+/// this error has another cause.
 constexpr double least_taken = 0.5;
 
 double mean_of(const BlockLosses& losses) {

@@ -1,6 +1,6 @@
 #pragma once
-// Fits a valve stage to the measured pressure of several logs, and computes the held-out error and the
-// uncertainty of the parameters.
+// Fits a model of the valve to the measured pressure of several logs. Computes the held-out error and the
+// uncertainty of its parameters.
 
 #include <cstddef>
 #include <vector>
@@ -13,32 +13,35 @@
 
 namespace softgrip::sysid {
 
-/// Fits valve stages. Keeps a reference to the logs, which must outlive it. Each log must have a measured
-/// pressure.
+/// Fits models of the valve. The object keeps a reference to the logs, which must outlive it. Each log must
+/// contain a measured pressure.
 class MeasuredValve {
  public:
-  /// @param held  true: the command is constant until the next sample.
+  /// @param held  true: the command is constant between two samples.
   MeasuredValve(const std::vector<Log>& logs, bool held);
 
-  /// Fits the given parts and the pressure sensor to all data, from the start points `from`.
-  /// @param tolerance  tolerance of the fit; a fit that is reported needs a small one.
+  /// Fits the given parts of the valve model, and gain and zero of the pressure sensor, to all data. The fits
+  /// start at the points `from`.
+  /// @param tolerance  tolerance of the fit; if the result is reported, it must be small.
   [[nodiscard]] ValveStage fit(ValveParts parts, const std::vector<ValveStage>& from, double tolerance = 1e-6,
                                PressureSensorFit sensor = PressureSensorFit::gain_and_zero) const;
 
-  /// Returns the better of two fits of `parts`: `one`, or a fit that starts at `other`, which has some of the
-  /// parts. The second fit is only computed if the error of `other` is little larger than that of `one`.
+  /// Returns the better one of two fits of `parts`: `one`, and a fit that starts at `other`. `other` contains
+  /// only some of the parts. The second fit is computed only if the error of `other` is at most slightly
+  /// larger than the error of `one`.
   [[nodiscard]] ValveStage better_fit(ValveParts parts, const ValveStage& one, const ValveStage& other) const;
 
-  /// Returns the mean square of each block under a fit that did not use the block [kPa^2].
+  /// Returns the mean square of each block [kPa^2]. The model is fitted to the other fold, without this
+  /// block.
   [[nodiscard]] BlockLosses held_out_losses(
       ValveParts parts, const ValveStage& whole,
       PressureSensorFit sensor = PressureSensorFit::gain_and_zero) const;
 
-  /// Returns standard errors of parameters that were fitted together, in their units and order. The result is
-  /// the larger of two estimates. One assumes white noise. The other is the sandwich estimate with sums over
-  /// whole blocks, so that correlation within a block is included (White, Econometrica 48, 1980; Liang &
-  /// Zeger, Biometrika 73, 1986). The sandwich estimate is too small if few blocks contain most of the
-  /// information, such as the edges of a few steps.
+  /// Returns the standard errors of parameters that were fitted together. The result has the units and the
+  /// order of these parameters. It is the larger of two estimates. The first assumes white noise. The second
+  /// is the sandwich estimate from sums over whole blocks, which includes the correlation within a block
+  /// (White, Econometrica 48, 1980; Liang & Zeger, Biometrika 73, 1986). The sandwich estimate is too small
+  /// if few blocks contain most of the information, for example the edges of a few steps.
   [[nodiscard]] Eigen::VectorXd standard_errors(const ValveStage& at,
                                                 const std::vector<double ValveStage::*>& numbers) const;
 
@@ -52,7 +55,7 @@ class MeasuredValve {
   const std::vector<Log>& logs_;
   bool held_;
   std::size_t samples_ = 0;              ///< number of samples in all logs
-  std::vector<std::size_t> blocks_end_;  ///< index after the last block of each log
+  std::vector<std::size_t> blocks_end_;  ///< for each log, the index after its last block
 };
 
 }  // namespace softgrip::sysid

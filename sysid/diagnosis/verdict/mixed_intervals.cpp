@@ -8,10 +8,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A structure is excluded if it has the lower loss in fewer than this share of the bootstrap samples.
+/// A structure is excluded if it has the lower loss in less than this share of the bootstrap samples.
 constexpr double least_weight = 0.05;
 
-/// Returns true if any interval became wider.
+/// Widens the intervals of a cause where necessary. Returns true if an interval became wider.
 bool widen(NamedCause& named, const std::vector<CauseParameter>& with) {
   bool wider = false;
   for (CauseParameter& number : named.parameters) {

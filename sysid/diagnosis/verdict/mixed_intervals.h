@@ -1,7 +1,7 @@
 #pragma once
-// Computes intervals over a set of plausible structures. The value of a parameter depends on the other causes
-// in the structure. If the data do not determine whether a confounded cause is present, the interval covers
-// the values with and without that cause.
+// Computes intervals of parameters over several plausible structures. The value of a parameter depends on the
+// other causes in the structure. If the data do not show whether a confounded cause is present, the interval
+// covers the values with and without this cause.
 
 #include <cstdint>
 #include <string>
@@ -12,8 +12,9 @@
 
 namespace softgrip::sysid {
 
-/// Widens the intervals of `named` (the chosen causes of `selection`) until they cover every undecided
-/// structure that the held-out blocks do not exclude. Returns a sentence for each widened interval.
+/// Widens the intervals of `named`, the chosen causes of `selection`. Each interval then covers the values in
+/// all undecided structures that the held-out blocks do not exclude. Returns a sentence for each widened
+/// interval.
 [[nodiscard]] std::vector<std::string> mix_intervals(std::vector<NamedCause>& named,
                                                      const std::vector<Record>& records,
                                                      const Selection& selection, std::uint64_t seed);

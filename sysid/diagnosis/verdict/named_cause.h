@@ -1,5 +1,5 @@
 #pragma once
-// Describes a cause that a verdict names, with its evidence.
+// Describes a cause that a verdict names, and the evidence for this cause.
 
 #include <cstddef>
 #include <optional>
@@ -22,19 +22,21 @@ struct CauseParameter {
   [[nodiscard]] bool determined() const { return has_interval && is_determined(ci95, value); }
 };
 
-/// Smallest inclusion frequency at which a cause is named. Below it, the cause is only possible.
+/// A cause is named if its inclusion frequency is at least this value. Below this value, the cause is only
+/// possible.
 inline constexpr double full_inclusion = 0.95;
 
 struct NamedCause {
   Cause cause;
-  std::size_t block_type = 0;  ///< type of the block in the form in which the cause was found
+  std::size_t block_type = 0;  ///< type of the block with which the cause was found
   std::vector<CauseParameter> parameters;
   Spread heldout_gain_percent;
-  Spread gain_mm2;  ///< decrease of the held-out mean square by the cause
-  /// Decrease of the mean square error of the measured pressure [kPa^2]; empty: the pressure was not used.
+  Spread gain_mm2;  ///< reduction of the held-out mean square by the cause
+  /// Reduction of the mean square error of the measured pressure [kPa^2]; not set: the cause was found
+  /// without this pressure.
   std::optional<Spread> gain_kpa2;
   double inclusion =
-      1;  ///< inclusion frequency: weight of the structures with this cause in the confidence set
+      1;  ///< inclusion frequency: weight of the structures with this cause among all plausible structures
   std::vector<Cause> alternatives;
   std::vector<CandidateScore> candidates;
 };

@@ -42,8 +42,8 @@ std::vector<CauseParameter> block_numbers(const UncertainPoint& at, std::size_t 
       const double deviation = std::sqrt(std::max(0.0, at.uncertainty.covariance(row, row)));
       if (deviation == 0) continue;
       const double half = at.uncertainty.quantile * deviation;
-      // Clip finite interval limits to the permitted range (a delay is not negative). Infinite limits mean
-      // that the value is unknown, so they stay infinite.
+      // A finite limit of an interval is clipped to the permitted range; for example, a delay is not
+      // negative. An infinite limit means that the value is unknown, so it stays infinite.
       const auto possible = [&](double value) {
         return std::isfinite(value) ? std::clamp(value, spec.lower, spec.upper) : value;
       };
@@ -79,7 +79,7 @@ std::vector<NamedCause> name_chosen(const std::vector<Record>& records, const St
 
 namespace {
 
-/// Returns a cause that was detected in the readings.
+/// Returns a cause that was detected in the readings before any fit.
 /// @param excess_mm  error of the affected readings. @param readings  number of affected readings.
 NamedCause cause_in_readings(std::string_view id, std::vector<CauseParameter> parameters, double excess_mm,
                              std::size_t readings, double noise_mm) {

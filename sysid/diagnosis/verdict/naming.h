@@ -19,13 +19,13 @@ struct UncertainPoint {
   std::vector<double> z;
   Uncertainty uncertainty;
 };
-/// Returns the covariance of the parameters at `point`.
-/// @param space  the free parameters of the fit to `records`. `point` and `space` must outlive the result.
+/// Computes the covariance of the fitted parameters at `point`.
+/// @param space  free parameters of the fit to `records`. `point` and `space` must outlive the result.
 [[nodiscard]] UncertainPoint uncertain_point(const std::vector<Record>& records, const FitPoint& point,
                                              const FitSpace& space);
 
 /// Returns the parameters of the model's block of this type, in the order of the block. A parameter has a 95
-/// % interval if it was free in the fit and is not at a bound.
+/// % interval if it was fitted and is not at a bound.
 [[nodiscard]] std::vector<CauseParameter> block_numbers(const UncertainPoint& at, std::size_t block_type);
 
 /// Returns the causes of a selection with their parameters in the extended model.
@@ -33,21 +33,22 @@ struct UncertainPoint {
                                                   const StructureFit& extended,
                                                   const std::vector<ChosenCause>& chosen);
 
-/// Returns the causes that were detected in the readings before any fit: outliers and sampling, if present.
+/// Returns the causes that were detected in the readings before any fit: outliers and slow or frozen
+/// sampling, if present.
 [[nodiscard]] std::vector<NamedCause> causes_in_readings(const OutlierEvidence& outliers,
                                                          const SamplingEvidence& sampling, double noise_mm,
                                                          model::OutputUnit unit);
 
-/// Returns the title of a cause for use inside a sentence: "valve lag".
+/// Returns the title of a cause with a lower-case first letter, for use in a sentence: "valve lag".
 [[nodiscard]] std::string title_within(const Cause& cause);
-/// Returns the title of an alternative. If its cause is already named, the title says so, as in "a further
-/// valve lag".
+/// Returns the title of an alternative. If the same cause is already named, the title is, for example, "a
+/// further valve lag".
 [[nodiscard]] std::string alternative_title(const Cause& alternative, const std::vector<NamedCause>& named);
 
 /// Returns true if the list of named causes contains the cause.
 [[nodiscard]] bool is_among(const std::vector<NamedCause>& named, const Cause& cause);
 
-/// Returns true if any of the causes has an alternative.
+/// Returns true if any of the named causes has an alternative.
 [[nodiscard]] bool any_alternatives(const std::vector<NamedCause>& causes);
 
 }  // namespace softgrip::sysid

@@ -1,5 +1,5 @@
 #pragma once
-// Estimates the time by which the readings lead the command.
+// Estimates the time by which the readings react before the command changes.
 
 #include <optional>
 #include <vector>
@@ -11,8 +11,8 @@ namespace softgrip::sysid {
 
 struct ReadingLead {
   double lead_s = 0;
-  /// 95 % interval from the profile of the mean square: all parameters of the structure are fitted again at
-  /// each lead.
+  /// 95 % interval from the profile of the mean square. For each lead, all parameters of the structure are
+  /// fitted.
   Interval ci95;
 };
 
@@ -22,13 +22,13 @@ struct LeadFit {
   std::vector<Record> records;  ///< records whose drive is shifted by the lead
 };
 
-/// Returns the records with a drive that is shifted to an earlier time by `lead_s`. The first sample keeps
-/// its drive, which defines the initial state of the record. Readings that would need a drive from after the
-/// end of the record become NaN.
+/// Returns the records after their drive was shifted to an earlier time by `lead_s`. The first sample keeps
+/// its drive, because this drive defines the initial state of the record. A reading becomes NaN if it would
+/// need a drive after the end of the record.
 [[nodiscard]] std::vector<Record> with_drive_ahead(std::vector<Record> records, double lead_s);
 
-/// Determines the lead precisely if a selection contains the cause clock_offset. The block of that cause
-/// extrapolates the motion and is wrong at corners. A shifted drive has no such error.
+/// Determines the lead precisely if a selection contains the cause clock_offset. The block of this cause
+/// extrapolates the motion and is inaccurate at corners. A shifted drive has no such error.
 /// @returns no value if the selection does not contain the cause, if zero lies within the 95 % interval of
 /// the lead, or if the shifted drive leaves more error than the causes of the selection.
 [[nodiscard]] std::optional<LeadFit> fit_lead(const SearchData& data, const Selection& selection,

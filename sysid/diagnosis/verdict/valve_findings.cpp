@@ -34,23 +34,26 @@ namespace softgrip::sysid {
 namespace {
 
 /// Smallest share of the remaining mean square that a part of the valve model must explain. A regulator is
-/// not exactly a dead time and a lag, and a part can absorb some of the difference. In 16 simulated textbook
-/// cases, an absent part explained at most 0.12, and a part with an effect of twice the noise at least 0.27.
+/// not exactly a dead time and a lag, and a part can absorb some of the resulting error. In 16 simulated
+/// textbook cases, a part that was not present explained at most 0.12. A part with an effect of twice the
+/// noise explained at least 0.27.
 constexpr double least_part = 0.2;
-/// Smallest share for a second time constant, which is a detail of a lag and is not reported as a cause.
+/// Smallest share of the remaining mean square that a second time constant must explain. It is a detail of a
+/// lag and is not reported as a cause.
 constexpr double least_detail = 0.02;
-/// Largest number of samples of all logs together. Longer logs are thinned to every second, third, ...
-/// sample, because a valve has few parameters.
+/// Largest number of samples of all logs together. If there are more samples, the logs are thinned to every
+/// second, third, ... sample, because a valve model has few parameters.
 constexpr std::size_t most_samples = 30'000;
 
-/// Name, unit and member of a parameter in the report of a cause.
+/// A parameter as the report of a cause lists it: name, unit, and member of the fitted stage.
 struct Number {
   std::string_view name;
   std::string_view unit;
   double ValveStage::*value;
 };
 
-/// Cause that a part is reported as, and its parameters.
+/// Assigns a part of the valve model to the cause as which it is reported, and to the parameters of this
+/// cause.
 struct PartName {
   ValvePart part;
   std::string_view id;
@@ -116,14 +119,14 @@ ValveParts without(ValveParts parts, ValvePart part) {
   return parts;
 }
 
-/// A fitted stage and its losses.
+/// A fit of some parts of the valve model, and its losses.
 struct Trial {
   ValveParts parts;
   ValveStage stage;
   BlockLosses losses_kpa2;
 };
 
-/// Evidence for a part of the valve model, from the fits with and without it.
+/// Evidence for a part of the valve model, from a fit with this part and a fit without it.
 struct PartEvidence {
   Spread gain_kpa2;
   Spread gain_percent;
@@ -161,7 +164,8 @@ class Search {
     parallel_for(valve_part_count, question.threads, [&](std::size_t i) {
       if (!ablation_[i]) return;
       Trial& trial = *ablation_[i];
-      // Do not test a part on held-out blocks if it explains a negligible share of the fitted error.
+      // A part is not tested on held-out blocks if it explains only a negligible share of the error of the
+      // fit.
       const double fitted_share = 1 - std::pow(whole_.stage.rmse_kpa / trial.stage.rmse_kpa, 2);
       if (fitted_share > 0.5 * least_share_of(static_cast<ValvePart>(i))) {
         trial.losses_kpa2 = valve_.held_out_losses(trial.parts, trial.stage);
@@ -226,7 +230,8 @@ class Search {
   }
 
   void add_lost_pressure(ValveFindings& found, ValveParts kept) const {
-    // A falling supply or a pressure limit also reduces the pressure, so the stage with both is fitted first.
+    // A falling supply or a pressure limit reduces the pressure too. Therefore the fit that includes both
+    // comes first.
     if (!(whole_.stage.gauge_gain < 1 - scales_agree_within)) return;
     const auto lost = find_lost_pressure(logs_, valve_, kept, found.stage);
     if (!lost) return;
@@ -254,7 +259,7 @@ class Search {
     return gain_mm_per_kpa * std::sqrt(of.gain_kpa2.value) > question_.noise_mm;
   }
 
-  /// Returns the parameters of the part with intervals that include the uncertainty of the other fitted
+  /// Returns the parameters of the part. Their intervals include the uncertainty of the other fitted
   /// parameters.
   [[nodiscard]] std::vector<CauseParameter> parameters_of(const PartName& name, const ValveStage& stage,
                                                           ValveParts kept) const {

@@ -1,6 +1,6 @@
 #pragma once
-// Finds the causes between the command and the measured pressure. If the pressure was recorded, valve causes
-// are determined from it and not from the motion of the finger.
+// Finds causes between the command and the measured pressure. If the pressure was recorded, valve causes are
+// determined from the pressure instead of the motion of the finger.
 
 #include <cstdint>
 #include <optional>
@@ -15,26 +15,26 @@
 namespace softgrip::sysid {
 
 struct ValveFindings {
-  /// Causes at full inclusion and without alternatives, except for a leak, which may be a scale error. The
-  /// list is empty if the stage fits badly. Causes that the given model already contains are omitted. The
-  /// error reductions apply to the measured pressure (gain_kpa2, heldout_gain_percent), and gain_mm2 is 0.
+  /// Causes with full inclusion and without alternatives. A leak is the exception, because it may be a scale
+  /// error. The list is empty if the fit is bad. Causes that the given model contains are left out. The error
+  /// reductions refer to the measured pressure (gain_kpa2, heldout_gain_percent), and gain_mm2 is 0.
   std::vector<NamedCause> named;
   std::string advice;  ///< advice that separates a named leak from a scale error; empty if no leak is named
-  ValveStage stage;    ///< dead time, lag and the named causes
+  ValveStage stage;    ///< fitted valve model: dead time, lag and the named causes
   double heldout_rmse_kpa = 0;
-  double noise_kpa = 0;  ///< sample-to-sample noise of the measured pressure
+  double noise_kpa = 0;  ///< noise between consecutive samples of the measured pressure
 };
 
 struct ValveQuestion {
   const model::Model& given;
   bool held = false;
-  double noise_mm = 0;  ///< noise of the displacement readings; causes with a smaller effect are not named
+  double noise_mm = 0;  ///< noise of the displacement readings; a cause with a smaller effect is not named
   std::uint64_t seed = 1;
-  unsigned threads = 0;  ///< 0: one per core
+  unsigned threads = 0;  ///< number of threads; 0: one per core
 };
 
-/// Searches for causes between command and measured pressure. Returns an empty value if a log has no measured
-/// pressure.
+/// Searches for causes between the command and the measured pressure. Returns nullopt if a log contains no
+/// measured pressure.
 [[nodiscard]] std::optional<ValveFindings> find_in_valve(const std::vector<Log>& logs,
                                                          const ValveQuestion& question);
 

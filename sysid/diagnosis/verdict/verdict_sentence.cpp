@@ -9,7 +9,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Returns a value with the unit of the readings: "0.31 mm".
+/// Returns a value as text with the unit of the readings: "0.31 mm".
 std::string reading(const Diagnosis& d, double value) {
   return significant(value, 2) + " " + std::string(model::name_of(d.extended_model.output_unit));
 }
@@ -23,7 +23,7 @@ std::string listed(const std::vector<NamedCause>& causes) {
   });
 }
 
-/// Returns the sentence for a correct model and wrong readings.
+/// Returns the sentence for the case that the model is correct and readings are wrong.
 std::string readings_sentence(const Diagnosis& d) {
   std::string wrong;
   if (d.outliers.present)
@@ -48,8 +48,8 @@ std::string readings_sentence(const Diagnosis& d) {
   return wrong + "; " + those + "the recalibrated model's error is " + reading(d, d.extended_rmse_mm) + ".";
 }
 
-/// Returns the sentence on stick-slip. The position of a sticking valve follows from the readings, not from
-/// the command.
+/// Returns the sentence about stick-slip. The readings determine the position of a sticking valve; the
+/// command does not.
 std::string stick_slip_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
   return "The model lacks " + listed(d.causes) +
          ": the valve sticks and jumps. The command alone does not determine the times of the jumps, so the "
@@ -58,9 +58,9 @@ std::string stick_slip_sentence(const Diagnosis& d, const std::string& before, c
          reading(d, d.stick_slip->heldout_rmse_mm) + ".";
 }
 
-/// Returns the end of the sentence on the named causes: ": with them the held-out error falls from 2 mm to 1
-/// mm". If the error does not fall, it says that the model without the causes needs an inverse response for
-/// an equally good fit.
+/// Returns the end of the sentence about the named causes: ": with them the held-out error falls from 2 mm to
+/// 1 mm". If the error does not fall, the text states that the model without these causes needs an inverse
+/// response to fit equally well.
 std::string with_them(const Diagnosis& d, const std::string& before, const std::string& after) {
   const std::string them = d.causes.size() > 1 ? "them" : "it";
   constexpr double next_to_nothing = 0.02;
@@ -90,7 +90,8 @@ bool valve_lacks(const Diagnosis& d) {
   return d.in_valve && !d.in_valve->named.empty();
 }
 
-/// Returns " Between the command and the measured pressure it lacks valve dead band (band_kpa 1.34)."
+/// Returns the sentence about the valve: " Between the command and the measured pressure it lacks valve dead
+/// band (band_kpa 1.34)."
 std::string sentence_of_valve(const Diagnosis& d) {
   std::string numbers;
   for (const NamedCause& named : d.in_valve->named) {
