@@ -1,6 +1,6 @@
 #pragma once
-// Compares two hypotheses by their losses on the same data. All decisions between two causes or two models
-// use this comparison.
+// Compares two hypotheses by their losses on the same data. Every decision between two causes or two models
+// uses this comparison.
 
 #include <cstdint>
 #include <vector>
@@ -14,14 +14,14 @@ struct PairedLosses {
 };
 
 struct Comparison {
-  double share = 0;             ///< share of the bootstrap samples in which the loss of `better` is smaller
-                                ///< by more than the tolerance
-  double lower = 0, upper = 0;  ///< 95 % interval of the difference (worse minus better) per row
+  /// Share of the bootstrap samples in which the loss of `better` is smaller by more than the tolerance.
+  double share = 0;
+  double lower = 0, upper = 0;  ///< 95 % interval of the difference `worse` minus `better` per row
 };
 
 /// Compares the weighted mean losses per row, with random weights of the blocks (Bayesian bootstrap: Rubin,
 /// Annals of Statistics 9, 1981).
-/// @param tolerance  required difference per row.
+/// @param tolerance  difference of the losses per row that `better` must exceed.
 /// @param seed  seed of the random weights; the same seed gives the same result.
 [[nodiscard]] Comparison compare(const PairedLosses& losses, double tolerance, std::uint64_t seed);
 

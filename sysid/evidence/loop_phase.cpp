@@ -19,8 +19,8 @@ struct Pair {
   Eigen::VectorXd command, reading;
 };
 
-/// Returns the samples in which both values are finite, normalised to zero mean and unit standard deviation.
-/// The result is empty if one series is constant.
+/// Returns the samples in which both values are finite, scaled to zero mean and unit standard deviation. The
+/// result is empty if one of the series is constant.
 Pair pairs_of(const std::vector<double>& command, const std::vector<double>& reading) {
   std::vector<double> u, y;
   for (std::size_t i = 0; i < std::min(command.size(), reading.size()); ++i) {
@@ -45,7 +45,7 @@ double squares_left(const Eigen::MatrixXd& columns, const Eigen::VectorXd& targe
   return (target - columns * columns.colPivHouseholderQr().solve(target)).squaredNorm();
 }
 
-/// Returns the interpolated lag at which sum(a(t) b(t + lag)) first changes sign.
+/// Returns the interpolated lag at which sum(a(t) b(t + lag)) first changes its sign.
 std::optional<double> first_crossing(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   double before = a.dot(b);
   for (Eigen::Index lag = 1; lag < a.size(); ++lag) {
@@ -76,8 +76,8 @@ bool is_closed_loop(const std::vector<double>& command, const std::vector<double
   const Eigen::VectorXd target = u.tail(rows);
   const double own = squares_left(columns.leftCols(order), target), both = squares_left(columns, target);
   const auto free = static_cast<double>(rows - 2 * order);
-  // If the command follows from its own past except for rounding, no error remains that the readings could
-  // explain.
+  // If past values of the command predict it up to rounding errors, no prediction error remains that the
+  // readings could reduce.
   if (!(own > 1e-12 * static_cast<double>(rows)) || !(both > 0)) return false;
   const double f = (own - both) / static_cast<double>(order) / (both / free);
   return f > f_quantile(limits::feedback_probability, static_cast<double>(order), free);

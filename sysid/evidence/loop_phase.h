@@ -1,34 +1,33 @@
 #pragma once
 // Detects valve stiction in a closed loop without a simulation.
 //
-// In a closed loop the command depends on the readings and their noise, so a simulation from the command
-// gives no evidence about the valve. The phase between command and reading does give evidence. If the valve
-// sticks, the cross-correlation is odd (a shift of 90 degrees). If a disturbance or a tightly tuned
-// controller causes the oscillation, the cross-correlation is even (180 degrees). This rule holds for
-// self-regulating processes. A. Horch, "A simple method for detection of stiction in control valves", Control
-// Engineering Practice 7 (1999) 1221-1231.
+// In a closed loop, the command depends on the readings and their noise. A simulation from the command
+// therefore gives no evidence about the valve, but the phase between command and reading does. If the valve
+// sticks, the cross-correlation of command and reading is odd (phase shift of 90 degrees). If a disturbance
+// or a tightly tuned controller causes the oscillation, the cross-correlation is even (180 degrees). This
+// rule holds for self-regulating processes. A. Horch, "A simple method for detection of stiction in control
+// valves", Control Engineering Practice 7 (1999) 1221-1231.
 
 #include <optional>
 #include <vector>
 
 namespace softgrip::sysid {
 
-/// Returns true if a command can be predicted better from its own past and past readings than from its own
-/// past alone (Granger's test for three samples of each, at limits::feedback_probability). Readings do not
-/// improve the prediction of a command that was planned before the run.
+/// Returns true if past readings improve the prediction of the command from its own past. This is Granger's
+/// test with three samples of each series, at limits::feedback_probability. Readings do not improve the
+/// prediction of a command that was planned before the run.
 /// @param command, reading  series of equal length. Pairs with a NaN are skipped. With fewer than 50 pairs,
 /// the result is false.
 [[nodiscard]] bool is_closed_loop(const std::vector<double>& command, const std::vector<double>& reading);
 
-/// Returns 1 for an odd cross-correlation and 0 for an even one: |left - right| / (left + right), where left
-/// and right are the distances of the zero crossings next to lag 0. Returns nullopt if one side has no zero
-/// crossing or if a series is constant.
+/// Returns 1 for an odd cross-correlation and 0 for an even one. The result is |left - right| / (left +
+/// right), where left and right are the distances from lag 0 to the next zero crossing on each side. Returns
+/// nullopt if one side has no zero crossing or if one of the series is constant.
 [[nodiscard]] std::optional<double> phase_ratio(const std::vector<double>& command,
                                                 const std::vector<double>& reading);
 
-/// Returns true if the loop is closed and its phase lies within 30 degrees of 90 degrees, which indicates a
-/// sticking valve.
-/// valve.
+/// Returns true if the loop is closed and the phase shift between command and reading is within 30 degrees of
+/// 90 degrees. This indicates a sticking valve.
 [[nodiscard]] bool shows_stiction(const std::vector<double>& command, const std::vector<double>& reading);
 
 }  // namespace softgrip::sysid

@@ -8,7 +8,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Lowest value and range of one quantity.
+/// Lowest value and range of a quantity in all bins.
 class Extent {
  public:
   Extent(const std::vector<OperatingPoint>& conditions, double OperatingPoint::*of) : of_(of) {
@@ -18,7 +18,7 @@ class Extent {
     low_ = (*low).*of;
     range_ = (*high).*of - low_;
   }
-  /// Returns the position of a value in the range, from 0 (lowest) to 1 (highest).
+  /// Returns the position of a value in its range, from 0 (lowest value) to 1 (highest value).
   [[nodiscard]] double share(const OperatingPoint& condition) const {
     return range_ > 0 ? (condition.*of_ - low_) / range_ : 0;
   }

@@ -9,10 +9,10 @@
 
 namespace softgrip::sysid {
 
-/// The operating points at which a cause must have an effect.
+/// Operating points at which a cause must have an effect.
 enum class Appears {
   anywhere,
-  at_rest,    ///< at zero pressure as well, because a shifted zero affects all displacements equally
+  at_rest,    ///< also at zero pressure, because a shifted zero changes all readings equally
   displaced,  ///< with an effect proportional to the displacement
   held,       ///< while a pressure is held
   moving,     ///< with an effect proportional to the rate of the input, zero at rest
@@ -21,7 +21,7 @@ enum class Appears {
 /// Input and predicted motion of the finger in one bin.
 struct OperatingPoint {
   double pressure_kpa = 0;    ///< pressure that drives the finger
-  double rate_kpa_per_s = 0;  ///< rate of the driving pressure after a peak detector, >= 0; see rates_of()
+  double rate_kpa_per_s = 0;  ///< rate of the driving pressure after a peak detector (see rates_of()), >= 0
   double motion = 0;          ///< displacement predicted by the model, in the unit of the reading
 };
 
@@ -29,12 +29,12 @@ struct OperatingPoint {
 /// with a time constant of 0.5 s.
 [[nodiscard]] std::vector<double> rates_of(const Record& record);
 
-/// Returns one flag per bin: true if the cause must have an effect there. Pressure and rate count as zero up
-/// to limits::rest_share of their range. Displacement and rate count as high in the upper half of their
-/// range.
+/// Returns, for each bin, true if the cause must have an effect in this bin. A pressure or rate counts as
+/// zero if it is at most limits::rest_share of its range. A displacement or rate counts as high if it is in
+/// the upper half of its range.
 [[nodiscard]] std::vector<bool> required_at(Appears appears, const std::vector<OperatingPoint>& conditions);
 
-/// Returns advice on a recording that would show the cause, for data that do not meet its condition.
+/// Returns advice for the case that the data do not show a cause: a recording that would show it.
 [[nodiscard]] std::string_view recording_for(Appears appears);
 
 }  // namespace softgrip::sysid

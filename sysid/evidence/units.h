@@ -1,5 +1,5 @@
 #pragma once
-// Divides repeated records into units. Each unit is predicted by a model that is fitted to the other units.
+// Divides repeated records into units. A model that is fitted to the other units predicts each unit.
 
 #include <cstddef>
 #include <vector>
@@ -10,8 +10,8 @@ namespace softgrip::sysid {
 
 struct Division;
 
-/// Division of a campaign into units. A unit is a run, or several runs if there are many. With a single run,
-/// the units are its two halves, although they do not show how runs differ.
+/// Division of a campaign into units. A unit is one run or, if there are many runs, several runs. If there is
+/// a single run, its two halves are the units, although they do not show the differences between runs.
 class Units {
  public:
   Units() = default;
@@ -21,8 +21,8 @@ class Units {
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   [[nodiscard]] std::size_t runs() const noexcept { return middle_s_.size(); }
   [[nodiscard]] bool are_runs() const noexcept { return runs() > 1; }
-  /// Returns the index of the unit to which a time of a record belongs.
-  /// @param since_start_s  time since the first sample of the record.
+  /// Returns the index of the unit to which a sample of a record belongs.
+  /// @param since_start_s  time of the sample since the first sample of the record.
   [[nodiscard]] std::size_t unit_of(std::size_t record, double since_start_s) const noexcept;
   /// Returns the records with the readings of one unit replaced by NaN. A record that belongs to the unit
   /// completely is omitted.
@@ -33,10 +33,10 @@ class Units {
 
  private:
   std::size_t count_ = 0;
-  std::vector<double> middle_s_;  ///< time from the start to the middle of each record
+  std::vector<double> middle_s_;  ///< for each record, the time from its start to its middle
 };
 
-/// Divides the records into blocks of limits::block_s seconds. All blocks of a unit are held out together.
+/// Divides the records into blocks of limits::block_s seconds. All blocks of a unit are in the same fold.
 [[nodiscard]] Division divide_by_unit(const std::vector<Record>& records);
 
 }  // namespace softgrip::sysid

@@ -1,5 +1,5 @@
 #pragma once
-// Conditions that a cause must meet before it is reported, regardless of its error reduction.
+// Defines conditions that a cause must fulfil before it is reported, however large its error reduction is.
 
 #include <optional>
 #include <string_view>
@@ -8,16 +8,18 @@
 
 namespace softgrip::sysid {
 
-/// Evidence for one cause.
+/// Evidence on one cause.
 struct Claim {
-  std::optional<Interval> size;  ///< 95 % interval of the size; empty: the data do not determine the size
-  double largest_size = 0;       ///< range of the signal on which the cause acts, in the unit of the size
-  double error_without = 0;      ///< RMSE without the cause, over all readings that should show it
-  double error_with = 0;         ///< RMSE with the cause, over the same readings
-  bool predicts_worse = false;  ///< true: the cause increases the error of readings that were left out of the
-                                ///< fit
-  bool condition_met = true;    ///< true: the data meet the condition under which the cause acts
-  bool shown_there = true;      ///< true: the cause reduces the error where this condition is met
+  /// 95 % interval of the size of the cause; empty: the data do not determine the size.
+  std::optional<Interval> size;
+  double largest_size = 0;   ///< range of the signal on which the cause acts, in the unit of the size
+  double error_without = 0;  ///< RMSE without the cause, over all readings that should show it
+  double error_with = 0;     ///< RMSE with the cause, over the same readings
+  /// True: with the cause, the error of readings that were left out of the fit is larger.
+  bool predicts_worse = false;
+  bool condition_met = true;  ///< true: the data fulfil the condition under which the cause acts
+  /// True: the cause reduces the error of the readings that fulfil this condition.
+  bool shown_there = true;
 };
 
 enum class Veto {
@@ -30,9 +32,9 @@ enum class Veto {
   absent_where_required,
 };
 
-/// Returns the first condition that the claim does not meet.
+/// Returns the first condition that the evidence does not fulfil; Veto::none if it fulfils all of them.
 [[nodiscard]] Veto veto_of(const Claim& claim);
-/// Returns the reason of the rejection as a part of a sentence, or an empty text for Veto::none.
+/// Returns the reason of a rejection as a part of a sentence. Returns an empty text for Veto::none.
 [[nodiscard]] std::string_view reason_of(Veto veto);
 
 }  // namespace softgrip::sysid
