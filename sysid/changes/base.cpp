@@ -22,16 +22,16 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Shortest bins for a finger with the measured pressure and with the command as input [s]. The bins are
-/// shorter for the command, because a valve responds faster than a finger, and because short bins separate
-/// the delay of a finger from its lag.
+/// Shortest bins for a finger [s]: if the input is the measured pressure, and if it is the command. The bins
+/// for the command are shorter, because a valve responds faster than a finger, and because short bins
+/// separate the delay of a finger from its lag.
 constexpr double shortest_finger_bin_s = 0.05, shortest_commanded_bin_s = 0.02;
-/// Order of the autoregression of the residual [bins]. The residual of a finger has a longer correlation
-/// time, so the order then covers at least finger_memory_s.
+/// Order of the autoregression of the residual [bins]. The residual of a finger has a longer correlation time
+/// than that of a pressure, so its order covers at least finger_memory_s.
 constexpr std::size_t whitening_order = 8;
 constexpr double finger_memory_s = 0.4;
-/// Lower limits of the spread of gain (relative) and zero (share of the span). No finger is more repeatable
-/// from day to day.
+/// Lower limits of the spread between runs: relative spread of the gain, and spread of the zero as a share of
+/// the span. No finger is more repeatable from day to day.
 constexpr double least_gain_spread = 0.002;
 constexpr double least_zero_share = 0.0005;
 
@@ -63,7 +63,7 @@ double mean_temperature(const std::vector<Record>& records) {
   return count > 0 ? sum / count : 20;
 }
 
-/// Returns the predicted pressure if there is no model: the output of the regulator, or 0 without a
+/// Returns the prediction of a baseline without a model: the output of the regulator, or 0 if there is no
 /// regulator.
 std::vector<double> without_model(const std::optional<Regulator>& regulator, const Record& driven) {
   return regulator ? driven.drive_kpa : std::vector<double>(driven.size(), 0.0);
@@ -85,13 +85,13 @@ std::vector<double> plain_prediction(const model::Model& model, const std::optio
   own.peak_before_kpa = start.peak_before_kpa;
   own.valley_before_kpa = start.valley_before_kpa;
   own.arrival_kpa_per_s = start.arrival_kpa_per_s;
-  // An additional block may add a creep branch, which is settled at the start.
+  // If an additional block has added a creep branch, this branch is settled at the start.
   std::copy_n(start.unsettled_mm.begin(), std::min(start.unsettled_mm.size(), own.unsettled_mm.size()),
               own.unsettled_mm.begin());
   return predict(model, record, own);
 }
 
-/// Returns the residual of a candidate for all records, in bins, after a fit without one unit.
+/// Fits a candidate to all units except one, and returns its residual for all records in bins.
 /// @param model  receives the fitted model.
 Binned left_by(const Candidate& candidate, const std::vector<Record>& records, const Units& units,
                std::size_t unit, double bin_s, model::Model& model) {
@@ -115,7 +115,7 @@ Binned left_by(const Candidate& candidate, const std::vector<Record>& records, c
   return left;
 }
 
-/// Returns the candidate with play operators and creep, with the same input as the records.
+/// Returns the candidate that consists of play operators and creep. Its input is that of the records.
 Candidate play_candidate(Drive drive) {
   const BaseStructure play{
       .hysteresis = HysteresisForm::play, .delay = drive == Drive::command, .hinged_creep = true};
@@ -151,15 +151,15 @@ std::vector<Candidate> candidates(const std::vector<Record>& records, const Base
   return all;
 }
 
-/// Returns the kinds of filter banks to try. If the pressure is not recorded, the filter bank may have to
-/// represent both the valve and the finger.
+/// Returns the kinds of filter banks that are tried. If the pressure is not recorded, the filter bank may
+/// have to represent the valve and the finger.
 std::vector<FilterKind> kinds_for(Judged judged, Drive drive) {
   if (judged == Judged::pressure) return {FilterKind::valve};
   if (drive == Drive::measured) return {FilterKind::finger};
   return {FilterKind::finger, FilterKind::valve_and_finger};
 }
 
-/// A candidate with its residuals after the fits without each unit and the fit to all units.
+/// A candidate, its residuals after fits that leave out one unit each, and its fit to all units.
 struct Fitted {
   std::vector<Record> driven;
   model::Model model;  ///< fitted to all records
@@ -182,9 +182,9 @@ std::vector<Fitted> fit_all(const std::vector<Candidate>& all, const std::vector
   return fitted;
 }
 
-/// Selects the baseline model. The first candidate is the default, and a later one replaces it only if it
-/// predicts left-out units significantly better. A regulator is always fitted to all units, and only the rest
-/// of its candidate is fitted without a unit.
+/// Selects the baseline model. The first candidate is the default. Another candidate replaces it only if it
+/// predicts left-out units significantly better. The regulator of a candidate is always fitted to all units;
+/// the fits that leave out a unit only change the rest of the candidate.
 void choose(Base& base, const std::vector<Candidate>& all, const std::vector<Record>& records,
             const BaseOptions& options) {
   const std::vector<FilterKind> kinds = kinds_for(base.judged, base.drive);
@@ -233,7 +233,7 @@ std::size_t order_for(const Base& base) {
   return std::max(whitening_order, static_cast<std::size_t>(std::lround(finger_memory_s / base.bin_s)));
 }
 
-/// Computes the spread of gain and zero between the units.
+/// Computes how much gain and zero vary between the units of the healthy records.
 void spread(Base& base) {
   std::vector<PairSums> sums(base.units.count() * base.records.size());
   for (std::size_t r = 0; r < base.records.size(); ++r) {
@@ -266,9 +266,9 @@ std::vector<double> walked_with(const Driven& driven, const std::vector<model::B
   return plain_prediction(model, {}, driven.walked, driven.start);
 }
 
-/// Returns the prediction of model and filter bank with the blocks of an extension. Blocks after the model
-/// also act on the contribution of the filter bank. The model is simulated again only if a block changes the
-/// model or depends on the motion between samples.
+/// Returns the prediction of the baseline model and the filter bank, with the blocks of an extension. A block
+/// after the model also acts on the contribution of the filter bank. The simulation of the model is repeated
+/// only if a block changes the model or depends on the motion between samples.
 std::vector<double> extended_prediction(const Driven& driven, const std::vector<model::BlockSpec>& blocks) {
   std::vector<model::BlockSpec> within, behind;
   for (const model::BlockSpec& block : blocks) {
@@ -283,8 +283,8 @@ std::vector<double> extended_prediction(const Driven& driven, const std::vector<
   if (behind.empty()) return with_filters;
   with_filters = downstream(behind, driven.walked, std::move(with_filters));
   if (is_downstream(behind, driven.model, driven.walked)) return with_filters;
-  // Between the samples, the motion of the model is simulated, and that of the filter bank is assumed to be
-  // linear.
+  // For a block that depends on the motion between samples, the motion of the model is simulated between the
+  // samples. The contribution of the filter bank is assumed to be linear there.
   const std::vector<double> without_filters_mm = downstream(behind, driven.walked, plain);
   std::vector<double> exact = walked_with(driven, blocks);
   for (std::size_t i = 0; i < exact.size(); ++i) exact[i] += with_filters[i] - without_filters_mm[i];
@@ -312,9 +312,9 @@ std::vector<double> driven_prediction(const Base& base, const Driven& driven, co
   return y;
 }
 
-/// Returns the output of the regulator of the baseline model, if it has one, for a command that has passed
-/// the valve blocks. After these blocks, the command is not linear between the samples, so the regulator is
-/// then simulated with finer steps.
+/// Returns the output of the baseline model's regulator for a command that has passed the valve blocks; if
+/// there is no regulator, returns this command. After the valve blocks, the command is not linear between
+/// samples, so the regulator is simulated in finer steps.
 std::vector<double> drive_of(const Base& base, const Record& record,
                              const std::vector<model::BlockSpec>& valve, const RegulatorFault& fault) {
   if (!base.regulator) return drive_behind(valve, record);
@@ -394,7 +394,8 @@ std::vector<double> predict_base(const Base& base, const Record& record, const E
 }
 
 Record thinned_for(const Base& base, const Record& record) {
-  // Steps of 0.01 s for a finger with either input. Faster oscillations or lags are identified by their form.
+  // Numbers of samples per bin. For a finger, they give an interval of 0.01 s with either input and the
+  // shortest bins. Faster oscillations or lags are identified by their form.
   constexpr double commanded_parts = 2, measured_parts = 5, valve_parts = 4;
   const double finger_parts = base.drive == Drive::measured ? measured_parts : commanded_parts;
   return thinned_to_centres(record,

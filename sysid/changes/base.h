@@ -1,6 +1,7 @@
 #pragma once
-// Fits the baseline model of a finger: a model that is fitted to the logs of the healthy finger and then kept
-// constant, with its uncertainty. A unit is a run or half of a run (sysid/evidence/units.h).
+// Fits the baseline model of a finger. This model is fitted to the logs of the healthy finger and then kept
+// constant. Its uncertainty is computed from differences between units; a unit is a run or half of a run
+// (sysid/evidence/units.h).
 
 #include <cstdint>
 #include <functional>
@@ -22,8 +23,8 @@
 
 namespace softgrip::sysid {
 
-/// The quantity that is compared with the baseline model. For `pressure`, the model describes the path from
-/// the command to pressure_kpa, and every name below that ends with _mm is in kPa.
+/// Quantity that is compared with the baseline model. For `pressure`, the model describes the path from the
+/// command to pressure_kpa, and all members below whose names end with _mm are in kPa.
 enum class Judged { displacement, pressure };
 [[nodiscard]] constexpr const char* name_of(Judged judged) {
   return judged == Judged::pressure ? "pressure" : "displacement";
@@ -72,14 +73,15 @@ struct BaseOptions {
 
 /// Returns the bin length for a finger with a measured pressure [s].
 [[nodiscard]] double finger_bin_s(const std::vector<Record>& records);
-/// Returns the reading minus the prediction of play operators and creep, in bins. The prediction for each
-/// unit comes from a fit without this unit. The first readings of a record, from which its initial state is
+/// Returns the reading minus the prediction of a model with play operators and creep, in bins. Each unit is
+/// predicted by a fit to the other units. The first readings of a record, from which its initial state is
 /// estimated, are NaN.
 /// @param records  records of the healthy finger with the input that `drive` selects.
 [[nodiscard]] Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double bin_s,
                                       unsigned threads);
 
-/// A record after the simulated valve of a baseline model, with the predictions of model and filter bank.
+/// A record after the simulated valve of a baseline model, and the predictions of the model and of the filter
+/// bank.
 struct Driven {
   Record record;       ///< record whose drive is the input of the finger at each sample
   Record walked;       ///< record with which `model` is simulated: equal to `record`, or with the command as
@@ -98,12 +100,12 @@ struct Driven {
                                const RegulatorFault& fault = {}, const StartState* start = nullptr);
 
 /// Returns the prediction of the baseline model with the effects of `extension`, without an offset.
-/// @param driven  result of driven_by() for the record, if it is already known; otherwise nullptr.
+/// @param driven  result of driven_by() for the record, or nullptr if the function has to compute it.
 [[nodiscard]] std::vector<double> predict_base(const Base& base, const Record& record,
                                                const Extension& extension, const Driven* driven = nullptr);
 
-/// Returns a copy of the record for a search for changes, thinned to several samples per bin. The number is
-/// larger for a pressure, because a valve responds faster than a finger.
+/// Returns a thinned copy of the record for a search for changes, with several samples per bin. For a
+/// pressure, it has more samples per bin, because a valve responds faster than a finger.
 [[nodiscard]] Record thinned_for(const Base& base, const Record& record);
 
 /// Returns the reading minus the prediction of the unchanged baseline model, for each sample of each record.

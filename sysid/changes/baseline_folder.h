@@ -1,6 +1,7 @@
 #pragma once
-// Reads the folder of `softgrip baseline`: healthy_1.csv ..., second_1.csv ... of the run that checked them,
-// gauge.csv, model.yaml, and baseline.json with the origin and hash of each.
+// Reads the folder that `softgrip baseline` has written. It contains the logs healthy_1.csv ..., the logs
+// second_1.csv ... of a second run that checked the first, gauge.csv, model.yaml, and baseline.json.
+// baseline.json states the origin and the hash of each file.
 
 #include <string>
 #include <vector>
@@ -16,8 +17,8 @@ struct Baseline {
   std::string gauge;                ///< path of gauge.csv; empty: the sensor was not checked
 };
 
-/// Reads baseline.json and compares the hashes of the files that it names. The error is a sentence if the
-/// folder is not a baseline or if a file was changed.
+/// Reads baseline.json and compares the hashes of the files with those in baseline.json. The error is a
+/// sentence if the folder is not a baseline or if a file was changed.
 [[nodiscard]] tl::expected<Baseline, std::string> read_baseline(const std::string& folder);
 
 }  // namespace softgrip::sysid

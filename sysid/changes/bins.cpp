@@ -12,7 +12,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Upper limits of the input-rate classes, as shares of all bins in order of their rate.
+/// Upper limits of the classes of the input rate. If all bins are sorted by their rate, these shares of the
+/// bins are below the limits.
 constexpr std::array class_ends{0.4, 0.7, 0.9};
 
 /// Subtracts the mean of the finite values from the series, because the zero of a run is a separate

@@ -1,6 +1,6 @@
 #pragma once
-// Averages series over short bins and whitens the residuals of the healthy finger, which gives slow and
-// frequent errors a lower weight.
+// Averages series over short bins, and whitens residuals with the statistics of the healthy finger. Errors
+// that are slow or frequent in the healthy logs thereby get a lower weight.
 
 #include <cstddef>
 #include <vector>
@@ -21,16 +21,16 @@ using Binned = std::vector<std::vector<double>>;
 [[nodiscard]] std::vector<double> binned(const Record& record, const std::vector<double>& series,
                                          double bin_s);
 
-/// Returns the series with the given number of bins. A thinned record may have one bin less, and its last
-/// value is then repeated.
+/// Returns the series with the given number of bins. The series of a thinned record may have one bin less;
+/// its last value is then repeated.
 [[nodiscard]] std::vector<double> with_bins(std::vector<double> series, std::size_t bins);
 
 /// Returns the rate |dp/dt| of the drive in bins [kPa/s], after a peak detector that decays with a time
 /// constant of 0.5 s.
 [[nodiscard]] std::vector<double> peak_rate_of(const Record& record, double bin_s);
 
-/// Computes the prediction error of an autoregression, divided by its standard deviation at the current input
-/// rate.
+/// Whitens a residual: computes the error of its prediction by an autoregression and divides it by the
+/// standard deviation for the current input rate.
 struct Whitener {
   std::vector<double> before;               ///< weights of the previous bins, the nearest first
   std::vector<double> peak_rate_kpa_per_s;  ///< limits between the classes of peak_rate_of(), in increasing
@@ -44,12 +44,13 @@ struct Whitener {
   }
 };
 
-/// Fits the whitener to a residual by the Yule-Walker equations, after subtraction of the mean of every
-/// record.
+/// Fits the whitener to a residual by the Yule-Walker equations. Before, the mean of each record is
+/// subtracted.
 /// @param peak_rate  peak_rate_of() in the same bins.
 [[nodiscard]] Whitener whitener_of(Binned residual, const Binned& peak_rate, std::size_t order);
 
-/// The bins of a residual that can be whitened, because enough finite bins precede them. Each bin is a row.
+/// The bins of a residual that can be whitened, because enough finite bins come before them. Each such bin is
+/// a row.
 class WhiteRows {
  public:
   struct Row {
@@ -59,7 +60,7 @@ class WhiteRows {
 
   WhiteRows(const Binned& residual, const Binned& peak_rate, Whitener whitener);
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
-  /// Returns the whitened series. Missing values of the series count as 0.
+  /// Returns the whitened values of a series in these rows. A missing value of the series counts as 0.
   [[nodiscard]] Eigen::VectorXd operator()(const Binned& series) const;
 
  private:

@@ -38,7 +38,7 @@ inline constexpr CauseWithoutBlock leak{
     Appears::held};
 
 /// A weight or a preload changes gain and zero together. The readings cannot separate this cause from a
-/// change of the finger that occurs together with a change of the zero.
+/// change of the finger that coincides with a change of the zero.
 inline constexpr CauseWithoutBlock payload{
     "payload",
     "Payload",

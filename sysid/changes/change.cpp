@@ -28,12 +28,13 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest error reduction at which a temperature coefficient is adopted as a property of the finger.
+/// A temperature coefficient counts as a property of the finger if it reduces the whitened mean square of the
+/// healthy logs by more than this value.
 constexpr double own_temperature_gain = 0.05;
 constexpr std::size_t most_causes = 3;
-/// A cause is dropped if its error reduction is less than this share of the largest one over pressure and
-/// displacement. Such a cause may be a consequence of the larger one, because the baseline model is less
-/// certain for an input to which it was not fitted.
+/// A cause is dropped if its error reduction is below this share of the largest error reduction in pressure
+/// or displacement. Such a cause may be a consequence of the cause with the largest reduction, because the
+/// baseline model is less certain for an input to which it was not fitted.
 constexpr double beside_another = 0.02;
 
 using Failure = tl::unexpected<std::string>;
@@ -45,9 +46,9 @@ struct Prepared {
   SamplingEvidence sampling = {};
 };
 
-/// Returns the records with outliers and repeated readings hidden.
-/// @param healthy_noise_mm  lower limit of the noise, so that readings within the healthy noise are no
-/// outliers. The later noise may be smaller, for example zero at the end of the range of a sensor.
+/// Returns the records of the logs. Outliers and repeated readings are hidden.
+/// @param healthy_noise_mm  lower limit of the noise, so that readings within the noise of the healthy logs
+/// are no outliers. The noise of later logs may be smaller, for example zero where a sensor saturates.
 Prepared driven_records(const std::vector<Log>& logs, Drive drive, const ChangeOptions& options,
                         double healthy_noise_mm = 0) {
   Prepared p{.records = make_records(logs, {.drive = drive, .held = options.held})};
@@ -92,7 +93,7 @@ double per_bin(const LaterReadings& readings, const Eigen::VectorXd& white) {
   return white.squaredNorm() / static_cast<double>(std::max<std::size_t>(1, readings.rows().rows().size()));
 }
 
-/// Searches for effects in each healthy unit, with predictions from a fit without this unit.
+/// Searches for effects in each healthy unit. The prediction comes from a fit to the other units.
 std::vector<HealthyFits> healthy_fits(const Base& base, bool pressure_is_judged, unsigned threads) {
   const LaterReadings all = healthy_readings(base);
   const std::vector<Effect> effects = effects_for(base, base.records, {}, pressure_is_judged);
@@ -115,8 +116,8 @@ Tolerance tolerance_of(const std::vector<HealthyFits>& healthy, std::size_t runs
   return {gains, runs};
 }
 
-/// Errors of healthy units that are predicted from the others, and the largest permitted error of a further
-/// run.
+/// Errors of healthy units, each predicted by a fit to the others, and the largest permitted error of another
+/// healthy run.
 class RunSpread {
  public:
   RunSpread() = default;
@@ -131,14 +132,14 @@ class RunSpread {
   }
   [[nodiscard]] double usual_rms() const { return std::sqrt(mean_square_); }
   [[nodiscard]] double allowed_rms() const { return std::sqrt(factor_ * mean_square_); }
-  /// Returns true if the error exceeds that of a further healthy run.
+  /// Returns true if the error exceeds the largest error that is expected in another healthy run.
   /// @param rms  RMS error of the readings without whitening.
   /// @param loss  mean square of the whitened readings; 1 for healthy units.
   [[nodiscard]] bool is_exceeded(double rms, double loss) const {
     return rms > allowed_rms() || loss > factor_;
   }
-  /// Returns true if a change should be searched for. With several healthy runs, the tolerance of the search
-  /// is known, so it is sufficient that the error is larger than that of each healthy run.
+  /// Returns true if the error is large enough for a search for a change. If there are several healthy runs,
+  /// the tolerance of the search is known. The error then only has to exceed that of each healthy run.
   [[nodiscard]] bool admits_a_change(double rms, double loss) const {
     return is_exceeded(rms, loss) || (are_runs_ && (rms > worst_rms_ || loss > worst_loss_));
   }
@@ -154,7 +155,8 @@ std::string other_start(const std::string& record) {
          "that begins in the same way";
 }
 
-/// Evaluates one quantity, from the records of the healthy finger to the causes in the later records.
+/// Evaluates the displacement or the pressure: fits the baseline model to the healthy records and finds the
+/// causes of a change in the later records.
 class Judge {
  public:
   Judge(Base base, const ChangeOptions& options, bool pressure_is_judged)
@@ -195,7 +197,8 @@ class Judge {
                                   each.tolerance,
                                   {}});
       }
-      // A further cause is searched for only if the remaining error exceeds that of a further healthy run.
+      // A further cause is searched for only if the remaining error exceeds the error that is expected in
+      // another healthy run.
       const double rms = readings.plain_rms(found);
       const bool is_comparable = step == 0 && other_starts.empty();
       if (is_comparable ? !spread_.admits_a_change(rms, judged.loss_left)
@@ -217,8 +220,8 @@ class Judge {
     if (options_.progress) options_.progress(text);
   }
 
-  /// Adds the temperature coefficient of the gain to the baseline model if the healthy logs show one. It is
-  /// then a property of the finger and not a change.
+  /// Adds a temperature coefficient of the gain to the baseline model if the healthy logs show one. This
+  /// coefficient is a property of the finger, not a change.
   void learn_temperature() {
     std::vector<Effect> effects = effects_for(base_, base_.records, {}, pressure_is_judged_);
     std::erase_if(effects, [](const Effect& e) { return e.id != causes::ThermalGain::id; });
@@ -227,7 +230,7 @@ class Judge {
     const std::vector<ScoredEffect> ranked = ranked_effects(healthy, effects, {}, {}, options_.threads);
     if (!(ranked.front().gain > own_temperature_gain)) return;
     FittedEffect own = ranked.front().fit.fitted;
-    own.numbers.back() = 0;  // the gain at the mean temperature is a part of the baseline model
+    own.numbers.back() = 0;  // the baseline model already contains the gain at the mean temperature
     base_.left = minus(std::move(base_.left), healthy.added({own}));
     base_.gain_per_c = own.numbers.front();
   }
@@ -237,7 +240,8 @@ class Judge {
     return found;
   }
 
-  /// Returns one flag per row: true if the operating point of the row meets the condition.
+  /// Returns, for each row of the readings, true if the cause must have an effect at the operating point of
+  /// this row.
   [[nodiscard]] std::vector<bool> required_rows(const LaterReadings& readings, Appears appears) const {
     Binned drive, rate;
     for (std::size_t r = 0; r < readings.records().size(); ++r) {
@@ -252,9 +256,9 @@ class Judge {
     return required_at(appears, conditions);
   }
 
-  /// Returns true if the effect, fitted without a later unit, predicts this unit worse than no effect does.
-  /// Units in which the effect does not occur provide no evidence. For example, half of a run may not reach
-  /// the saturation of a sensor.
+  /// Returns true if the effect makes predictions worse. It is fitted to all later units except one and then
+  /// predicts this unit. Units in which the effect does not occur give no evidence. For example, half of a
+  /// run may not reach the saturation of a sensor.
   [[nodiscard]] bool predicts_worse(const LaterReadings& readings, const Effect& effect,
                                     const std::vector<FittedEffect>& found) const {
     PairedLosses losses;
@@ -271,8 +275,8 @@ class Judge {
     return is_better(compare(losses, 0, options_.seed));
   }
 
-  /// Returns the largest possible size of a cause in this unit: the range of the signal on which the cause
-  /// acts.
+  /// Returns the largest possible size of a cause whose size has the unit `unit`. It is the range of the
+  /// signal on which the cause acts.
   [[nodiscard]] double largest_size(const LaterReadings& readings, const std::string& unit) const {
     double length_s = 0;
     for (const Record& record : readings.records()) length_s = std::max(length_s, record.length_s());
@@ -302,8 +306,8 @@ class Judge {
     return veto_of(claim);
   }
 
-  /// Returns the best effect whose error reduction exceeds the tolerance and which meets all conditions, or
-  /// an empty value. Stores the reasons why other effects were rejected.
+  /// Returns the best effect that fulfils all conditions and whose error reduction exceeds its tolerance;
+  /// nullopt if there is none. Stores the reasons why other effects were rejected.
   [[nodiscard]] std::optional<ChangeCause> first_change(const LaterReadings& readings,
                                                         std::vector<ScoredEffect> ranked,
                                                         const Eigen::VectorXd& without,
@@ -332,8 +336,8 @@ class Judge {
     return std::nullopt;
   }
 
-  /// Returns true if the zero of the later logs [mm] differs from the mean of the healthy runs by more than
-  /// that of a further healthy run would.
+  /// Returns true if the zero of the later logs [mm] differs significantly from the mean zero of the healthy
+  /// runs. The difference must exceed that of another healthy run.
   [[nodiscard]] bool is_another_zero(double zero_mm) const {
     const auto units = static_cast<double>(base_.units.count());
     return std::abs(zero_mm - base_.zero_mm) >
@@ -449,7 +453,7 @@ std::string unused_pressure(const DriveChoice& choice) {
          " mm RMS): pressure_kpa is not used";
 }
 
-/// Adds the causes that are found in the readings without a fit: isolated wrong samples and repeated
+/// Adds the causes that are found in the readings without a fit: isolated wrong readings, and repeated
 /// readings.
 void judge_readings(const Prepared& healthy, const Prepared& later, ChangeDiagnosis& diagnosis) {
   const auto add = [&](std::string_view id, ChangeSize size, std::optional<Interval> interval,
@@ -480,7 +484,8 @@ void judge_readings(const Prepared& healthy, const Prepared& later, ChangeDiagno
         sampling.excess_mm);
 }
 
-/// Copies the intervals of each quantity to its causes, in the order in which the causes were found.
+/// Copies the intervals to the causes. For each quantity, both lists are in the order in which the causes
+/// were found.
 void add_intervals(ChangeDiagnosis& diagnosis) {
   for (const JudgedChange& judged : diagnosis.readings) {
     auto next = judged.intervals.begin();

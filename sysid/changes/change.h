@@ -1,6 +1,6 @@
 #pragma once
 // Diagnoses how a finger has changed since it was healthy. A baseline model is fitted to the healthy logs and
-// kept constant. Causes are fitted as changes of this model.
+// kept constant. Each cause is fitted as a change of this model.
 
 #include <cstdint>
 #include <functional>
@@ -29,7 +29,7 @@ struct ChangeOptions {
   std::function<void(const std::string&)> progress;
 };
 
-/// The size of a change as a quantity that a technician can check.
+/// Size of a change, stated as a quantity that a technician can check.
 struct ChangeSize {
   std::string what;  ///< "dead time", "gain"
   double value = 0;
@@ -54,7 +54,7 @@ struct ChangeCause {
   std::vector<std::string> alternatives;  ///< ids of causes that explain the data equally well
 };
 
-/// A cause that was tested, and the reason if it was rejected.
+/// A cause that was tested. If it was rejected, `rejected` states the reason.
 struct TriedCause {
   std::string id, form;
   double gain = 0;          ///< reduction of the whitened mean square
@@ -63,7 +63,8 @@ struct TriedCause {
   std::string rejected;     ///< reason of the rejection; empty: not known
 };
 
-/// RMS error of the baseline model in a run about its mean: without (base) and with the causes (explained).
+/// RMS error of the baseline model in a run after subtraction of its mean, without the causes (`base`) and
+/// with them (`explained`).
 struct RunLeft {
   std::string run;
   bool is_healthy = false;  ///< true: a healthy run that was left out of the fit; it contains no cause
@@ -109,14 +110,15 @@ struct ChangeDiagnosis {
   double wall_s = 0;
 };
 
-/// Returns an error sentence if the logs cannot be compared.
+/// Compares the later logs with the healthy logs. Returns an error sentence if they cannot be compared.
 [[nodiscard]] tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log>& healthy,
                                                                          const std::vector<Log>& later,
                                                                          const ChangeOptions& options = {});
 
-/// Returns the size as a text, such as "more dead time 0.03 s".
+/// Returns the size of a change as text, such as "more dead time 0.03 s".
 [[nodiscard]] std::string size_text(const ChangeCause& cause);
-/// Returns the interval of the size in its unit, such as "0.0275 .. 0.0325", or "-" if there is none.
+/// Returns the interval of the size in its unit, such as "0.0275 .. 0.0325". Returns "-" if there is no
+/// interval.
 [[nodiscard]] std::string interval_text(const ChangeCause& cause);
 
 /// Returns the verdict as one sentence for a technician.

@@ -45,8 +45,8 @@ Eigen::MatrixXd slopes_of(const LaterReadings& readings, const std::vector<Fitte
   return slopes;
 }
 
-/// Returns the sum over the blocks of the squared gradient (outer product). Each penalty row after the rows
-/// of the readings is a block of its own with a known variance of 1.
+/// Returns the covariance of the gradient: the sum of the outer products of the gradients of all blocks. Each
+/// penalty row, which follows the rows of the readings, is a separate block with variance 1.
 Eigen::MatrixXd spread_of_gradient(const LaterReadings& readings, const Eigen::MatrixXd& slopes,
                                    const Eigen::VectorXd& white) {
   const std::vector<std::size_t> blocks = blocks_of(readings);
@@ -65,8 +65,8 @@ Eigen::MatrixXd spread_of_gradient(const LaterReadings& readings, const Eigen::M
   return few * gradients * gradients.transpose();
 }
 
-/// Returns the covariance of the parameters in units of their steps. Parameters without an effect on the
-/// readings have zero derivatives and do not contribute.
+/// Returns the covariance of the parameters in units of their steps. A parameter that has no effect on the
+/// readings has zero derivatives and does not contribute.
 Eigen::MatrixXd covariance_of(const LaterReadings& readings, const Eigen::MatrixXd& slopes,
                               const Eigen::VectorXd& white) {
   Eigen::MatrixXd curvature = slopes.transpose() * slopes;
@@ -89,8 +89,8 @@ std::optional<Interval> within(const EffectNumber& number, std::optional<Interva
   return interval;
 }
 
-/// Returns the fit of the same form in a healthy unit, or nullptr if the form does not reduce the error
-/// there.
+/// Returns the fit of the effect's form in a healthy unit, or nullptr if the form does not reduce the error
+/// of this unit.
 const FittedEffect* same_form(const HealthyFits& unit, const FittedEffect& effect) {
   for (const ScoredEffect& each : unit.ranked) {
     const FittedEffect& fitted = each.fit.fitted;
@@ -100,9 +100,9 @@ const FittedEffect* same_form(const HealthyFits& unit, const FittedEffect& effec
   return nullptr;
 }
 
-/// Returns the variance between runs of a quantity of a fitted form. `value_of` computes the quantity. The
-/// variance is the mean square over the healthy units, increased for the comparison of a further run with
-/// their mean.
+/// Returns the variance between runs of a quantity that depends on the fitted form. It is the mean square
+/// over the healthy units, increased because another run is compared with their mean.
+/// @param value_of  function that computes the quantity.
 template <class ValueOf>
 double between_runs(const std::vector<HealthyFits>& healthy, const FittedEffect& effect, ValueOf value_of) {
   const auto units = static_cast<double>(healthy.size());
@@ -122,7 +122,7 @@ double healthy_variance(const std::vector<HealthyFits>& healthy, const FittedEff
   });
 }
 
-/// Returns the size of the effect for its current parameters.
+/// Returns the size of the effect with its current parameters.
 double size_with(const LaterReadings& readings, const FittedEffect& effect) {
   return size_of(readings, effect, at_full_pressure(readings, readings.added({effect}))).value;
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Writes the diagnosis of a change as diagnosis.json: the keys of every diagnosis and those specific to a
-// change.
+// Writes the diagnosis of a change as diagnosis.json. The file has the keys of every diagnosis and additional
+// keys for a change.
 
 #include <nlohmann/json_fwd.hpp>
 

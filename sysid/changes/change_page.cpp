@@ -10,7 +10,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Maximum number of tested causes in the figure.
+/// Largest number of tested causes that the figure shows.
 constexpr std::size_t drawn_causes = 8;
 
 Tone tone_of(ChangeVerdict verdict) {
@@ -39,7 +39,8 @@ void add_causes(Page& page, const ChangeDiagnosis& d) {
   }
 }
 
-/// Returns the residual of the later readings, one log after the other, without and with the causes.
+/// Returns the figure of the residuals in the later logs, without and with the causes. The logs follow each
+/// other on the time axis.
 Figure residual_figure(const JudgedChange& judged, bool explained) {
   std::vector<Chart> charts;
   for (std::size_t r = 0; r < judged.left.size(); ++r) {
@@ -104,7 +105,7 @@ std::string name_with_state(const RunLeft& run) {
   return run.run + (run.is_healthy ? " (healthy)" : "");
 }
 
-/// Returns the RMS error of the baseline model in every run, the healthy runs first.
+/// Returns the figure of the RMS error of the baseline model in every run. The healthy runs come first.
 Figure runs_figure(const JudgedChange& judged, bool explained) {
   std::vector<std::string> names;
   std::vector<double> before, after;
@@ -124,7 +125,7 @@ Figure runs_figure(const JudgedChange& judged, bool explained) {
           stacked({chart})};
 }
 
-/// Returns the causes that the logs cannot show, each with a recording that would test it.
+/// Returns the table of the causes that the logs cannot show, with a recording that would test each cause.
 Table not_tested_table(const JudgedChange& judged) {
   Table table{"Not tested", {"cause", "recording that would test it"}, {false, false}, {}};
   for (const auto& [id, recording] : judged.not_tested) table.rows.push_back({id, recording});

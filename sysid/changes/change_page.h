@@ -1,5 +1,5 @@
 #pragma once
-// Writes the report of a change: the change, its size, the next steps and the evidence.
+// Writes the report of a change: its cause, its size, the next steps and the evidence.
 
 #include "sysid/changes/change.h"
 #include "sysid/pages/page.h"
@@ -12,9 +12,9 @@ namespace softgrip::sysid {
 [[nodiscard]] Page change_page(const ChangeDiagnosis& diagnosis, const std::vector<Log>& healthy,
                                const std::vector<Log>& later, const model::Model& given);
 
-/// Returns all tested causes with their error reduction, their tolerance, and the reason of a rejection.
+/// Returns the table of all tested causes: error reduction, tolerance, and reason of a rejection.
 [[nodiscard]] Table tried_table(const JudgedChange& judged);
-/// Returns the RMS error of the baseline model in every run, without and with the causes.
+/// Returns the table of the RMS error of the baseline model in every run, without and with the causes.
 [[nodiscard]] Table run_table(const JudgedChange& judged);
 
 }  // namespace softgrip::sysid

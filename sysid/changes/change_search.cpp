@@ -13,15 +13,15 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Penalty per parameter in whitened squares. It corresponds to a probability of 0.5 % that an unnecessary
-/// parameter reduces the squares by more (chi-square, one degree of freedom).
+/// Penalty per parameter of an effect, in whitened squares. An unnecessary parameter reduces the squares by
+/// more than this penalty with a probability of 0.5 % (chi-square with one degree of freedom).
 constexpr double price_of_a_number = 8;
 
 double beyond_usual(const ScoredEffect& scored) {
   return scored.gain - scored.usual;
 }
 
-/// Returns the number of parameters that determine the shape of the effect, and the total number.
+/// Returns two numbers of parameters of an effect: those that determine its shape, and all of them.
 std::pair<std::size_t, std::size_t> numbers_of(const ScoredEffect& scored) {
   const Effect& effect = scored.fit.fitted.effect;
   return {effect.numbers.size() - effect.nuisance_numbers, effect.numbers.size()};

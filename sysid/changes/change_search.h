@@ -1,6 +1,6 @@
 #pragma once
-// Finds the effects in one quantity, one after the other. Each effect is compared with the results of the
-// same search in readings of the healthy finger.
+// Finds the effects in one quantity, one after the other. The error reduction by each effect is compared with
+// the reduction that the same search finds in readings of the healthy finger.
 
 #include <cstdint>
 #include <functional>
@@ -26,29 +26,29 @@ struct ScoredEffect {
 /// Returns price_of() divided by the number of rows.
 [[nodiscard]] double price_per_row(const LaterReadings& readings, const Effect& effect);
 
-/// Returns true if the data cannot separate two effects: the sum of squares with the best effect is smaller
-/// than that with the other effect by at most its tolerance. Causes that are declared indistinguishable
-/// always tie.
+/// Returns true if the data cannot separate two effects. This is the case if the sum of squares with `best`
+/// is smaller than that with the other effect by at most the tolerance of `best`. It is always the case for
+/// causes that are declared indistinguishable.
 using Ties = std::function<bool(const ScoredEffect& best, const ScoredEffect& other)>;
 [[nodiscard]] Ties ties_in(const LaterReadings& readings, std::uint64_t seed);
 
-/// Returns the effects, sorted by their gain beyond the usual gain, the largest first. Each cause has one
-/// entry: of several forms that tie, the one with the fewest parameters.
+/// Returns the effects sorted by `gain` minus `usual`, the largest value first. Each cause has one element.
+/// If several of its forms tie, this is the form with the fewest parameters.
 [[nodiscard]] std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings,
                                                        const std::vector<Effect>& effects,
                                                        const std::vector<FittedEffect>& others,
                                                        const Tolerance& tolerance, unsigned threads);
 
-/// Selects the effect with the fewest parameters among the first one and those that tie with it, and moves it
-/// to the front. The number of parameters of the shape is compared first, then the total number with those of
-/// the reference. If both numbers are equal, an effect that is not ideal is preferred.
+/// Selects the effect with the fewest parameters among the first effect and the effects that tie with it, and
+/// moves it to the front. The number of parameters that determine the shape is compared first, and then the
+/// number of all parameters. If both numbers are equal, an effect that is not ideal is preferred.
 void put_fewest_numbers_first(std::vector<ScoredEffect>& ranked, const Ties& ties);
 
 /// Returns, for every row of the readings, the index of its block. A block contains some seconds.
 [[nodiscard]] std::vector<std::size_t> blocks_of(const LaterReadings& readings);
 
 /// Returns the sums of whitened squares of two residuals in each block.
-/// @param rows  one flag per row; rows with false are ignored; nullptr: all rows are used.
+/// @param rows  one element per row; a row whose element is false is not used; nullptr: all rows are used.
 [[nodiscard]] PairedLosses paired_losses(const LaterReadings& readings, const Eigen::VectorXd& worse,
                                          const Eigen::VectorXd& better,
                                          const std::vector<bool>* rows = nullptr);

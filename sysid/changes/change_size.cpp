@@ -44,8 +44,8 @@ double at_full_pressure(const LaterReadings& readings, const Binned& added) {
 }
 
 ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect, double full_pressure_mm) {
-  // If only the gain has changed, its size includes the difference within the healthy spread, which was
-  // fitted separately.
+  // If only the gain has changed, the size of this change includes the gain that was fitted separately
+  // because it is within the healthy spread.
   if (const double* gain = number(effect, "gain_change"); gain != nullptr && effect.numbers.size() == 1)
     return {"gain", 100 * (*gain + readings.nuisance({effect}).gain), "%"};
   const SizedBy size = effect.effect.size.value_or(sized_by(effect.effect.id));

@@ -9,12 +9,14 @@
 
 namespace softgrip::sysid {
 
-/// Returns true if all `blocks` follow those of `base` in the chain and their output at a sample depends only
-/// on the output of `base` at this sample. Always false for a held command or an unknown initial state.
+/// Returns true if all `blocks` come after the blocks of `base` in the signal path, and if their output at a
+/// sample depends only on the output of `base` at this sample. Returns false if the command is held or the
+/// initial state is unknown.
 [[nodiscard]] bool is_downstream(const std::vector<model::BlockSpec>& blocks, const model::Model& base,
                                  const Record& record);
 
-/// Returns the same result as predict() for the baseline model with the blocks.
+/// Returns the result of predict() for the baseline model followed by the blocks, without a simulation of the
+/// baseline model.
 /// @param blocks  blocks for which is_downstream() is true.
 /// @param base_mm  prediction of the baseline model for the record.
 [[nodiscard]] std::vector<double> downstream(const std::vector<model::BlockSpec>& blocks,

@@ -19,7 +19,8 @@ constexpr int most_effect_steps = 9;
 constexpr std::size_t followed = 2;
 /// Smallest damping of a parameter, as a share of the sum of all curvatures.
 constexpr double least_curvature = 0.01;
-/// If an effect has more start points than this, they are close together, and sized() is not applied to them.
+/// sized() is not applied to an effect with more start points than this number, because its start points are
+/// close together.
 constexpr std::size_t most_sized = 16;
 
 /// Time constants [s] of the transient in a record that begins differently from all healthy records.
@@ -38,8 +39,8 @@ std::vector<double> transient(std::size_t bins, double bin_s, double lag_s) {
   return series;
 }
 
-/// Returns the largest relative gain that counts as unchanged: another run of an unchanged finger may have
-/// it.
+/// Returns the largest relative gain that does not count as a change. Another run of an unchanged finger may
+/// have this gain.
 double free_gain(const Base& base) {
   return t_quantile(static_cast<double>(base.units.count() - 1)) * base.gain_spread;
 }
@@ -70,7 +71,8 @@ class Fit {
     return fit;
   }
 
-  /// Returns the better of two fits: a start point, and the same effect scaled to the size that fits best.
+  /// Returns the better one of two fits: the start point, and the start point scaled to the size of the
+  /// effect that fits best.
   [[nodiscard]] EffectFit sized(EffectFit fit, const Eigen::VectorXd& without) const {
     if (!std::isfinite(fit.sum_of_squares)) return fit;
     const Eigen::VectorXd change = fit.white - without;
@@ -93,7 +95,8 @@ class Fit {
                     .longest_step = std::numeric_limits<double>::infinity(),
                     .least_share = 1e-4,
                     .least_gain = 0.1,
-                    // The gain of an effect has no curvature where the fitted common gain can replace it.
+                    // If the fitted common gain can replace the gain of an effect, the gain of the effect has
+                    // no curvature.
                     .least_damping = least_curvature})
         .point;
   }
@@ -126,8 +129,8 @@ class Fit {
   }
 
  private:
-  /// Returns the value at which the parameter has no effect. If this value is far outside the data, returns
-  /// the value at which the effect begins.
+  /// Returns the value of the parameter at which the effect vanishes. If this value is far outside the data,
+  /// returns the value at which the effect begins.
   [[nodiscard]] double limit_of_nothing(std::size_t i) const {
     const double nothing = effect_.nothing[i];
     double reach = std::numeric_limits<double>::infinity();
@@ -383,7 +386,7 @@ EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
   std::vector<EffectFit> looks;
   for (const std::vector<double>& start : effect.starts) {
     EffectFit first = fit.at(within(effect, start));
-    // If the baseline model does not respond to the effect at all, no other start point can change that.
+    // If the prediction does not change with the effect, the result is the same for all start points.
     if (!effect.free_form && looks.empty() && first.white == without) return first;
     looks.push_back(dense ? std::move(first) : fit.sized(std::move(first), without));
   }

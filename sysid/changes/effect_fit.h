@@ -17,37 +17,37 @@ struct FittedEffect {
   std::vector<double> numbers;
 };
 
-/// Residuals that the baseline model leaves in later records. Differences that do not count as a change are
-/// fitted and removed: the zero, and a gain within the variation of the healthy logs.
+/// Residuals that the baseline model leaves in later records. Differences of the zero, and a gain within the
+/// variation of the healthy logs, do not count as a change. They are fitted and subtracted.
 class LaterReadings {
  public:
   /// @param later  later records, thinned by thinned_for().
   /// @param left  their residuals in bins.
   LaterReadings(const Base& base, std::vector<Record> later, Binned left);
-  /// Returns the readings of one unit. without() returns those of all other units.
+  /// Returns the readings of one unit. The function without() returns the readings of all other units.
   [[nodiscard]] LaterReadings only(const Units& units, std::size_t unit) const;
   [[nodiscard]] LaterReadings without(const Units& units, std::size_t unit) const;
 
-  /// Returns the whitened residual of the baseline model with these effects, after the fit of zero and gain.
-  /// The rows are those of rows(), followed by a few rows with the penalties of the zeros.
+  /// Returns the whitened residual of the baseline model with these effects. Zero and gain are fitted before.
+  /// The rows are those of rows(), followed by some rows with the penalties of the fitted zeros.
   [[nodiscard]] Eigen::VectorXd white(const std::vector<FittedEffect>& effects) const;
-  /// Returns white() with one more row: the fitted gain that does not count as a change, in units of the
-  /// variation of the healthy logs.
+  /// Returns the result of white() with one more row: the fitted gain that does not count as a change, in
+  /// units of the variation of the gain in the healthy logs.
   [[nodiscard]] Eigen::VectorXd white_and_gain(const std::vector<FittedEffect>& effects) const;
   [[nodiscard]] const WhiteRows& rows() const { return rows_; }
   [[nodiscard]] const Base& base() const { return base_; }
   [[nodiscard]] const std::vector<Record>& records() const { return later_; }
-  /// Returns the names of the records that begin differently from all healthy records (under pressure or
-  /// without pressure). The healthy records do not show the slow transient of such a start, so this transient
-  /// does not count as a change.
+  /// Returns the names of the records that begin under pressure although no healthy record does, or without
+  /// pressure although no healthy record does. The healthy records do not show the slow transient after such
+  /// a start, so this transient does not count as a change.
   [[nodiscard]] std::vector<std::string> other_starts() const;
   [[nodiscard]] const Binned& left() const { return left_; }
   /// Returns the prediction of the unchanged baseline model, in bins.
   [[nodiscard]] const Binned& plain() const { return plain_; }
-  /// Returns the difference between the predictions with and without the effects, in bins.
+  /// Returns the difference between two predictions, with and without the effects, in bins.
   [[nodiscard]] Binned added(const std::vector<FittedEffect>& effects) const;
-  /// Returns the root mean square of the residual with these effects without whitening, after a fit of one
-  /// zero per record and one common gain.
+  /// Returns the root mean square of the residual with these effects, without whitening. One zero per record
+  /// and one common gain are fitted before.
   [[nodiscard]] double plain_rms(const std::vector<FittedEffect>& effects) const;
   /// Zero and gain that are fitted in addition to the effects: common zero [mm], relative gain.
   struct Nuisance {

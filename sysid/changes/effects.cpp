@@ -31,8 +31,8 @@ const Cause& cause_with() {
   return *cause_of(model::block_type<Block>());
 }
 
-/// Returns an evenly thinned list of start points. If there is a single parameter, all are kept, because the
-/// error has a separate minimum at each of them.
+/// Returns some of the start points, evenly distributed over the list. If the effect has a single parameter,
+/// all start points are kept, because the error may have a separate minimum at each of them.
 std::vector<std::vector<double>> some(std::vector<std::vector<double>> all) {
   if (all.size() <= most_starts || all.front().size() == 1) return all;
   std::vector<std::vector<double>> kept;
@@ -84,7 +84,7 @@ class Collector {
     std::vector<model::BlockSpec> starts = form.starts(scales_);
     if (starts.empty()) return;
     const model::BlockDescriptor& descriptor = model::catalogue()[form.type];
-    // The free form of this cause (piecewise linear) also represents a sinusoidal drift.
+    // The free form of this cause is piecewise linear and can represent a sinusoidal drift too.
     if (form.type == model::block_type<model::SensorWander>()) return;
     // add_softening() and add_crescent() add similar effects for any baseline model.
     if (form.type == model::block_type<model::PseudoElasticSoftening>()) return;
@@ -117,7 +117,7 @@ class Collector {
     effects_.push_back(std::move(effect));
   }
 
-  /// Returns an effect for a form of a cause, still without parameters.
+  /// Returns an effect for a form of a cause. The parameters are added later.
   static Effect form_of(const Cause& cause, std::string_view form) {
     Effect effect;
     effect.id = cause.id;
@@ -137,15 +137,15 @@ class Collector {
     effect.appears = cause.appears;
     return effect;
   }
-  /// Returns the first effect of this cause that was added so far, or nullptr if the cause cannot be added to
-  /// the baseline model.
+  /// Returns the effect of this cause that was added first, or nullptr if the cause cannot be added to the
+  /// baseline model.
   Effect* first_of(const Cause& cause) {
     const auto found =
         std::find_if(effects_.begin(), effects_.end(), [&](const Effect& e) { return e.id == cause.id; });
     return found == effects_.end() ? nullptr : &*found;
   }
 
-  /// Adds the effect of a gain that has changed and is constant since then.
+  /// Adds the effect of a gain that has changed since the healthy logs and is constant in the later logs.
   void add_gain() {
     Effect effect = form_of(cause_with<model::Ageing>(), "another_gain");
     effect.numbers = {gain_change};
@@ -170,8 +170,8 @@ class Collector {
     since.apply = [](Extension& e, const std::vector<double>& n) { e.softening = {n[0], 0}; };
     effects_.push_back(std::move(since));
   }
-  /// Adds the effect of a loop whose loading and unloading curves differ, which does not require a Bouc-Wen
-  /// model.
+  /// Adds the effect of a loop whose loading curve differs from its unloading curve. The effect does not
+  /// require a Bouc-Wen model.
   void add_crescent() {
     Effect effect = form_of(cause_with<model::DuhemHysteresis>(), "crescent");
     effect.numbers = {{"share", "", 0.05, 0, 3}, {"exponent", "", 1, 1.2, 6}};
@@ -180,12 +180,12 @@ class Collector {
     effect.apply = [](Extension& e, const std::vector<double>& n) { e.crescent = {n[0], n[1]}; };
     effects_.push_back(std::move(effect));
   }
-  /// Adds the effect of a stiffening about a point. The displacement at which the gain is unchanged is
-  /// unknown, so a gain is fitted together with the curvature.
+  /// Adds the effect of stiffening. The displacement at which the gain has not changed is unknown, so a gain
+  /// is fitted together with the curvature.
   void add_stiffening() {
     Effect* const plain = first_of(cause_with<model::Stiffening>());
     if (plain == nullptr) return;
-    // An increase of the gain with the displacement is not a stiffening.
+    // A gain that increases with the displacement is not stiffening.
     plain->numbers[0].lower = 0;
     std::erase_if(plain->starts, [](const std::vector<double>& start) { return start[0] < 0; });
     Effect effect = *plain;
@@ -212,7 +212,7 @@ class Collector {
     effect.apply = [bend = bent->apply](Extension& e, const std::vector<double>& n) { bend(e, {n[0], 0}); };
     effects_.push_back(std::move(effect));
   }
-  /// Adds the effect of the temperature on the gain. The temperature at which the gain is unchanged is
+  /// Adds the effect of the temperature on the gain. The temperature at which the gain has not changed is
   /// unknown, so a gain is fitted together with the slope.
   void add_thermal() {
     Effect effect = form_of(cause_with<model::ThermalGain>(), causes::ThermalGain::id);

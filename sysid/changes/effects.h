@@ -1,5 +1,5 @@
 #pragma once
-// Defines the causes as changes of a constant baseline model, each with few parameters.
+// Defines causes as changes of a constant baseline model. Each of them has few parameters.
 
 #include <functional>
 #include <optional>
@@ -20,7 +20,7 @@ struct EffectNumber {
   double scale = 1, lower = 0, upper = 0;
 };
 
-/// One form of a cause, as an effect on the baseline model.
+/// An effect on the baseline model: one form of a cause.
 struct Effect {
   std::string id;  ///< id of the cause
   std::string title;
@@ -33,14 +33,14 @@ struct Effect {
                                 ///< parameter is irrelevant if the effect is neutral
   /// Adds the effect with these parameter values to an extension.
   std::function<void(Extension&, const std::vector<double>&)> apply;
-  /// Id of a cause with equal readings for every command; empty: none.
+  /// Id of a cause that gives equal readings for every command; empty: no such cause.
   std::string twin = {};
-  /// Number of parameters that only define the reference of the effect.
+  /// Number of parameters that only define the reference of the effect, such as an additional gain.
   std::size_t nuisance_numbers = 0;
-  /// True: no mechanism matches this effect exactly.
+  /// True if no mechanism matches this effect exactly.
   bool is_ideal = false;
   Appears appears = Appears::anywhere;
-  /// Quantity that states the size of this form, if it differs from that of its cause.
+  /// Quantity that states the size of this form; not set: the quantity of its cause is used.
   std::optional<SizedBy> size = {};
 };
 

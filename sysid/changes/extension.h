@@ -1,5 +1,6 @@
 #pragma once
-// Defines the parameters of changes since the healthy logs, which are added to a constant baseline model.
+// Defines the parameters of changes since the healthy logs. These changes are added to a constant baseline
+// model.
 
 #include <optional>
 #include <vector>
@@ -9,24 +10,24 @@
 
 namespace softgrip::sysid {
 
-/// Pressure d that is lost while the valve does not move and recovered while it moves: d' = rate p/largest -
-/// d (1/recovery + |command'|/way).
+/// Pressure d that is lost while the valve does not move and is recovered while it moves: d' = rate p/largest
+/// - d (1/recovery + |command'|/way). p is the pressure.
 struct PressureLoss {
   double rate_kpa_per_s = 0;
   double recovery_s = 5;
   double way_kpa = 2;
 };
 
-/// A line that delays the flow between valve and finger, with one time constant for filling and one for
+/// A line that delays the flow between valve and finger. It has one time constant for filling and another for
 /// venting.
 struct SlowLine {
   double filling_s = 0;
   double venting_s = 0;
 };
 
-/// Softening below the largest pressure m so far, while the response at m does not change. The displacement
-/// is multiplied by 1 + share m/largest tanh((m - p)/range) (after Ogden and Roxburgh, Proc. R. Soc. A 455,
-/// 1999). With a range of 0, tanh() is replaced by 1, so the factor is equal at all pressures.
+/// Softening at pressures p below the largest pressure m so far; the response at p = m does not change. The
+/// displacement is multiplied by 1 + share m/largest tanh((m - p)/range) (after Ogden and Roxburgh, Proc. R.
+/// Soc. A 455, 1999). If the range is 0, tanh() is replaced by 1, and the factor is equal at all pressures.
 struct Softening {
   double share = 0;
   double range_kpa = 10;  ///< 0: the factor does not depend on the pressure
@@ -64,8 +65,8 @@ struct Extension {
 [[nodiscard]] std::vector<double> drive_behind(const std::vector<model::BlockSpec>& valve,
                                                const Record& record);
 
-/// Returns a model with the command as input that contains these valve blocks. Returns an empty value if the
-/// model already has such a block and the two cannot be combined.
+/// Returns a model that contains these valve blocks and whose input is the command. Returns nullopt if the
+/// model already contains such a block and the two blocks cannot be combined.
 [[nodiscard]] std::optional<model::Model> with_valve(model::Model model,
                                                      const std::vector<model::BlockSpec>& valve);
 

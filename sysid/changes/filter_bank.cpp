@@ -10,8 +10,8 @@ namespace {
 
 using Values = std::vector<double>;
 
-/// Time constants of the filters for a valve [s]; 0 for a response without lag. That filter is omitted if the
-/// pressure is not recorded, because the finger then adds a lag.
+/// Time constants of the filters for a valve [s]. 0: the filter has no lag. The filter without lag is left
+/// out if the pressure is not recorded, because the finger then adds a lag.
 constexpr std::array valve_lags_s{0.0, 0.015, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0, 2.0};
 
 template <class F>

@@ -18,8 +18,8 @@ enum class FilterKind {
   valve_and_finger,  ///< command to displacement: the terms of `valve` and `finger`
 };
 
-/// Time constants of the filters for a finger [s]. The last four are longer than most motions and also
-/// describe the transient after the start of a log.
+/// Time constants of the filters for a finger [s]. The last four exceed the duration of most motions. They
+/// also describe the transient after the start of a log.
 inline constexpr std::array finger_lags_s{0.02, 0.06, 0.2, 0.6, 2.0, 6.0, 20.0, 60.0};
 inline constexpr std::size_t slow_lags = 4;
 
@@ -36,8 +36,8 @@ inline constexpr std::size_t slow_lags = 4;
                                                FilterKind kind, double largest_kpa,
                                                const Eigen::VectorXd& weights);
 
-/// Returns the output of a first-order lag. The input is linear between samples and was settled at its first
-/// value. With a time constant of 0, the output equals the input.
+/// Returns the output of a first-order lag. Its input is linear between samples. Before the first sample, the
+/// lag was settled at the first input. If the time constant is 0, the output equals the input.
 [[nodiscard]] std::vector<double> lagged(const Record& record, const std::vector<double>& signal,
                                          double time_constant_s);
 

@@ -20,13 +20,13 @@ constexpr std::array ridges{1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
 
 using Factor = Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower>;
 
-/// A bin with a reading: its record, its index there, and its unit.
+/// A bin that contains a reading: its record, its index in this record, and its unit.
 struct Row {
   std::size_t record = 0, bin = 0, unit = 0;
 };
 
-/// Subtracts the mean of each record in each unit from the values, because a model does not predict the zero
-/// of a run.
+/// Subtracts the mean of each record in each unit from the values. A model does not predict the zero of a
+/// run.
 Eigen::VectorXd centred(Eigen::VectorXd values, const std::vector<Row>& rows) {
   std::map<std::pair<std::size_t, std::size_t>, std::pair<double, double>> sums;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -55,7 +55,7 @@ class FilterBank {
     }
   }
 
-  /// The residuals of a model, and the results of the fit to them.
+  /// Residuals of a model, and the weights and errors of the filter bank that is fitted to them.
   struct Target {
     std::vector<Eigen::VectorXd> values;   ///< residuals after the fit without each unit, and after the fit
                                            ///< to all units
@@ -83,7 +83,8 @@ class FilterBank {
     return target;
   }
 
-  /// Fits every target with the ridge that leaves the smallest error in the left-out units.
+  /// Fits the filter bank to every target. The ridge parameter is the one with the smallest error in left-out
+  /// units.
   void fit(std::vector<Target>& targets) const {
     for (const double ridge : ridges) {
       std::vector<std::vector<Eigen::VectorXd>> weights(targets.size(), std::vector<Eigen::VectorXd>(units_));
@@ -107,8 +108,8 @@ class FilterBank {
     }
   }
 
-  /// Returns the weights if the filter bank is significantly better than no filter bank (is_better()), and
-  /// otherwise a result without weights.
+  /// Returns the weights if the filter bank improves the prediction significantly (is_better()). Otherwise
+  /// returns a result without weights.
   [[nodiscard]] FittedFilters answer(Target target, const LeftByUnit& model, std::uint64_t seed) const {
     if (target.values.empty()) return {{}, model.back(), std::numeric_limits<double>::infinity()};
     const Binned plain = in_bins(target.plain_left, model.back()), left = in_bins(target.left, model.back());
@@ -160,7 +161,7 @@ class FilterBank {
     return values(rows_of(unit));
   }
 
-  /// Returns the residual of each unit, with the model and the weights that were fitted without this unit.
+  /// Returns the residual of each unit. Model and weights were fitted without this unit.
   [[nodiscard]] Eigen::VectorXd left_out(const Target& target,
                                          const std::vector<Eigen::VectorXd>& weights) const {
     Eigen::VectorXd left(columns_.rows());

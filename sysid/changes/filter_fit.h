@@ -1,6 +1,6 @@
 #pragma once
-// Fits a filter bank to the residuals of models and evaluates it on units that are left out in turn
-// (sysid/evidence/units.h).
+// Fits a filter bank to the residuals of models and evaluates it by cross-validation: each unit
+// (sysid/evidence/units.h) is left out of one fit.
 
 #include <cstdint>
 #include <vector>
@@ -15,7 +15,8 @@
 
 namespace softgrip::sysid {
 
-/// Weights of a filter bank, fitted with the best ridge regularisation.
+/// Weights of a filter bank. The ridge parameter of the fit is the one with the smallest error in left-out
+/// units.
 struct FittedFilters {
   Eigen::VectorXd weights;  ///< one weight per column of filter_columns(); empty if the filter bank does not
                             ///< improve the prediction
@@ -23,17 +24,17 @@ struct FittedFilters {
   double left_mm = 0;       ///< root mean square of `left` about the mean of each unit
 };
 
-/// Returns the squares of two residuals over blocks of some seconds, after subtraction of the mean of each
-/// unit.
+/// Returns the sums of squares of two residuals in blocks of some seconds. Before, the mean of each unit is
+/// subtracted.
 [[nodiscard]] PairedLosses losses_of(const Binned& worse, const Binned& better, const Units& units,
                                      double bin_s);
 
-/// Residuals of a model for all records, in bins: one element per unit that was left out of the fit, and a
-/// last element for the fit to all units.
+/// Residuals of a model for all records in bins. Element i belongs to the fit without unit i, and the last
+/// element belongs to the fit to all units.
 using LeftByUnit = std::vector<Binned>;
 
-/// Fits one filter bank for each model. All models must have the same input, so that they share the columns
-/// and their factorisations. A model whose prediction is not finite gets an infinite left_mm.
+/// Fits one filter bank for each model. All models must have the same input, so that their columns and
+/// factorisations are equal. If the prediction of a model is not finite, its left_mm is infinite.
 /// @param left  residuals of each model.
 /// @param largest_kpa  largest pressure of all records.
 [[nodiscard]] std::vector<FittedFilters> fit_filters(const std::vector<Record>& records, const Units& units,

@@ -7,9 +7,9 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double atmosphere_kpa = 101.325;
-/// Longest step [s], and largest number of steps in one sampling interval. The number is limited because the
-/// implicit steps are stable, and because sampling intervals of more than 0.1 s do not resolve the dynamics
-/// of a regulator.
+/// Longest simulation step [s], and largest number of steps in one sampling interval. The number can be
+/// limited because the implicit steps are stable. Sampling intervals of more than 0.1 s do not resolve the
+/// dynamics of a regulator.
 constexpr double longest_step_s = 0.002;
 constexpr int most_steps = 50;
 constexpr double supply_unknown = 4;  ///< assumed supply, as a multiple of the largest command
@@ -54,15 +54,16 @@ class Walk {
   [[nodiscard]] double gauge_kpa() const { return finger_kpa_ - atmosphere_kpa; }
 
  private:
-  /// Returns the position of the spool at the end of a step, expressed as the control error that causes it
-  /// [kPa].
+  /// Returns the position of the spool at the end of a step. It is stated as the control error that leads to
+  /// this position [kPa].
   [[nodiscard]] double spool_with(double valve_kpa, double step_s) const {
     const Regulator& r = regulator_;
     const double most = r.dead_kpa + r.full_kpa;
     const double wanted = std::clamp(seen_kpa_ + atmosphere_kpa - valve_kpa + integral_kpa_, -most, most);
     return spool_kpa_ + (wanted - spool_kpa_) * step_s / (step_s + r.spool_lag_s);
   }
-  /// Returns the flow through the ports, as the rate at which it changes the pressure of the finger [kPa/s].
+  /// Returns the flow through the ports, stated as the rate of the finger's pressure that this flow would
+  /// cause [kPa/s].
   [[nodiscard]] double inflow(double spool_kpa, double valve_kpa, double supply_kpa) const {
     const Regulator& r = regulator_;
     const double open = std::min((std::abs(spool_kpa) - r.dead_kpa) / r.full_kpa, 1.0);
@@ -70,8 +71,8 @@ class Walk {
     return r.port_per_s * open *
            (spool_kpa > 0 ? flow(supply_kpa, valve_kpa) : -flow(valve_kpa, atmosphere_kpa));
   }
-  /// Returns the flow into the finger, as the rate at which it changes the pressure there [kPa/s]. During one
-  /// step, the flow can at most equalise the pressures at both ends.
+  /// Returns the flow into the finger, stated as the rate of the finger's pressure [kPa/s]. In one step, the
+  /// flow can at most equalise the pressures at the two ends of the tube.
   [[nodiscard]] double through_the_tube(double valve_kpa, double step_s) const {
     const double above = valve_kpa - finger_kpa_;
     if (above == 0) return 0;
@@ -85,7 +86,7 @@ class Walk {
            through_the_tube(valve_kpa, step_s) - r.chamber_share * (valve_kpa - valve_kpa_) / step_s;
   }
   /// Returns the pressure before the tube at which surplus() is zero. surplus() decreases with this pressure.
-  /// The secant method starts at the previous pressure and nearly always converges. If it does not, the
+  /// The secant method starts at the pressure of the step before and nearly always converges. Otherwise the
   /// method of false position is used.
   [[nodiscard]] double before_the_tube(double supply_kpa, double step_s) const {
     constexpr int most_secants = 6;

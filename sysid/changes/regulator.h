@@ -1,6 +1,6 @@
 #pragma once
-// Simulates the pressure regulator between a command and a finger if the pressure is not recorded. The model
-// consists of controller, ports and tube.
+// Simulates the pressure regulator between command and finger. It is used if the pressure is not recorded.
+// The model consists of a controller, ports and a tube.
 
 #include <vector>
 
@@ -8,9 +8,9 @@
 
 namespace softgrip::sysid {
 
-/// Parameters of a regulator. A controller with a play and an integral moves a spool, which has a lag and
-/// overlaps its ports. Air flows through a port into a chamber and from there through the tube into the
-/// volume of the finger. The flows follow ISO 6358-1 (choked or subsonic, linear near zero pressure
+/// Parameters of a regulator. A controller with a play and an integral moves a spool. The spool has a lag,
+/// and it overlaps its ports. Air flows through a port into a chamber and from the chamber through the tube
+/// into the volume of the finger. The flows follow ISO 6358-1 (choked or subsonic, linear near zero pressure
 /// difference) at constant temperature.
 struct Regulator {
   double play_kpa = 0.15;     ///< half the width of the range to which the controller does not respond
@@ -26,8 +26,8 @@ struct Regulator {
                                ///< tube_per_s
 };
 
-/// Returns the rate at which a finger without inflow loses pressure through a leak with leak_per_s = 1
-/// [kPa/s].
+/// Returns the rate at which a finger without inflow loses pressure [kPa/s] through a leak whose leak_per_s
+/// is 1.
 [[nodiscard]] double leaking_kpa_per_s(double gauge_kpa);
 
 /// Returns the pressure at the finger [kPa] at each sample. The initial state is settled.

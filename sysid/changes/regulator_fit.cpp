@@ -15,17 +15,18 @@ namespace {
 
 constexpr Eigen::Index numbers = 8;
 constexpr int most_regulator_steps = 15;
-/// Step of a logarithm for its numerical derivative, and its largest change in one iteration.
+/// Step of a logarithm for numerical derivatives, and largest change of a logarithm in one iteration.
 constexpr double beside_by = 0.03, longest_move = 1.5;
-/// Bound of the logarithms, which corresponds to a factor of 400.
+/// Largest magnitude of a logarithm. It corresponds to a factor of 400.
 constexpr double largest_logarithm = 6;
 constexpr double least_progress = 0.003;
 /// Penalty for a parameter that differs from its typical value by a factor of e, as a share of the sum of
-/// squared residuals. The penalty is necessary because lags of the filter bank can replace a wide tube. A
-/// parameter that the readings do not determine keeps its typical value.
+/// squared residuals. The penalty is necessary because the lags of the filter bank can replace a wide tube. A
+/// parameter that the readings do not determine therefore keeps its typical value.
 constexpr double prior_share = 0.003;
 
-/// Returns the regulator for the coordinates t, which are the logarithms of the ratios to typical values.
+/// Returns the regulator for the coordinates t. They are the logarithms of the parameters divided by their
+/// typical values.
 Regulator regulator_at(const Eigen::VectorXd& t, double largest_kpa) {
   const auto times = [&](Eigen::Index i) { return std::exp(t(i)); };
   return {0.002 * largest_kpa * times(0),
@@ -39,7 +40,7 @@ Regulator regulator_at(const Eigen::VectorXd& t, double largest_kpa) {
           0};
 }
 
-/// The readings in bins, and the signals that a finger or a pressure sensor after the regulator could show.
+/// Readings in bins, and the signals that a finger or a pressure sensor behind the regulator can show.
 class BinnedReadings {
  public:
   BinnedReadings(const std::vector<Record>& records, double largest_kpa, ReadBy read_by)
@@ -104,7 +105,7 @@ class BinnedReadings {
   std::size_t bins_ = 0;
 };
 
-/// The search for a regulator, with the interface that descend() requires.
+/// Search for the parameters of a regulator. The class has the functions that descend() calls.
 class RegulatorSearch {
  public:
   struct Point {

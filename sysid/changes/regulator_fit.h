@@ -1,5 +1,5 @@
 #pragma once
-// Estimates the parameters of the regulator between a command and a reading.
+// Estimates the parameters of the regulator between a command and a recorded signal.
 
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace softgrip::sysid {
 
-/// The quantity that was recorded after a regulator.
+/// Signal that was recorded behind a regulator.
 enum class ReadBy {
   gauge,   ///< the pressure, of which gain and zero are fitted
   finger,  ///< the displacement, described by a bank of plays and lags with weights that are refitted for
