@@ -7,7 +7,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Regularisation that is added to the unit diagonal, so that a singular matrix also has a unique minimum.
+/// Regularisation that is added to the diagonal of the scaled matrix, whose elements are 1. The minimum is
+/// then unique even if the matrix is singular.
 constexpr double hair = 1e-13;
 
 /// Primal active-set method on scaled variables.
@@ -36,7 +37,8 @@ class ActiveSet {
  private:
   [[nodiscard]] bool held(Eigen::Index i) const { return held_[static_cast<std::size_t>(i)]; }
 
-  /// Moves x to the minimum over the free variables. Returns true if a bound shortened the step.
+  /// Moves x towards the minimum over the free variables. Returns true if a bound ended the step before the
+  /// minimum.
   bool advance() {
     std::vector<Eigen::Index> free;
     for (Eigen::Index i = 0; i < b_.size(); ++i) {
@@ -108,7 +110,8 @@ BoundedSolution solve_bounded(const Eigen::MatrixXd& gram, const Eigen::VectorXd
       gram.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 1.0; });
   Eigen::MatrixXd g = scale.asDiagonal() * gram * scale.asDiagonal();
   g.diagonal().array() += hair;
-  // The right-hand side is scaled to a maximum of 1, because multipliers are compared with 1e-12.
+  // The right-hand side is scaled so that its largest magnitude is 1, because multipliers are compared with
+  // 1e-12.
   const Eigen::VectorXd scaled_b = scale.cwiseProduct(b);
   const double size = std::max(scaled_b.cwiseAbs().maxCoeff(), 1e-300);
   const Eigen::VectorXd right = scaled_b / size;

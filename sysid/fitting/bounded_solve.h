@@ -19,7 +19,7 @@ struct BoundedSolution {
 [[nodiscard]] BoundedSolution solve_bounded(const Eigen::MatrixXd& gram, const Eigen::VectorXd& b,
                                             const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);
 
-/// Returns the rows and columns of a symmetric matrix whose indices are in `keep`.
+/// Returns the submatrix of a symmetric matrix with the rows and columns in `keep`.
 [[nodiscard]] Eigen::MatrixXd kept(const Eigen::MatrixXd& matrix, const std::vector<Eigen::Index>& keep);
 
 }  // namespace softgrip::sysid

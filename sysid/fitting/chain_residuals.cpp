@@ -15,14 +15,15 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Possible sizes of a group of derivatives. The parameters of one cause fit into a small group, and those of
-/// a structure with two branches together with the first parameters of a cause into a large group.
+/// Possible sizes of a group of derivatives. The parameters of one cause fit into a small group. The
+/// parameters of a structure with two branches fit into a large group, together with the first parameters of
+/// a cause.
 constexpr std::size_t least_group = 4;
 constexpr std::size_t small_group = 8;
 constexpr std::size_t large_group = 12;
 
-/// Returns the size of the next group if `left` derivatives remain. The choice minimises first the number of
-/// groups and then their size.
+/// Returns the size of the next group if `left` derivatives remain. The sizes give the smallest number of
+/// groups, and for this number the smallest groups.
 std::size_t group_for(std::size_t left) {
   if (left <= least_group) return least_group;
   if (left <= small_group) return small_group;
@@ -63,8 +64,8 @@ class ChainResiduals final : public Residuals {
   }
 
  private:
-  /// Derivatives that are computed together. `size` is the capacity of the group, and `columns` are the
-  /// columns of its derivatives in the Jacobian.
+  /// A group of derivatives that one simulation computes. `size` is the capacity of the group. `columns` are
+  /// the columns of these derivatives in the Jacobian.
   struct Group {
     std::size_t size;
     std::vector<std::size_t> columns;
@@ -76,8 +77,8 @@ class ChainResiduals final : public Residuals {
     bool values;  ///< true: also store the residuals
   };
 
-  /// Returns groups of the derivatives with respect to model parameters and previous peaks. Returns at least
-  /// one group, because the residuals are computed with the first one.
+  /// Returns the groups of derivatives with respect to model parameters and previous peaks. There is at least
+  /// one group, because the simulation of the first group also computes the residuals.
   [[nodiscard]] std::vector<Group> groups_of_derivatives() const {
     std::vector<std::size_t> dynamic;
     for (std::size_t i = 0; i < space_.size(); ++i) {
@@ -111,8 +112,8 @@ class ChainResiduals final : public Residuals {
     return std::all_of(finite.begin(), finite.end(), [](char one) { return one != 0; });
   }
 
-  /// Simulates one record. Stores the values of the chain and its derivatives with respect to the parameters
-  /// of the part.
+  /// Simulates one record. Stores the output of the chain and its derivatives with respect to the parameters
+  /// in the group.
   template <std::size_t group>
   void derivatives(const FitPoint& point, std::span<const double> z, const Part& part, std::span<double> r,
                    std::span<double> jacobian) const {
@@ -164,8 +165,8 @@ class ChainResiduals final : public Residuals {
     }
   }
 
-  /// Returns the part of a row of the Jacobian that belongs to the offsets. It is the same for all rows of
-  /// record k.
+  /// Returns the elements of a row of the Jacobian that belong to the offsets. All rows of record k have the
+  /// same elements.
   [[nodiscard]] std::vector<double> offset_columns(std::span<const double> z, std::size_t k) const {
     std::vector<double> line(space_.size());
     for (const std::size_t c : offsets_) {
@@ -198,7 +199,7 @@ class ChainResiduals final : public Residuals {
     }
   }
 
-  /// Adds the derivatives of unsettled creep with respect to k and c to a row. They follow from the given
+  /// Adds the derivatives of unsettled creep with respect to k and c to a row. They are computed from the
   /// derivative with respect to ln tau, where tau = c/k is the time constant of the branch.
   void creep_columns(const FitPoint& point, std::span<const double> z, std::size_t branch, double by_ln_tau,
                      double* line) const {

@@ -1,6 +1,6 @@
 #pragma once
-// Descends to a minimum by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963) within bounds. All fits
-// whose linear parameters are eliminated use this descent. Fits with the complete residuals use minimise().
+// Descends to a minimum within bounds by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). All fits
+// that eliminate their linear parameters use this descent. Fits of all parameters use minimise().
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ struct NormalEquations {
   Eigen::MatrixXd curvature;  ///< Gauss-Newton matrix
 };
 
-/// Changes of each coordinate that its bounds permit, where lower <= 0 <= upper.
+/// Largest permitted change of each coordinate in both directions, with lower <= 0 <= upper.
 struct StepBounds {
   Eigen::VectorXd lower, upper;
 };
@@ -44,8 +44,8 @@ struct Descent {
   bool converged = false;  ///< false: the descent ended because the maximum number of steps was reached
 };
 
-/// Returns one damped Gauss-Newton step. A coordinate at a bound stays there if the gradient pushes it
-/// against the bound.
+/// Returns one damped Gauss-Newton step. A coordinate at a bound stays at the bound if the loss would
+/// decrease beyond it.
 [[nodiscard]] Eigen::VectorXd damped_step(const NormalEquations& normal, const StepBounds& bounds,
                                           double damping, const DescentOptions& options);
 

@@ -13,8 +13,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Returns true for stiffnesses and dampings: they are positive, span several decades, and have no effect if
-/// they are very large.
+/// Returns true for a stiffness or a damping. Such a parameter is positive, spans several decades, and has no
+/// effect if it is very large.
 bool is_logarithmic(const model::ParameterSpec& spec) {
   return spec.lower >= 0 && spec.neutral >= 1e6;
 }
@@ -28,15 +28,14 @@ FreeParameter model_parameter(const model::Model& model, std::size_t flat_index)
   p.logarithmic = is_logarithmic(spec);
   p.scale = p.logarithmic ? 1 : spec.scale;
   p.lower = p.logarithmic ? std::max(spec.lower, 1e-9) : spec.lower;
-  // A chain may skip a block whose parameter is 0, and the derivative would then be 0 as well. Therefore the
-  // bound excludes 0.
+  // The bound excludes 0. A chain may skip a block whose parameter is 0, and the derivative with respect to
+  // this parameter would then be 0.
   if (spec.lower == 0 && spec.neutral == 0) p.lower = 1e-6 * spec.scale;
   p.upper = spec.upper;
   return p;
 }
 
-/// Returns true if the play operators have envelopes. If they have none, the envelope parameters have no
-/// effect.
+/// Returns true if the play operators have envelopes. Without envelopes, their parameters have no effect.
 bool has_envelopes(const model::BlockSpec& plays) {
   return plays.values[model::parameter_index<model::PrandtlIshlinskii>("envelope_kpa")] > 0;
 }
@@ -163,8 +162,8 @@ std::vector<StartState> rest_starts(const model::Model& model, const std::vector
   const std::size_t branches = branch_time_constants_s(model).size();
   for (std::size_t r = 0; r < records.size(); ++r) {
     const double first = records[r].drive_kpa.front();
-    // The search starts with an unknown peak halfway to the largest pressure. At the first pressure, the
-    // derivative with respect to the peak would be 0.
+    // The search starts with an unknown peak halfway between the first and the largest pressure. At the first
+    // pressure, the derivative with respect to the peak would be 0.
     starts[r].peak_before_kpa = records[r].start_unknown ? (first + records[r].largest_kpa) / 2 : first;
     starts[r].unsettled_mm.assign(branches, 0);
   }

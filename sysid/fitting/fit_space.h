@@ -1,6 +1,6 @@
 #pragma once
-// Defines the free parameters of a fit: model parameters and start states of records, scaled for the
-// minimiser.
+// Defines the free parameters of a fit. These are model parameters and initial states of records, scaled for
+// the minimiser.
 
 #include <cstddef>
 #include <span>
@@ -41,7 +41,7 @@ struct FreeParameter {
 /// only the sum of that gain and 1/k0.
 [[nodiscard]] bool is_movable(const model::Model& model, std::size_t flat_index);
 
-/// A point in the space of a search: a complete model and the start state of each record.
+/// A point of a search: a complete model, and the initial state of each record.
 struct FitPoint {
   model::Model model;
   std::vector<StartState> starts;
@@ -50,16 +50,17 @@ struct FitPoint {
 /// The free parameters, in the order of the vector z.
 class FitSpace {
  public:
-  /// Makes the parameters in `free_flat` (indices of flat_values(model)) and the unknown start states free.
+  /// Makes two kinds of parameters free: those in `free_flat` (indices of flat_values(model)), and the
+  /// unknown initial states.
   /// @param model  model with the values of the fixed parameters.
   FitSpace(const model::Model& model, const std::vector<Record>& records,
            const std::vector<std::size_t>& free_flat);
 
   [[nodiscard]] std::size_t size() const noexcept { return free_.size(); }
   [[nodiscard]] const std::vector<FreeParameter>& free() const noexcept { return free_; }
-  /// Fixes the start states of the records at the values in `starts`.
+  /// Fixes the initial states of the records to the values in `starts`.
   void hold_starts(const std::vector<StartState>& starts);
-  /// Narrows the bounds of parameter `index` to the given range. The bounds are never widened.
+  /// Narrows the bounds of parameter `index` to the given range. A bound is never moved outwards.
   void bound(std::size_t index, double lower, double upper);
 
   [[nodiscard]] FitPoint point(std::span<const double> z) const;
@@ -73,9 +74,9 @@ class FitSpace {
   std::vector<FreeParameter> free_;
 };
 
-/// Returns start states with settled creep and zero offset. A record with a known start begins at rest. If
-/// the start is unknown, the previous peak is assumed halfway between the first and the largest pressure.
-/// `unsettled_mm` has one element for each branch of the model.
+/// Returns initial states without unsettled creep and with zero offset. A record with a known initial state
+/// begins at rest. If the initial state is unknown, the previous peak is halfway between the first and the
+/// largest pressure. `unsettled_mm` has one element for each branch of the model.
 [[nodiscard]] std::vector<StartState> rest_starts(const model::Model& model,
                                                   const std::vector<Record>& records);
 

@@ -1,7 +1,7 @@
 #pragma once
-// Cross-validation: models are refitted without some blocks of the readings and evaluated on these blocks.
-// The hidden state of a model is always simulated from the start of the record and never corrected by
-// readings.
+// Cross-validates models: they are refitted without some blocks of the readings and evaluated on these
+// blocks. The hidden state of a model is always simulated from the start of the record. Readings never
+// correct it.
 
 #include <functional>
 #include <vector>
@@ -19,9 +19,9 @@ using Refit = std::function<FitPoint(const std::vector<Record>& rest)>;
 /// Returns the mean square of a residual over a block [mm^2]; 0 for a block without readings.
 [[nodiscard]] double loss_of(const std::vector<double>& residual_mm, const Block& block);
 
-/// Returns the mean square error of each block [mm^2] under the model that `refit` returns without the fold
-/// of this block. The error is limited to the square of the record's span, so that a single diverging
-/// prediction does not dominate the means.
+/// Returns the mean square error of each block [mm^2]. The prediction comes from the model that `refit`
+/// returns for the records without the fold of this block. The error is at most the square of the record's
+/// span, so that a single diverging prediction does not dominate the means.
 [[nodiscard]] BlockLosses held_out_losses(const std::vector<Record>& records, const Division& division,
                                           const Refit& refit);
 

@@ -1,5 +1,5 @@
 #pragma once
-// A 95 % confidence interval and its representation as text.
+// A 95 % confidence interval, and its conversion to text.
 
 #include <string>
 #include <string_view>

@@ -5,7 +5,8 @@
 
 namespace softgrip::sysid {
 
-/// One row for each residual and one column for each coordinate, as Residuals::evaluate() writes them.
+/// Jacobian of residuals: one row for each residual and one column for each coordinate, in the order in which
+/// Residuals::evaluate() writes them.
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 }  // namespace softgrip::sysid

@@ -14,13 +14,13 @@ namespace softgrip::sysid {
 
 struct MinimiseOptions {
   int most_iterations = 60;
-  /// Residuals above this limit have a linear instead of a quadratic cost (Huber). Infinity: all costs are
+  /// Limit of a residual above which its cost is linear instead of quadratic (Huber). Infinity: all costs are
   /// quadratic.
   double huber_mm = std::numeric_limits<double>::infinity();
   /// Index of a parameter that is held constant; empty: none.
   std::optional<std::size_t> held;
-  /// Use normal equations instead of an orthogonal factorisation. They are several times faster but give only
-  /// half as many digits, which is sufficient if only the error of the fit is used.
+  /// True: use normal equations instead of an orthogonal factorisation. They are several times faster but
+  /// give only half as many digits. This accuracy is sufficient if only the error of the fit is used.
   bool normal_equations = false;
   /// Relative change of the cost at which the search ends.
   double tolerance = 1e-10;

@@ -1,6 +1,6 @@
 #pragma once
-// Compares the losses of two models on the same blocks by a bootstrap that draws whole blocks.
-// sysid/evidence/comparison.h uses random weights of the blocks instead.
+// Compares the losses of two models on the same blocks by a bootstrap of whole blocks.
+// sysid/evidence/comparison.h, in contrast, gives the blocks random weights.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// Mean square error of each block under a fit that did not use the block [mm^2].
+/// Mean square error of each block [mm^2]. The fit that predicts a block did not use this block.
 using BlockLosses = std::vector<double>;
 
 /// A value with its uncertainty.
@@ -30,32 +30,35 @@ using BlockStatistic = std::function<double(std::span<const std::size_t> indices
 [[nodiscard]] std::vector<double> statistic_of_draws(std::size_t blocks, std::size_t draws,
                                                      std::uint64_t seed, const BlockStatistic& statistic);
 
-/// Returns the mean over blocks of worse minus better [mm^2], with its standard error and 95 % interval.
+/// Returns the mean over the blocks of the difference worse - better [mm^2], with its standard error and 95 %
+/// interval.
 [[nodiscard]] Spread mean_difference(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed);
-/// Returns true if the component that distinguishes the two models is necessary: the lower limit of the 95 %
-/// interval of mean_difference() is above 0, and the mean exceeds `least_mm2`.
+/// Returns true if a component is necessary, from the losses of the models without and with it. The lower
+/// limit of the 95 % interval of mean_difference() must be above 0, and the mean must exceed `least_mm2`.
 [[nodiscard]] bool is_missed(const BlockLosses& without, const BlockLosses& with, double least_mm2,
                              std::uint64_t seed);
-/// Returns the mean over blocks of log(worse / better), from the same bootstrap samples as mean_difference().
-/// Because ratios are used, one block with a very poor fit does not outweigh all others. A block in which a
-/// loss is 0 counts as a tie.
+/// Returns the mean over the blocks of log(worse / better), from the bootstrap samples of mean_difference().
+/// As ratios are averaged, one block with a very poor fit does not outweigh all others. A block in which one
+/// of the losses is 0 counts as a tie.
 [[nodiscard]] Spread mean_log_ratio(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed);
-/// Returns the error reduction 100 (1 - rms(after)/rms(before)) [%], from the same bootstrap samples.
+/// Returns the error reduction 100 (1 - rms(after)/rms(before)) [%], from the bootstrap samples of
+/// mean_difference().
 [[nodiscard]] Spread gain_percent(const BlockLosses& before, const BlockLosses& after, std::uint64_t seed);
-/// Returns the share of the bootstrap samples in which `ours` has the lower loss. A tie counts as one half.
+/// Returns the share of the bootstrap samples in which `ours` has the lower loss than the other model. A tie
+/// counts as one half.
 [[nodiscard]] double winning_share(const BlockLosses& ours, const BlockLosses& other, std::uint64_t seed);
 /// Returns the square root of the mean of the losses over the blocks [mm].
 [[nodiscard]] double rmse_mm(const BlockLosses& losses);
 
-/// Mean over blocks of worse minus better, and its standard error [mm^2].
+/// Mean over the blocks of the difference worse - better, and the standard error of this mean [mm^2].
 struct LossDifference {
   double mean_mm2 = 0;
   double standard_error_mm2 = 0;
 };
 [[nodiscard]] LossDifference loss_difference(const BlockLosses& worse, const BlockLosses& better);
-/// Returns true if the mean loss of `better` is lower and the difference exceeds twice its standard error,
-/// computed either from the losses or from their logarithms. With logarithms, a block that is difficult for
-/// both models does not outweigh the others.
+/// Returns true if the mean loss of `better` is lower and the difference exceeds twice its standard error. It
+/// is sufficient if this holds for the losses or for their logarithms. With logarithms, a block that is
+/// difficult for both models does not outweigh the other blocks.
 [[nodiscard]] bool is_clearly_less(const BlockLosses& better, const BlockLosses& worse);
 
 }  // namespace softgrip::sysid

@@ -42,9 +42,9 @@ class Residuals {
 /// result.
 [[nodiscard]] std::unique_ptr<Residuals> chain_residuals(const std::vector<Record>& records, FitSpace space);
 
-/// Returns residuals for a chain that consists of at most one delay, at most one valve lag, Bouc-Wen with
-/// exponent 1 and Kelvin-Voigt. Their sensitivities are computed in closed form, which gives the same values
-/// several times faster. Returns nullptr for any other chain.
+/// Returns residuals for a chain that consists of Bouc-Wen with exponent 1, Kelvin-Voigt, at most one delay
+/// and at most one valve lag. The sensitivities of these blocks are computed in closed form. This gives the
+/// same values as chain_residuals() but is several times faster. Returns nullptr for any other chain.
 [[nodiscard]] std::unique_ptr<Residuals> separable_residuals(const std::vector<Record>& records,
                                                              FitSpace space);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// A rise of the pressure from rest and its return to rest.
+/// An excursion of the pressure: it rises from rest and returns to rest.
 struct Excursion {
   std::size_t begin;
   double peak_kpa;

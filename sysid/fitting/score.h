@@ -1,5 +1,5 @@
 #pragma once
-// Computes the error of a model's prediction of a log.
+// Computes the error of the prediction of a log by a model.
 
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace softgrip::sysid {
 
-/// Above this RMSE in % of the span, a prediction is bad, regardless of the noise.
+/// A prediction is bad if its RMSE exceeds this percentage of the span. The noise does not affect this limit.
 inline constexpr double bad_percent = 10;
 
 /// A prediction and its errors. An error is reading minus prediction.
@@ -24,8 +24,8 @@ struct Score {
   double largest_error_mm = 0;
   double first_cycle_rmse_mm = 0;  ///< NaN if the command does not repeat
   double settled_rmse_mm = 0;      ///< RMSE of the cycles after the first; NaN if there are none
-  /// True if the prediction is not finite, or if its RMSE exceeds the span of the readings and the prediction
-  /// is not proportional to the readings. A proportional prediction indicates a wrong unit.
+  /// True if the prediction is not finite. Also true if its RMSE exceeds the span of the readings and the
+  /// prediction is not proportional to the readings. If it is proportional, a unit is probably wrong.
   bool diverges = false;
   StartState start;
 };

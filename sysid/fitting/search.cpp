@@ -20,18 +20,18 @@ namespace {
 /// Maximum number of iterations from one start point.
 constexpr int search_iterations = 60;
 constexpr int chain_search_iterations = 40;
-/// Number of samples for the coarse fit from many start points. More samples do not improve the result.
+/// Number of samples in the coarse fits, which start at many points. A larger number does not improve their
+/// result.
 constexpr std::size_t samples_of_a_look = 4000;
-/// A search whose RMSE is higher than the lowest one by this factor is repeated with a larger initial
-/// damping.
+/// Ratio of an RMSE to the lowest RMSE above which the search is repeated with a larger initial damping.
 constexpr double higher = 1.02;
 constexpr double slow_damping = 10;
-/// A minimum is refined on all samples if its RMSE is at most this multiple of the lowest one.
+/// A minimum is refined on all samples if its RMSE is at most this multiple of the lowest RMSE.
 constexpr double not_far = 1.3;
-/// Two results are the same minimum if their distance in the coordinates of the fit is below this value.
+/// Two results count as the same minimum if their distance in the coordinates of the fit is below this value.
 constexpr double same_place = 0.02;
 
-/// Reports the progress of several threads. The calls are serialised.
+/// Reports the progress of several threads, one call at a time.
 class Teller {
  public:
   Teller(const ShowProgress& show, std::size_t starts)
@@ -75,7 +75,7 @@ std::vector<std::size_t> places(const FitSpace& space, const std::vector<SearchR
   return place;
 }
 
-/// Searches from all start points with few samples.
+/// Searches from all start points on thinned records.
 std::vector<SearchResult> look(const SeparableSearch& few, const std::vector<FitPoint>& starts,
                                unsigned threads, const ShowProgress& progress) {
   Teller teller(progress, starts.size());

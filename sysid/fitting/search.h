@@ -12,7 +12,7 @@
 
 namespace softgrip::sysid {
 
-/// Progress of a search.
+/// Progress of a search, for display.
 struct Progress {
   std::size_t done = 0;
   std::size_t starts = 0;
@@ -33,7 +33,8 @@ using ShowProgress = std::function<void(const Progress&)>;
                                                const std::vector<FitPoint>& starts, unsigned threads,
                                                const ShowProgress& progress);
 
-/// Sorts the creep branches of a point so that their time constants have the same order as those in `like_s`.
+/// Sorts the creep branches of a point. The time constants then have the same order (rising or falling) as
+/// those in `like_s`.
 void order_branches(const std::vector<double>& like_s, FitPoint& point);
 
 }  // namespace softgrip::sysid

@@ -16,7 +16,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Rate assigned to a dashpot without a spring. Such a branch never settles, so its state begins at zero.
+/// Rate of a branch that consists of a dashpot without a spring. Such a branch never settles, so its state
+/// begins at zero.
 constexpr double without_spring_hz = 1e-30;
 
 constexpr std::size_t most_branches = 8;
@@ -48,14 +49,15 @@ std::vector<BranchWeights> branch_weights(const std::vector<double>& durations,
   return weights;
 }
 
-/// State of a Kelvin-Voigt branch with unit damping, w' = p - r w, with its derivatives.
+/// State of a Kelvin-Voigt branch with unit damping and its derivatives. The equation is w' = p - r w with
+/// pressure p and rate r.
 struct Branch {
   double w = 0;
   double by_rate = 0;
   double by_lag = 0;
 };
 
-/// Collects rows and passes them to the sink in blocks.
+/// Collects rows in blocks and passes each full block to the sink.
 class Rows {
  public:
   Rows(Eigen::Index columns, SeparableRecord::Sink& sink)
@@ -77,7 +79,7 @@ class Rows {
   Eigen::Index used_ = 0;
 };
 
-/// Simulates one record, with sensitivities if Full is true.
+/// Simulates one record. If Full is true, also computes the sensitivities.
 template <bool Full>
 class Walker {
  public:
@@ -214,7 +216,7 @@ class Walker {
     double by_delay = 0;
     double by_lag = 0;
     if (delayed_) {
-      // The chain is time-invariant, so a longer delay shifts its response, and dy/d(delay) = -y'.
+      // A longer delay shifts the response of a time-invariant chain, so dy/d(delay) = -y'.
       const double g = hysteresis_.g;
       const double k = g * rate_kpa_per_s >= 0 ? rates_.growing : rates_.shrinking;
       by_delay = rate_kpa_per_s * (point_.instantaneous - point_.beta * (1 - k * std::abs(g)));

@@ -34,7 +34,7 @@ struct SeparableShape {
   std::size_t branches = 0;
 };
 
-/// Returns the shape of a separable model, or an empty value for any other model.
+/// Returns the shape of a separable model; nullopt for any other model.
 [[nodiscard]] std::optional<SeparableShape> separable_shape(const model::Model& model);
 
 /// The parameters of a separable chain, named as in the equations above.
@@ -52,8 +52,8 @@ struct SeparablePoint {
 
 [[nodiscard]] SeparablePoint to_separable(const SeparableShape& shape, const FitPoint& point);
 
-/// Indices of the columns in the rows of one record. The linear columns are first. Each of them contains the
-/// factor of its linear parameter.
+/// Indices of the columns in the rows of one record. The linear columns come first. Each of them contains the
+/// factor that its linear parameter multiplies.
 struct SeparableColumns {
   std::size_t branches = 0;
   bool has_start = false;  ///< true: there are columns for unsettled creep and peak
@@ -66,8 +66,8 @@ struct SeparableColumns {
     return offset() + 1 + static_cast<Eigen::Index>(b);
   }
   [[nodiscard]] Eigen::Index linear() const { return has_start ? unsettled(branches) : offset() + 1; }
-  // The following columns are sensitivities of y to the nonlinear parameters, for the given linear
-  // parameters.
+  // The columns from here on contain the sensitivities of y to the nonlinear parameters, with the linear
+  // parameters held constant.
   [[nodiscard]] Eigen::Index growing() const { return linear(); }
   [[nodiscard]] Eigen::Index shrinking() const { return linear() + 1; }
   [[nodiscard]] Eigen::Index rate(std::size_t b) const { return linear() + 2 + static_cast<Eigen::Index>(b); }
@@ -95,7 +95,7 @@ class SeparableRecord {
   };
   static constexpr Eigen::Index block_rows = 128;
 
-  /// Passes the linear columns and the readings to `sink`, for the nonlinear parameters of `point`.
+  /// Passes the linear columns and the readings to `sink`. The nonlinear parameters are those of `point`.
   void linear(const SeparablePoint& point, std::size_t index, Sink& sink) const;
   /// Passes all columns and the residual to `sink`.
   /// @param index  index of the record in point.starts.

@@ -34,8 +34,8 @@ void SeparableSearch::add_coordinates(const FreeParts& parts) {
   for (std::size_t b = 0; b < shape_.branches; ++b) {
     const FreeParameter& k = at(parts.stiffness[b]);
     const FreeParameter& c = at(parts.damping[b]);
-    // A branch with a time constant of more than 20 lengths of the log behaves like a dashpot, and one with
-    // less than half a sampling interval like a spring.
+    // A branch whose time constant exceeds 20 lengths of the log acts like a dashpot. A branch whose time
+    // constant is below half a sampling interval acts like a spring.
     coordinates_.push_back({Coordinate::Kind::rate, b, 1,
                             std::log(std::max(k.lower / c.upper, 0.05 / longest_s)),
                             std::log(std::min(k.upper / c.lower, 2 / shortest_s))});
@@ -58,7 +58,8 @@ void SeparableSearch::add_linear(const FreeParts& parts) {
     lower_.push_back(lower);
     upper_.push_back(upper);
   };
-  // The data determine only the sum alpha + 1/k0, so the sum is fitted. Its lower bound follows from alpha.
+  // The data determine only the sum alpha + 1/k0, so this sum is fitted. Its lower bound is computed from the
+  // lower bound of alpha.
   const FitPoint base = space_->point(std::vector<double>(space_->size(), 0.0));
   const double fixed_alpha = base.model.blocks[shape_.bouc_wen].values[0];
   bound(parts.alpha >= 0 ? 0 : fixed_alpha, 1e6);
@@ -196,7 +197,7 @@ FitPoint SeparableSearch::to_fit_point(FitPoint start, const SeparablePoint& poi
   if (alpha_free_) {
     bw[0] = point.instantaneous - 1 / kv[0];
     if (bw[0] <= 0) {
-      // The spring alone would have a larger compliance than the fitted sum, so its stiffness is increased.
+      // The compliance 1/k0 alone would exceed the fitted sum alpha + 1/k0, so the stiffness k0 is increased.
       kv[0] = 1 / std::max(point.instantaneous, 1e-9);
       bw[0] = 0;
     }

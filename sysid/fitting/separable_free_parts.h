@@ -10,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// Indices of the parameters in the fit space; -1: the parameter is fixed.
+/// For each parameter of a separable chain, its index in the fit space; -1: the parameter is fixed.
 struct SeparableSearch::FreeParts {
   int alpha = -1, k0 = -1, beta = -1, gamma = -1, eta = -1, delay = -1, lag = -1;
   std::vector<int> stiffness, damping;

@@ -14,8 +14,8 @@ using model::ExponentialWeights;
 using model::Segment;
 using Number = Dual<double>;
 
-/// Assigns the same index to equal durations. A duration is only compared with the last 8 distinct ones,
-/// because a log either alternates between few durations or has many different ones.
+/// Assigns an index to each distinct duration. A duration is compared only with the last 8 distinct
+/// durations. A log either alternates between a few durations, or it has many different ones.
 class DurationTable {
  public:
   explicit DurationTable(std::vector<double>& durations) : durations_(durations) {}
@@ -35,7 +35,7 @@ class DurationTable {
   std::vector<double>& durations_;
 };
 
-/// A linear piece of the drive.
+/// A piece of the drive in which it is linear.
 struct Piece {
   double duration_s;
   double end_kpa;
@@ -66,7 +66,7 @@ void append_straight(PressureWalk& walk, double begin_kpa, double end_kpa, doubl
   walk.stretches.push_back(s);
 }
 
-/// Appends the pieces of the drive without a delay.
+/// Appends the pieces of the drive for a chain without a delay.
 void append_undelayed(PressureWalk& walk, const std::vector<Piece>& pieces, DurationTable& durations) {
   double last = walk.first_kpa;
   for (const Piece& piece : pieces) {

@@ -1,6 +1,6 @@
 #pragma once
-// Computes the pressure at the actuator after delay and lag as a sequence of segments, with its sensitivity
-// to the lag.
+// Computes the pressure at the actuator, behind delay and lag, as a sequence of segments. Also computes its
+// sensitivity to the time constant of the lag.
 
 #include <cstdint>
 #include <limits>
@@ -25,7 +25,7 @@ struct Stretch {
   bool ends_sample = false;    ///< true: the segment ends at a sample
 };
 
-/// The segments of a record, beginning at its first sample.
+/// The segments of the pressure in a record. The first segment begins at the first sample.
 struct PressureWalk {
   double first_kpa = 0;
   std::vector<Stretch> stretches;

@@ -1,4 +1,5 @@
-// Computes residuals of a separable chain and maps its columns to the parameters of the fit.
+// Computes the residuals of a separable chain, and converts the columns of the chain to derivatives with
+// respect to the parameters of the fit.
 
 #include <cmath>
 
@@ -10,11 +11,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Minimum number of samples per thread. The simulation is fast, so that a thread is not worthwhile for fewer
-/// samples.
+/// Smallest number of samples per thread. For fewer samples, the simulation takes less time than the start of
+/// a thread.
 constexpr std::size_t samples_worth_one = 4 * samples_worth_a_thread;
 
-/// Returns the matrix M for which the rows of the Jacobian are the full columns of the record times M.
+/// Returns a matrix M. The rows of the Jacobian are the full columns of the record multiplied by M.
 Eigen::MatrixXd mapping(const SeparableShape& shape, const SeparableColumns& c, const FitSpace& space,
                         const FitPoint& point, std::span<const double> z, std::size_t record) {
   const auto& blocks = point.model.blocks;

@@ -122,7 +122,7 @@ NormalEquations SeparableSearch::normal(const SeparablePoint& point, const Linea
   return normal;
 }
 
-/// The search from one start point, with the interface that descend() requires.
+/// The search from one start point. The class has the functions that descend() calls.
 struct SeparableSearch::Descending {
   struct Point {
     SeparablePoint point;
@@ -157,8 +157,8 @@ struct SeparableSearch::Descending {
 SearchResult SeparableSearch::run(const FitPoint& start, int most_iterations, double damping) const {
   const SeparablePoint point = to_separable(shape_, start);
   const Descending problem{*this};
-  // The steps are limited, because the derivatives are not valid beyond a change of a rate by a factor of e^2
-  // or of another coordinate by twice its range.
+  // The steps are limited, because the derivatives are not valid for larger changes. A rate may change by a
+  // factor of at most e^2, and another coordinate by at most twice its range.
   const auto end = descend(problem, problem.at(point, coordinates_of(point)),
                            {.most_steps = most_iterations,
                             .most_trials = 12,

@@ -2,9 +2,9 @@
 // Searches for the parameters of a separable chain from inaccurate start points. The method is variable
 // projection (Golub and Pereyra 1973, with the simplification by Kaufman 1975) with damped steps (descent.h).
 //
-// For given nonlinear parameters, the linear parameters follow from normal equations with bounds. Reading the
-// data once gives the Gram matrix of all columns, from which the cost, the gradient and the Gauss-Newton
-// matrix of the reduced problem follow. Therefore no array has the size of the data.
+// For given nonlinear parameters, the linear parameters are the solution of normal equations with bounds.
+// Reading the data once gives the Gram matrix of all columns. The cost, the gradient and the Gauss-Newton
+// matrix of the reduced problem are computed from this matrix, so no array has the size of the data.
 
 #include <memory>
 #include <optional>
@@ -29,9 +29,9 @@ struct SearchResult {
 /// A search that is prepared for many start points. run() is thread-safe.
 class SeparableSearch {
  public:
-  /// Returns an empty value unless three conditions are met: the chain is separable; all its linear
-  /// parameters are free in `space` (alpha or k0, beta, each k with its c); and gamma and eta are both free
-  /// or both fixed.
+  /// Prepares a search. Returns nullopt if one of three conditions is not met: the chain is separable; all
+  /// its linear parameters are free in `space` (alpha or k0, beta, each k with its c); and gamma and eta are
+  /// both free or both fixed.
   /// @param records  records that must outlive the search.
   [[nodiscard]] static std::optional<SeparableSearch> make(const std::vector<Record>& records,
                                                            const FitSpace& space);
@@ -42,8 +42,8 @@ class SeparableSearch {
   [[nodiscard]] SearchResult run(const FitPoint& start, int most_iterations, double damping = 1e-3) const;
 
  private:
-  /// A nonlinear parameter and its bounds in the scale of the search. The values of growing, eta, delay, lag
-  /// and peak are divided by a typical size; rates are logarithmic.
+  /// A nonlinear parameter and its bounds in the scale of the search. Rates are logarithmic. The other
+  /// parameters (growing, eta, delay, lag and peak) are divided by a typical size.
   struct Coordinate {
     enum class Kind { growing, eta, rate, delay, lag, peak };
     Kind kind;

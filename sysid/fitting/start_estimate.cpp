@@ -20,21 +20,22 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double used_share = 0.05, used_at_least_s = 2, used_at_most_share = 0.5;
-/// Prior standard deviation of unsettled creep, as a share of the settled creep of the branch over the range
-/// of the drive.
+/// Prior standard deviation of the unsettled creep of a branch, as a share of the settled creep of this
+/// branch over the range of the drive.
 constexpr double unsettled_share = 0.3;
 /// Assumed error of the model, as a share of the predicted motion.
 constexpr double model_tolerance = 0.05;
-/// Threshold [standard deviations] of the residual above which a start at rest is rejected.
+/// An initial state at rest is rejected if the residual under this assumption exceeds this number of standard
+/// deviations.
 constexpr double rejected_at = 3;
-/// Duration [s] from the first sample over which the speed of the drive is computed.
+/// Duration after the first sample from which the speed of the drive is computed [s].
 constexpr double speed_over_s = 0.1;
-/// Number of steps of the grid on which the last reversals are searched for, and number of times that the
-/// step is then halved.
+/// Numbers of steps of the search for the last reversals: on the first grid, and of halvings of the grid step
+/// after it.
 constexpr int grid_steps = 5, halvings = 4;
-/// The summation of the autocorrelation ends at the first value below this limit.
+/// The sum of the autocorrelation ends at the first lag whose value is below this limit.
 constexpr double least_correlation = 0.05;
-/// Number of independent readings in the beginning that is assumed before a residual is known.
+/// Number of independent readings that is assumed before a residual has been computed.
 constexpr double independent_at_first = 5;
 
 Record beginning_of(const Record& unit) {
@@ -58,14 +59,14 @@ double independent_among(const Eigen::VectorXd& residual) {
   return std::max(1.0, static_cast<double>(n) / (1 + 2 * sum));
 }
 
-/// Determines the weight of the readings relative to the priors: mean square of the residual, and effective
-/// number of independent readings.
+/// Weight of the readings relative to the priors. It depends on the mean square of the residual and on the
+/// effective number of independent readings.
 struct Trust {
   double mean_square_mm2 = 0;
   double independent = 1;
 };
 
-/// A start state and the residual that it leaves in the beginning of the unit.
+/// A trial of an initial state, and the residual of the first readings with this state.
 struct Trial {
   StartState start;
   double misfit = std::numeric_limits<double>::infinity();  ///< -2 times the logarithm of the posterior
@@ -106,7 +107,7 @@ class StartSearch {
     return rest;
   }
 
-  /// Returns the readings minus the prediction from `start`, but with zero offset and settled creep.
+  /// Returns the readings minus the prediction from `start`, with zero offset and settled creep.
   [[nodiscard]] Eigen::VectorXd unexplained(StartState start) const {
     start.offset_mm = 0;
     std::fill(start.unsettled_mm.begin(), start.unsettled_mm.end(), 0.0);
@@ -157,15 +158,16 @@ class StartSearch {
     return best;
   }
 
-  /// Returns the start state with the highest posterior probability for the first readings and the priors.
+  /// Returns the initial state whose posterior probability is highest, given the first readings and the
+  /// priors.
   [[nodiscard]] Trial anywhere(const StartState& rest) {
     prepare_creep();
     const std::vector<StartState> starts = grid(rest);
     const Eigen::VectorXd y = unexplained(rest);
     const double spread_mm2 = (y.array() - y.mean()).square().mean();
     Trial best = best_of(starts, {std::max(spread_mm2, smallest_mm2), independent_at_first});
-    // The residual determines the weight of the priors, and the priors influence the residual. Therefore the
-    // estimate is iterated.
+    // The weight of the priors depends on the residual, and the residual depends on the priors. Therefore the
+    // estimate is repeated.
     for (int pass = 0; pass < 2; ++pass) best = best_of(starts, best.left);
     double peak_step = (highest_kpa_ - first_kpa_) / grid_steps;
     double valley_step = (first_kpa_ - lowest_kpa_) / grid_steps;
@@ -175,7 +177,8 @@ class StartSearch {
       best = best_of(around(best.start, peak_step, valley_step), best.left);
     }
     if (!under_pressure_) return best;
-    // A single stroke may not determine the start state. Without this rule, the noise would select one.
+    // A single stroke may not determine the initial state. The noise would then select a state, so the usual
+    // state is preferred.
     const Trial usual = with_creep(turned(rest, highest_kpa_, lowest_kpa_), best.left);
     return usual.misfit < best.misfit + square(rejected_at) ? usual : best;
   }
@@ -232,7 +235,8 @@ class StartSearch {
     return (beginning_.drive_kpa[i] - first_kpa_) / (beginning_.time_s[i] - beginning_.time_s[0]);
   }
 
-  /// Returns true if neither the noise nor the assumed model error explains the residual for a start at rest.
+  /// Returns true if the residual for an initial state at rest is significant: neither the noise nor the
+  /// assumed model error explains it.
   [[nodiscard]] bool is_rejected(const Trial& resting, const Trial& moving) const {
     const Eigen::VectorXd still = unexplained(resting.start);
     double sum = 0, squares = 0;

@@ -38,8 +38,8 @@ namespace softgrip::sysid {
 /// Returns estimated_start() of each unit.
 [[nodiscard]] std::vector<StartState> estimated_starts(const model::Model& model,
                                                        const std::vector<Record>& units);
-/// Returns true for a start at rest: the pressure has no reversal before the first sample, and no creep is
-/// unsettled.
+/// Returns true if the state is at rest: the pressure has no reversal before the first sample, and the creep
+/// of all branches is settled.
 [[nodiscard]] bool is_at_rest(const StartState& start, const Record& unit);
 
 }  // namespace softgrip::sysid

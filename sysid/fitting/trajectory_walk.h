@@ -11,34 +11,35 @@
 
 namespace softgrip::sysid {
 
-/// Times [s] within which a valve or any creep has settled before the first sample.
+/// Times after which a valve has settled, and after which all creep has settled [s].
 inline constexpr double valve_settling_s = 10;
 inline constexpr double creep_settling_s = 1e6;
 
-/// Maximum time [s] before the first sample during which the pressure moved at its arrival speed.
+/// Largest duration of the pressure's motion at its arrival speed before the first sample [s].
 inline constexpr double longest_arrival_s = 2;
 
-/// Number of simulated cycles between peak and valley before the first sample, after which the hysteresis is
-/// in its steady cycle.
+/// Number of cycles between valley and peak that are simulated before the first sample. After them, the
+/// hysteresis is in its steady cycle.
 inline constexpr int cycles_before = 15;
 
-/// Returns the pressure [kPa] at which the movement to the first sample began. This pressure is not beyond
-/// the last reversal. Without an arrival speed, it is the first pressure.
+/// Returns the pressure [kPa] at which the motion to the first sample began. It is not beyond the last
+/// reversal. If there is no arrival speed, it is the first pressure.
 inline double arrived_from_kpa(double first_kpa, double last_turn_kpa, double arrival_kpa_per_s) {
   const double from_kpa = first_kpa - arrival_kpa_per_s * longest_arrival_s;
   return arrival_kpa_per_s > 0 ? std::clamp(from_kpa, std::min(last_turn_kpa, first_kpa), first_kpa)
                                : std::clamp(from_kpa, first_kpa, std::max(last_turn_kpa, first_kpa));
 }
 
-/// Brings a chain to the state at the start of a record, using the reversals in its StartState. The chain
-/// moves from rest at the peak to the valley and then to the first pressure. There it settles, or it arrives
-/// with the arrival speed. Without reversals, the chain is at rest at the first pressure.
+/// Brings a chain to the state at the start of a record, with the reversals in its StartState. The chain
+/// moves from rest at the peak to the valley, and from there to the first pressure. At the first pressure, it
+/// settles, or it arrives with the arrival speed. If there are no reversals, the chain is at rest at the
+/// first pressure.
 template <class T>
 void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kpa, const StartState& state) {
   const double first_kpa = record.drive_kpa.front();
   const double valley_kpa = state.valley_before_kpa;
   const bool turned = valley_kpa < first_kpa;
-  // In a cycle between a valley and the first pressure, the first pressure is the peak.
+  // If a cycle consists of a valley and the first pressure, the first pressure is the peak of this cycle.
   const bool peaked =
       turned ? model::value_of(peak_before_kpa) >= first_kpa : model::value_of(peak_before_kpa) > first_kpa;
   // Blocks that depend on the largest load so far include the load of the earlier records.
@@ -63,8 +64,8 @@ void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kp
   if (from_kpa != first_kpa) chain.step(T((first_kpa - from_kpa) / state.arrival_kpa_per_s), T(first_kpa));
 }
 
-/// Brings a chain to the state at the start of a record, without a valley and an arrival speed. The peak is
-/// only used if the start of the record is unknown.
+/// Brings a chain to the state at the start of a record whose StartState contains neither a valley nor an
+/// arrival speed. The peak is used only if the initial state of the record is unknown.
 template <class T>
 void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kpa) {
   start(chain, record, record.start_unknown ? peak_before_kpa : T(record.drive_kpa.front()), StartState{});
