@@ -1,6 +1,6 @@
 #pragma once
-// Computes the pressure in the finger: the drive of a record after the delay and the valve lag of a
-// structure.
+// Computes the pressure in the finger. This is the drive of a record after the delay and the lag (or
+// regulator) of a structure.
 
 #include <cstddef>
 #include <vector>
@@ -11,8 +11,8 @@
 
 namespace softgrip::sysid {
 
-/// Pressure in the finger for one record, as a sequence of segments. The result is exact if the drive is
-/// linear or constant between the samples.
+/// Pressure in the finger during one record, as a sequence of segments. It is exact if the drive is linear or
+/// constant between samples.
 struct DrivenPressure {
   double first_kpa = 0;                          ///< pressure at the first sample
   std::vector<model::Segment<double>> segments;  ///< segments with durations in s and pressures in kPa
@@ -24,9 +24,10 @@ struct DrivenPressure {
   }
 };
 
-/// Computes the pressure and stores it in `driven`. The memory of `driven` is reused, because a search calls
-/// this function thousands of times.
-/// @param numbers  parameters of the parts (delay, lag, regulator) that `structure` has; others are ignored.
+/// Computes the pressure and stores it in `driven`. The function reuses the memory of `driven`, because a
+/// search calls it thousands of times.
+/// @param numbers  nonlinear parameters. Only those of components that `structure` contains (delay, lag,
+/// regulator) are used.
 void drive(const Record& record, const BaseStructure& structure, const NonlinearNumbers& numbers,
            DrivenPressure& driven);
 

@@ -21,11 +21,11 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-/// A search counts as successful if its RMSE exceeds the smallest one by at most this share.
+/// A search counts as successful if its RMSE exceeds the smallest RMSE of all searches by at most this share.
 constexpr double reached_share = 1e-3;
 constexpr std::size_t fewest_readings = 100;
-/// Maximum averaging time [s] of readings for the choice of a structure. Longer averages would hide the lag
-/// of a valve.
+/// Longest time over which readings are averaged for the choice of a structure [s]. A mean over a longer time
+/// would hide the lag of a valve.
 constexpr double longest_mean_s = 0.02;
 
 StructureEvidence evidence_of(const StructureChoice& choice, const std::vector<WithoutIngredient>& ablation) {
@@ -98,7 +98,7 @@ void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Id
   StructureEvidence::Valve valve{
       stage.delay_s,      stage.filling_s,         stage.venting_s,          stage.rmse_kpa,
       stage.rmse_percent, stage.held_out_rmse_kpa, pressure_noise_kpa(logs), {}};
-  // Simulate the valve and the finger in series. Each log begins at its first measured pressure.
+  // Valve and finger are simulated in series. Each log begins at its first measured pressure.
   std::vector<Log> driven = logs;
   for (Log& log : driven) log.pressure_kpa = predicted_pressure_kpa(stage, log, options.record.held);
   RecordOptions measured = options.record;
@@ -107,7 +107,7 @@ void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Id
   for (std::size_t k = 0; k < records.size(); ++k) {
     valve.from_command.push_back(
         score_of(result.fitted, records[k], result.scores[k].start, logs[k].displacement_mm));
-    // The pressure of these records is computed from the command.
+    // In these records, the pressure is computed from the command.
     valve.from_command.back().drive = Drive::command;
   }
   result.model = with_valve(result.fitted, stage);

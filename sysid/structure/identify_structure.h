@@ -1,6 +1,6 @@
 #pragma once
-// Identifies a model including its structure. If the pressure was measured, valve and finger are identified
-// separately.
+// Identifies a model together with its structure. If the pressure was measured, the valve and the finger are
+// identified separately.
 
 #include <vector>
 

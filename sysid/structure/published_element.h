@@ -1,5 +1,6 @@
 #pragma once
-// Fits the published element (Bouc-Wen with two Kelvin-Voigt branches), preceded by a delay and a lag.
+// Fits the published element (Bouc-Wen with two Kelvin-Voigt branches). A delay and a lag come before the
+// element.
 
 #include <cstdint>
 #include <vector>
@@ -15,19 +16,19 @@ struct PublishedElement {
   std::vector<double> start_rmse_mm;
 };
 
-/// Fits the element from `starts` start points.
-/// @param drive  Drive::measured: the element has no delay and no lag.
+/// Fits the element with searches from `starts` start points.
+/// @param drive  Drive::measured: the element has neither a delay nor a lag.
 [[nodiscard]] PublishedElement fit_published(const std::vector<Record>& records, Drive drive,
                                              std::size_t starts, std::uint64_t seed);
-/// Fits the element to records with the same samples, starting from the point `from`.
+/// Fits the element to records with the same samples as before, starting at the point `from`.
 [[nodiscard]] FitPoint refit_published(const std::vector<Record>& records, const FitPoint& from);
 
 /// Returns true if the displacement increases with the pressure in every state. This is the case if beta
 /// times the maximum slope of the hysteretic state is less than alpha + 1/k0.
 [[nodiscard]] bool rises_everywhere(const model::Model& model);
 
-/// Returns the flat indices of the free parameters: all except the exponent and k0. k0 is fixed, because the
-/// data determine only the sum of alpha and 1/k0.
+/// Returns the indices of the fitted parameters in the list of all parameters. All parameters except the
+/// exponent and k0 are fitted. The data determine only the sum of alpha and 1/k0, so k0 is fixed.
 [[nodiscard]] std::vector<std::size_t> free_numbers(const model::Model& model);
 
 }  // namespace softgrip::sysid

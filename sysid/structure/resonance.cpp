@@ -22,10 +22,10 @@ namespace {
 
 constexpr int periods = 8;
 constexpr std::array damping_ratios{0.1, 0.5};
-/// Shortest period of the search, in sampling intervals. With a shorter period, the samples do not determine
-/// the amplitude of a sine.
+/// Shortest period of the search, in sampling intervals. The samples do not determine the amplitude of a sine
+/// with a shorter period.
 constexpr double shortest_in_intervals = 6;
-/// Longest period of the search, as a share of the longest record and in seconds.
+/// Limits of the longest period of the search: as a share of the longest record, and in seconds.
 constexpr double longest_share = 0.1;
 constexpr double longest_s = 10;
 
@@ -35,7 +35,7 @@ void put(FitPoint& point, double period_s, double damping_ratio) {
       model::block_of<model::Inertia>({{"period_s", period_s}, {"damping_ratio", damping_ratio}}));
 }
 
-/// Returns the flat indices of the parameters of resonance, delay and lags.
+/// Returns the indices of the parameters of resonance, delay and lags in the list of all parameters.
 std::vector<std::size_t> latencies(const model::Model& model) {
   constexpr std::array movable{
       model::block_type<model::TransportDelay>(),     model::block_type<model::ValveLag>(),

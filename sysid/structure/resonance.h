@@ -1,6 +1,6 @@
 #pragma once
-// Fits a second-order mode of mass and spring (model/blocks/inertia.h) that is added to an already fitted
-// structure.
+// Adds a second-order mode of mass and spring (model/blocks/inertia.h) to a fitted structure, and fits the
+// mode.
 
 #include <limits>
 #include <vector>
@@ -26,8 +26,8 @@ enum class ResonanceFit {
 [[nodiscard]] ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& records,
                                          ResonanceFit fit);
 
-/// Adds the resonance of `resonant` to `point` and fits it to other readings of the same records. The fit
-/// starts from the parameters of `resonant`.
+/// Adds the resonance of `resonant` to `point` and fits it to modified readings of the same records. The fit
+/// starts at the parameters of `resonant`.
 [[nodiscard]] FitPoint with_resonance_of(const FitPoint& resonant, FitPoint point,
                                          const std::vector<Record>& records, ResonanceFit fit);
 

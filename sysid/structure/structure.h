@@ -18,7 +18,7 @@ namespace softgrip::sysid {
 
 enum class HysteresisForm { bouc_wen, play };
 
-/// The components of a structure.
+/// The components that a structure has.
 struct BaseStructure {
   HysteresisForm hysteresis = HysteresisForm::play;
   bool hysteretic = true;      ///< true: hysteresis; false: only the elastic gain
@@ -44,14 +44,14 @@ struct BaseStructure {
   bool operator==(const BaseStructure&) const = default;
 };
 
-/// Returns "prandtl_ishlinskii" or "bouc_wen", which are the names in `softgrip identify --structure`.
+/// Returns the name of a form in `softgrip identify --structure`: "prandtl_ishlinskii" or "bouc_wen".
 [[nodiscard]] std::string_view name_of(HysteresisForm form);
 /// Returns a description such as "play operators, creep ladder, delay, lag (filling and venting),
 /// characteristic".
 [[nodiscard]] std::string description_of(const BaseStructure& structure);
 
-/// The parameters of the operators that a fit does not change: thresholds, time constants and hinges
-/// (threshold pressures).
+/// Parameters of the operators that a fit does not change. These are thresholds, time constants and threshold
+/// pressures of creep (hinges).
 struct StructureGrid {
   double largest_kpa = 0;              ///< largest magnitude of the drive
   double span_mm = 0;                  ///< largest magnitude of the readings

@@ -21,14 +21,15 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::array ridges{1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
-/// Index of the ridge parameter for which the search of the nonlinear parameters starts from all start
-/// points. For the other ridge parameters, the search starts from the result for this one.
+/// Index of the ridge parameter with which the nonlinear parameters are searched from all start points. With
+/// every other ridge parameter, the search starts at the result of this search.
 constexpr std::size_t first_ridge = 2;
-/// Maximum number of iterations in a fold. It is small, because the nonlinear parameters of a fold are close
-/// to those of the fit to all readings.
+/// Largest number of iterations in a fold. It is small, because the nonlinear parameters of a fold differ
+/// little from those of the fit to all readings.
 constexpr int fold_iterations = 5;
 
-/// yes: the chain of creep branches has an additional time constant between each pair of adjacent ones.
+/// Value `yes`: the chain of creep branches has an additional time constant between each two neighbouring
+/// time constants.
 enum class RungsBetween { no, yes };
 
 std::vector<double> with_rungs_between(const std::vector<double>& ladder_s) {
@@ -65,7 +66,7 @@ class Judge {
     return judge(fit(structure, ridge, &numbers), ridge, fold_iterations);
   }
 
-  /// Evaluates a structure with a regulator instead of the lag. The fit starts from the parameters of the
+  /// Evaluates a structure with a regulator in place of the lag. The fit starts at the parameters of the
   /// trial with the lag.
   [[nodiscard]] StructureTrial judge_regulated(BaseStructure structure, const StructureTrial& lagging) const {
     structure.regulator = true;
@@ -95,7 +96,7 @@ class Judge {
                                : judge(fit(structure, ridge), ridge, fold_iterations);
   }
 
-  /// Evaluates a fitted structure.
+  /// Evaluates a fitted structure on held-out blocks.
   /// @param iterations  maximum number of iterations in each fold, starting from the parameters of `whole`;
   /// 0: the nonlinear parameters stay fixed.
   [[nodiscard]] StructureTrial judge(const FittedStructure& whole, double ridge, int iterations) const {
@@ -153,7 +154,7 @@ class Judge {
   Division division_;
 };
 
-/// Returns the candidates, the simplest first.
+/// Returns the candidate structures. The simplest structure comes first.
 std::vector<BaseStructure> candidates(const StructureChoiceOptions& options) {
   const bool delay = options.drive == Drive::command;
   std::vector<BaseStructure> list;
@@ -179,8 +180,8 @@ std::vector<BaseStructure> candidates(const StructureChoiceOptions& options) {
   return list;
 }
 
-/// Returns the structure without the component. If the structure does not have the component, it is returned
-/// unchanged.
+/// Returns the structure after removal of a component. If the structure does not contain the component, it is
+/// returned unchanged.
 BaseStructure without(BaseStructure s, Ingredient ingredient) {
   switch (ingredient) {
     case Ingredient::hysteresis:
@@ -234,7 +235,8 @@ BaseStructure without(BaseStructure s, Ingredient ingredient) {
 }
 
 bool has(const BaseStructure& s, Ingredient ingredient) {
-  // If the structure has only one of delay and lag, its removal is already a separate entry of the ablation.
+  // If the structure contains only one of delay and lag, the removal of this component is evaluated
+  // separately.
   if (ingredient == Ingredient::latency) return s.delay && s.lag;
   return without(s, ingredient) != s;
 }
@@ -253,7 +255,8 @@ std::size_t best_of(const std::vector<StructureTrial>& trials) {
                                   trials.begin());
 }
 
-/// Returns the first trial from index `first` on whose loss is within one standard error of the lowest loss.
+/// Returns the index of the first trial whose loss is within one standard error of the lowest loss. The
+/// search begins at the index `first`.
 std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std::size_t first = 0) {
   const std::size_t best = best_of(trials);
   for (std::size_t i = first; i < best; ++i) {
@@ -264,7 +267,8 @@ std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std:
   return best;
 }
 
-/// Adds the trial and chooses it if its loss is significantly lower than that of the chosen one.
+/// Adds a trial to the choice and selects it if its loss is significantly lower than the loss of the selected
+/// trial.
 void offer(StructureTrial trial, StructureChoice& choice) {
   if (!may_be_chosen(trial) ||
       !is_clearly_less(trial.block_losses_mm2, choice.trials[choice.chosen].block_losses_mm2))
@@ -273,9 +277,10 @@ void offer(StructureTrial trial, StructureChoice& choice) {
   choice.trials.push_back(std::move(trial));
 }
 
-/// Offers the chosen structure with the extension that `judged` adds and evaluates. Pressure-dependent creep
-/// may have compensated for the missing extension, so the extended structure without this creep is offered as
-/// well.
+/// Evaluates the chosen structure with an extension and offers the result. Pressure-dependent creep may have
+/// compensated for the missing extension. Therefore the extended structure without this creep is evaluated
+/// too.
+/// @param judged  function that adds the extension to a structure and evaluates it.
 void offer_extended(const std::function<StructureTrial(const BaseStructure&, const StructureTrial&)>& judged,
                     unsigned threads, StructureChoice& choice) {
   const StructureTrial chosen = choice.trials[choice.chosen];
@@ -427,9 +432,9 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
   const Judge judge(records, options);
   const Judge among_more_rungs(records, options, RungsBetween::yes);
   parallel_for(ablation.size(), options.threads, [&](std::size_t i) {
-    // Use a chain with intermediate time constants if slow creep is removed. Creep of the finger with a time
-    // constant between two of the chain is represented by both of them, and the larger one may count as slow
-    // creep.
+    // If slow creep is removed, the chain of creep branches gets intermediate time constants. Creep of the
+    // finger whose time constant lies between two time constants of the chain is represented by both. The
+    // larger one of the two may count as slow creep.
     const Judge& fair = ablation[i].ingredient == Ingredient::slow_creep ? among_more_rungs : judge;
     BaseStructure still = ablation[i].trial.structure;
     const bool rings = std::exchange(still.resonance, false);
@@ -441,8 +446,8 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
 }
 
 FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records, Drive drive) {
-  // Start from the known parameters if there is a regulator, because the search for them is expensive and
-  // they do not depend on the finger.
+  // If there is a regulator, the fit starts at its known parameters. The search for these parameters takes
+  // long, and they do not depend on the finger.
   return fit_from(trial.structure.regulator ? &trial.numbers : nullptr, trial, records, drive);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// Chooses the model structure of a finger among fixed candidates by their error on held-out readings.
+// Chooses the model structure of a finger. The candidates are fixed, and their errors on held-out readings
+// decide.
 
 #include <array>
 #include <cstdint>
@@ -14,18 +15,18 @@
 
 namespace softgrip::sysid {
 
-/// The structure that the caller requests.
+/// Structure that the caller requests.
 enum class StructureQuestion { automatic, bouc_wen, prandtl_ishlinskii };
 
 struct StructureChoiceOptions {
-  /// The published element is rejected if another structure has a held-out error of less than this share of
-  /// the element's error, even if the difference is not significant; 0: never. If a cause is missing in all
-  /// structures, one block may dominate the standard error and make the difference insignificant.
+  /// The published element is rejected if another structure has a much smaller held-out error: less than this
+  /// share of the error of the element; 0: never. The difference need not be significant. If all structures
+  /// lack a cause, one block may dominate the standard error and make the difference insignificant.
   double published_yields_below = 0;
   StructureQuestion question = StructureQuestion::automatic;
   Drive drive = Drive::command;  ///< input; Drive::measured: the structures have no dead time
-  /// True: also try a second lag and a resonance. The diagnosis does not need them, because it treats them as
-  /// causes.
+  /// True: a second lag and a resonance are tried too. The diagnosis does not need these extensions, because
+  /// it treats them as causes.
   bool dynamics = false;
   std::size_t starts = 20;  ///< number of start points for the published element
   /// Time constant from which creep counts as slow creep [s]; 0: 10 % of the longest record.
@@ -35,7 +36,7 @@ struct StructureChoiceOptions {
   std::function<void(const std::string&)> progress;  ///< receives the progress; may be called from any thread
 };
 
-/// Components that are removed from a structure in order to measure their contribution.
+/// Components of a structure. Each is removed once to measure how much it reduces the error.
 enum class Ingredient {
   hysteresis,
   play_operators,  ///< replaced by the Bouc-Wen element
@@ -94,15 +95,15 @@ struct StructureChoice {
   std::size_t blocks = 0;
 };
 
-/// The chosen structure without one component, fitted and evaluated in the same way.
+/// The chosen structure after removal of one component, fitted and evaluated like the chosen structure.
 struct WithoutIngredient {
   Ingredient ingredient;
   StructureTrial trial;
 };
 
-/// Returns the records with the assumption that each of them starts at rest at its first pressure. Returns
-/// the records unchanged if unknown starts have a significantly lower held-out loss. A start that the caller
-/// specifies is not changed.
+/// Returns the records under the assumption that each of them begins at rest at its first pressure. If the
+/// held-out loss is significantly lower with unknown initial states, returns the records unchanged. An
+/// initial state that the caller specifies is not changed.
 [[nodiscard]] std::vector<Record> with_simplest_start(const std::vector<Record>& records,
                                                       const StructureChoiceOptions& options);
 
@@ -115,12 +116,12 @@ struct WithoutIngredient {
 [[nodiscard]] StructureChoice choose_structure(const std::vector<Record>& records,
                                                const StructureChoiceOptions& options);
 
-/// Fits a trial that was chosen with averaged records to the original records, starting from its parameters.
-/// The member `numbers` and the held-out losses keep the values of the choice.
+/// Fits a trial to the original records, starting at its parameters. The trial was chosen with averaged
+/// records. Its member `numbers` and its held-out losses keep the values of the choice.
 [[nodiscard]] StructureTrial fitted_to(StructureTrial trial, const std::vector<Record>& records, Drive drive);
 
-/// Fits and evaluates the chosen structure without each of the given components that it has. Returns an empty
-/// list for the published element.
+/// For each of the given components that the chosen structure contains, fits and evaluates the structure
+/// without this component. Returns an empty list for the published element.
 /// @param records, options  the same as for choose_structure().
 [[nodiscard]] std::vector<WithoutIngredient> ablation_of(
     const std::vector<Record>& records, const StructureChoice& choice, const StructureChoiceOptions& options,
@@ -131,8 +132,8 @@ struct WithoutIngredient {
 /// @param trial  trial without a resonance, that is, from a choice without `dynamics`.
 [[nodiscard]] FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records,
                                  Drive drive);
-/// Fits the structure like fit_again(), but starts only from the parameters of the trial. Use this function
-/// if the readings differ only slightly from those of the trial.
+/// Fits the structure like fit_again(), but the search starts only at the parameters of the trial. Use this
+/// function if the readings differ little from the readings of the trial.
 [[nodiscard]] FitPoint fit_nearby(const StructureTrial& trial, const std::vector<Record>& records,
                                   Drive drive);
 

@@ -15,8 +15,8 @@ namespace {
 using Segment = model::Segment<double>;
 using Weights = model::ExponentialWeights<double>;
 
-/// Returns true if the parameters of delay, lags and regulator are equal, so that the pressure in the finger
-/// is also equal.
+/// Returns true if the parameters of delay, lags and regulator in `a` equal those in `b`. The pressure in the
+/// finger is then equal too.
 bool drive_alike(const NonlinearNumbers& a, const NonlinearNumbers& b) {
   return a.delay_s == b.delay_s && a.filling_s == b.filling_s && a.venting_s == b.venting_s &&
          a.second_s == b.second_s && a.filling_s_per_kpa == b.filling_s_per_kpa &&
@@ -24,7 +24,7 @@ bool drive_alike(const NonlinearNumbers& a, const NonlinearNumbers& b) {
          a.overlap_kpa == b.overlap_kpa && a.integral_s == b.integral_s && a.full_open_kpa == b.full_open_kpa;
 }
 
-/// Creep branches with a common input signal, computed in pairs.
+/// Creep branches that have the same input signal. Two branches are computed at a time.
 class Ladder {
  public:
   Ladder(const std::vector<double>& time_constants_s, double at)
@@ -47,8 +47,8 @@ class Ladder {
   struct PairWeights {
     Pair loss{}, begin{}, rise{}, bend{};
   };
-  /// Weights for a recently used duration, which is the sampling time or one of the parts into which a delay
-  /// divides this time.
+  /// Weights for a duration that was used recently. Such a duration is the sampling time, or one of the
+  /// pieces into which a delay divides this time.
   struct Kept {
     double duration_s = 0;
     std::vector<PairWeights> pairs;
@@ -79,7 +79,8 @@ class Ladder {
   std::size_t next_ = 0;
 };
 
-/// Returns the part of a segment above a threshold pressure (hinge), relative to the threshold.
+/// Returns the part of a segment that lies above a threshold pressure (hinge). Its pressures are relative to
+/// the threshold.
 Segment above(const Segment& in, double hinge_kpa) {
   const double begin = in.begin - hinge_kpa, end = in.end - hinge_kpa;
   if (begin >= 0 && end >= 0) return {in.duration_s, begin, end, in.mean - hinge_kpa};
@@ -88,7 +89,7 @@ Segment above(const Segment& in, double hinge_kpa) {
   return {in.duration_s, std::max(begin, 0.0), std::max(end, 0.0), high * high / (2 * std::abs(end - begin))};
 }
 
-/// State of the hysteresis: the Bouc-Wen element or the play operators.
+/// State of the hysteresis, either of the Bouc-Wen element or of the play operators.
 class PressureMemory {
  public:
   PressureMemory(const BaseStructure& structure, const StructureGrid& grid, const NonlinearNumbers& numbers,
@@ -214,7 +215,7 @@ const Eigen::MatrixXd& StructureColumns::at(const NonlinearNumbers& numbers) {
   return columns_;
 }
 
-/// Writes the columns that depend only on the pressure in the finger: elastic gain and creep.
+/// Writes the columns of elastic gain and creep, which depend only on the pressure in the finger.
 void StructureColumns::write_driven(std::size_t r) {
   const DrivenPressure& driven = driven_[r];
   Ladder ladder(grid_.ladder_s, driven.first_kpa);

@@ -21,8 +21,8 @@ class ColumnLayout {
   ColumnLayout(const BaseStructure& structure, const StructureGrid& grid, const std::vector<Record>& records);
 
   [[nodiscard]] static constexpr Eigen::Index elastic() { return 0; }
-  /// Returns the column of play operator i, or the column of the Bouc-Wen element, which is steepest_state()
-  /// times the pressure minus the state of the element divided by beta.
+  /// Returns the column of play operator i or of the Bouc-Wen element. The column of the Bouc-Wen element is
+  /// steepest_state() times the pressure, minus the state of the element divided by beta.
   [[nodiscard]] static constexpr Eigen::Index hysteresis(std::size_t i) {
     return 1 + static_cast<Eigen::Index>(i);
   }
@@ -62,7 +62,7 @@ class ColumnLayout {
 /// least beta times this slope.
 [[nodiscard]] double steepest_state(const NonlinearNumbers& numbers);
 
-/// Record and sample of a row. Each sample with a reading is a row.
+/// Position of a row of the matrix: its record and its sample. Each sample with a reading is a row.
 struct RowPlace {
   std::size_t record = 0;
   std::size_t sample = 0;

@@ -17,20 +17,20 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Penalty for a parameter that differs from its prior value by one prior width, added to the logarithm of
-/// the mean square.
+/// Penalty for a parameter whose distance from its prior value is one prior width. It is added to the
+/// logarithm of the mean square.
 constexpr double prior = 0.05;
 /// Smallest instantaneous elastic gain, as a share of the gain of the finger over the whole pressure range.
 constexpr double least_elastic_share = 0.01;
 /// Largest dead band of a regulator, as a share of the largest pressure. Data sheets state 0.005 to 0.02.
 constexpr double widest_of_a_regulator = 0.03;
-/// Prior width of the bend of an envelope. With twice this width, envelopes would fit the saturation of a
-/// sensor and thereby hide it (textbook campaign).
+/// Prior width of the bend of an envelope. If this width were twice as large, envelopes would fit the
+/// saturation of a sensor and thereby hide it (textbook test cases).
 constexpr double usual_bend = 0.05;
 /// Ratio of consecutive time constants of the creep branches.
 constexpr double ladder_ratio = 3;
 
-/// A nonlinear parameter in the coordinate t of the search, which is of the order of one.
+/// A nonlinear parameter and its coordinate t in the search. The coordinate has a magnitude of about 1.
 struct Coordinate {
   std::function<double(const NonlinearNumbers&)> get;
   std::function<void(NonlinearNumbers&, double)> set;
@@ -108,8 +108,8 @@ class Search {
     const auto n = static_cast<Eigen::Index>(coordinates_.size());
     Eigen::MatrixXd jacobian(state.residual.size(), n);
     NormalEquations normal;
-    // Vary the other coordinates first, because they do not change the pressure in the finger that was
-    // computed last.
+    // The coordinates that do not affect the pressure in the finger are changed first, because the pressure
+    // that was computed last then remains valid.
     for (const bool drives : {false, true}) {
       for (Eigen::Index k = 0; k < n; ++k) {
         const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
@@ -138,7 +138,7 @@ class Search {
     for (Eigen::Index k = 0; k < n; ++k) {
       const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
       const double t = c.get(state.numbers);
-      // A bound that was converted to a logarithm and back is not exact.
+      // A bound that is converted to a logarithm and back has a rounding error.
       bounds.lower(k) = t <= c.lower + 1e-9 ? 0 : c.lower - t;
       bounds.upper(k) = t >= c.upper - 1e-9 ? 0 : c.upper - t;
     }
@@ -185,7 +185,8 @@ class Search {
                                 1e3 / grid_.largest_kpa));
     }
     if (structure_.lag && structure_.regulator) {
-      // A regulator has no wider band. With a wider one, the search would fit a backlash.
+      // A regulator has no wider dead band than this. Otherwise the search would fit a backlash by a dead
+      // band.
       const double widest_kpa = widest_of_a_regulator * grid_.largest_kpa;
       add_driving(straight(&N::pilot_band_kpa, 1, 0, 0, widest_kpa));
       add_driving(straight(&N::overlap_kpa, 1, 0, 0, widest_kpa));
@@ -237,7 +238,7 @@ std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, con
                             .trained_kpa = trained * grid.largest_kpa,
                             .peak_before_kpa = peaks};
   };
-  // These are a fast valve, a valve with a dead time instead of a lag, and a slow valve.
+  // The three start points are a fast valve, a valve with a dead time in place of a lag, and a slow valve.
   return {start(0.02, 0.15, 0.15, 2, 0), start(0.15, 0.05, 0.05, 6, 1.2), start(0.1, 0.5, 1.5, 3, 0.5)};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Fits a structure to records by variable projection. The search varies the few nonlinear parameters, and all
-// weights follow from them.
+// Fits a structure to records by variable projection: the search changes only the nonlinear parameters, and
+// for each trial the optimal weights are computed.
 
 #include <vector>
 
@@ -31,12 +31,12 @@ struct FittedStructure {
   std::vector<double> start_rmse_mm;  ///< RMSE at the end of the search from each start point
 };
 
-/// Returns the fixed thresholds, time constants and hinges for these records. If the records contain few
-/// cycles, fewer play operators are used.
+/// Returns the thresholds, time constants and hinges for these records. If the records contain few cycles,
+/// there are fewer play operators.
 [[nodiscard]] StructureGrid grid_for(const std::vector<Record>& records);
 
-/// Returns start parameters for the search of a regulator, in which those of the lag are replaced. Its
-/// overlap, and its error with a fully open port, are proportional to the largest pressure.
+/// Returns start parameters for the search of a regulator. They replace the parameters of the lag. The
+/// overlap of the regulator, and its error with a fully open port, are proportional to the largest pressure.
 [[nodiscard]] NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureGrid& grid);
 
 /// Fits a structure from several default start points, or from the parameters `near` if they are given. A
@@ -45,8 +45,8 @@ struct FittedStructure {
                                        const StructureGrid& grid, const StructureFitOptions& options,
                                        const NonlinearNumbers* near = nullptr);
 
-/// Removes the drift of the zero from the readings: fits the structure with a drift of the zero of each
-/// record, and subtracts the fitted drift.
+/// Removes the drift of the zero from the readings. For this, the structure is fitted together with a drift
+/// of each record, and the fitted drift is subtracted.
 [[nodiscard]] std::vector<Record> without_wandering(std::vector<Record> records, BaseStructure structure,
                                                     const StructureFitOptions& options);
 

@@ -21,12 +21,13 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Stiffness of a practically rigid spring. With it, the instantaneous gain is alpha or that of the elastic
-/// play operator.
+/// Stiffness k0 of a spring that is practically rigid. The instantaneous gain is then alpha or the gain of
+/// the elastic play operator.
 constexpr double rigid_kpa_per_mm = 1e9;
 /// Compliance of a branch that is included only for its time constant [mm/kPa].
 constexpr double next_to_no_creep = 1e-7;
-/// Damping of such a branch, which is limited by the upper bound of the block.
+/// Damping of a branch that is included only for its time constant. The upper bound of the block limits this
+/// damping.
 constexpr double largest_dashpot_kpa_s_per_mm = 1e8;
 
 class Builder {

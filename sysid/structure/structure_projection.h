@@ -9,7 +9,7 @@
 
 namespace softgrip::sysid {
 
-/// The data, bounds and regularisation of the least-squares problem.
+/// Data, bounds and regularisation of a least-squares problem for the weights.
 struct ProjectionProblem {
   const Eigen::MatrixXd& columns;
   const ColumnLayout& layout;

@@ -30,7 +30,7 @@ double first_finite(const std::vector<double>& values) {
   return found == values.end() ? 0 : *found;
 }
 
-/// Ranges of the pressure and the supply in the logs.
+/// Ranges of the pressure and of the supply pressure in the logs.
 struct Scene {
   double lowest_kpa = std::numeric_limits<double>::infinity();
   double highest_kpa = -lowest_kpa;
@@ -98,7 +98,7 @@ class Coordinates {
 };
 
 /// Returns the predicted pressure of a log [kPa].
-/// @param sample_time_s  sampling time of the log; 0: irregular.
+/// @param sample_time_s  sampling time of the log; 0: the sampling is irregular.
 std::vector<double> predicted(const ValveStage& stage, const Log& log, bool held, double sample_time_s) {
   const std::vector<double>& u = log.pressure_command_kpa;
   model::TransportDelay<double> delay(std::array{stage.delay_s}, {.sample_time_s = sample_time_s});
@@ -107,7 +107,7 @@ std::vector<double> predicted(const ValveStage& stage, const Log& log, bool held
       second(stage.second_s, stage.second_s, 0);
   delay.reset(u.front());
   const double first_kpa = first_finite(log.pressure_kpa);
-  // The state of the dead band follows from the first measured pressure.
+  // The state of the dead band is computed from the first measured pressure.
   dead_band.reset(first_kpa + stage.band_kpa / 2);
   dead_band.settle(u.front());
   lag.reset(first_kpa);
@@ -175,7 +175,8 @@ class Errors {
     }
   }
 
-  /// Returns the RMSE of the fitted samples or, if `fitted` is false, of all others [kPa].
+  /// Returns the RMSE of the fitted samples [kPa]. If `fitted` is false, returns the RMSE of all other
+  /// samples.
   [[nodiscard]] double rmse_kpa(const ValveStage& stage, bool fitted) const {
     double sum = 0;
     std::size_t used = 0;
@@ -204,8 +205,8 @@ class Errors {
     return !fit_.is_fitted || fit_.is_fitted(log, sample);
   }
 
-  /// Fits gain and zero of the sensor, or only the zero, by linear regression of the measurement on the
-  /// prediction.
+  /// Fits gain and zero of the pressure sensor, or only its zero, by linear regression of the measured on the
+  /// predicted pressure.
   void read_gauge(const std::vector<std::vector<double>>& predicted, ValveStage& stage) const {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
     for (std::size_t k = 0; k < logs_.size(); ++k) {

@@ -13,7 +13,7 @@
 
 namespace softgrip::sysid {
 
-/// Possible parts of the valve model, in the order in which the signal passes them.
+/// Parts that a valve model may have, in the order of the signal path.
 enum class ValvePart : std::uint8_t {
   delay,
   dead_band,
@@ -57,14 +57,15 @@ struct ValveStage {
   double held_out_rmse_kpa = 0;  ///< RMSE of the samples that were not fitted; 0 if all samples were fitted
   bool converged = false;
 
-  /// Returns true if the RMSE exceeds 5 % of the range, so that the stage does not describe the valve.
+  /// Returns true if the RMSE exceeds 5 % of the range of the measured pressure. The model then does not
+  /// describe the valve.
   [[nodiscard]] bool is_far_off() const { return rmse_percent > 5; }
 };
 
-/// The parameters of the pressure sensor that are fitted.
+/// Parameters of the pressure sensor that a fit estimates.
 enum class PressureSensorFit : std::uint8_t { nothing, zero, gain_and_zero };
 
-/// Parts, samples and start points of a fit.
+/// Input of a fit of a valve model: its parts, the samples and the start points.
 struct ValveFit {
   ValveParts parts = usual_valve_parts();
   PressureSensorFit sensor = PressureSensorFit::nothing;
@@ -75,20 +76,21 @@ struct ValveFit {
   double tolerance = 1e-12;           ///< relative change of the cost at which the search ends
 };
 
-/// Fits a valve stage. Each log needs a pressure_kpa column, and a supply_kpa column if the parts include
-/// supply_sag. The simulation of a log starts at its first measured pressure, regardless of the command.
+/// Fits a valve model. Each log needs a pressure_kpa column. If the parts include supply_sag, each log also
+/// needs a supply_kpa column. The simulation of a log starts at its first measured pressure, regardless of
+/// the first command.
 [[nodiscard]] ValveStage fit_valve_stage(const std::vector<Log>& logs, const ValveFit& fit);
-/// Fits the parts of usual_valve_parts() to the given first share of each log.
+/// Fits the parts of usual_valve_parts() to a share of each log that begins at its first sample.
 [[nodiscard]] ValveStage fit_valve_stage(const std::vector<Log>& logs, double share, bool held);
 
-/// Returns the noise of the measured pressure between consecutive samples [kPa]. The largest value over the
-/// logs is used.
+/// Returns the noise of the measured pressure between consecutive samples [kPa]. The result is the largest
+/// noise of all logs.
 [[nodiscard]] double pressure_noise_kpa(const std::vector<Log>& logs);
 
 /// Returns the prediction of the measured pressure for a log [kPa].
 [[nodiscard]] std::vector<double> predicted_pressure_kpa(const ValveStage& stage, const Log& log, bool held);
 
-/// Returns the model of the actuator, preceded by the blocks of the valve stage.
+/// Returns a model with the blocks of the valve followed by the blocks of the actuator.
 [[nodiscard]] model::Model with_valve(model::Model actuator, const ValveStage& stage);
 
 }  // namespace softgrip::sysid
