@@ -37,8 +37,8 @@ struct Base {
   Judged judged = Judged::displacement;
   Drive drive = Drive::command;
   std::string description;  ///< description of the selected model
-  model::Model model;       ///< model of the finger; without blocks, the base consists of the regulator or
-                            ///< the filter bank only
+  /// Model of the finger; if it has no blocks, the baseline consists of a regulator or a filter bank only.
+  model::Model model;
   FilterKind kind = FilterKind::finger;
   std::optional<Regulator> regulator;  ///< regulator between the command and the model; empty: none
   double largest_kpa = 0;
@@ -47,20 +47,20 @@ struct Base {
   double gain_per_c = 0;      ///< temperature coefficient of the gain in the healthy logs
   double noise_mm = 0;        ///< noise of the readings between consecutive samples
   Units units;                ///< division of the healthy records into units
-  double left_mm = 0;         ///< RMS residual of left-out units about the mean of each unit
+  double left_mm = 0;         ///< RMS residual of left-out units after subtraction of the mean of each unit
   double span_mm = 0;
   double gain_spread = 0;  ///< relative spread of the gain between units of the healthy logs
-  double zero_mm = 0;      ///< mean of the healthy readings minus the predictions
+  double zero_mm = 0;      ///< mean difference between the healthy readings and the predictions
   double zero_spread_mm = 0;
   double bin_s = 0.05;
   Whitener whitener;
   std::vector<Record> records;  ///< thinned healthy records
-  Binned left;                  ///< residual of each unit under a fit without this unit
+  Binned left;                  ///< residual of each unit, predicted by a fit to the other units
 };
 
 struct BaseOptions {
-  std::optional<model::Model> given;  ///< the model in use, which is one of the candidates for the baseline
-                                      ///< model; empty: none
+  /// Model that the user has; it is one of the candidates for the baseline model; not set: none.
+  std::optional<model::Model> given;
   std::uint64_t seed = 1;
   unsigned threads = 0;
   std::function<void(const std::string&)> progress;
@@ -86,7 +86,7 @@ struct Driven {
   Record record;       ///< record whose drive is the input of the finger at each sample
   Record walked;       ///< record with which `model` is simulated: equal to `record`, or with the command as
                        ///< drive
-  model::Model model;  ///< model of the base, including the valve blocks if they can be added
+  model::Model model;  ///< model of the baseline, including the valve blocks if they can be added to it
   Eigen::VectorXd filters;    ///< contribution of the filter bank at each sample
   StartState start;           ///< initial state of the model, without an offset
   std::vector<double> plain;  ///< prediction of the model alone at each sample

@@ -11,8 +11,8 @@
 namespace softgrip::sysid {
 
 struct Baseline {
-  std::vector<std::string> logs;    ///< paths inside the folder, in order
-  std::vector<std::string> second;  ///< logs of the second run; empty: there was none
+  std::vector<std::string> logs;    ///< paths of the healthy logs, relative to the folder, in their order
+  std::vector<std::string> second;  ///< paths of the logs of the second run; empty: there was no second run
   std::string model;                ///< path of model.yaml
   std::string gauge;                ///< path of gauge.csv; empty: the sensor was not checked
 };

@@ -32,11 +32,11 @@ using Binned = std::vector<std::vector<double>>;
 /// Whitens a residual: computes the error of its prediction by an autoregression and divides it by the
 /// standard deviation for the current input rate.
 struct Whitener {
-  std::vector<double> before;               ///< weights of the previous bins, the nearest first
+  std::vector<double> before;               ///< weights of the previous bins; the nearest bin comes first
   std::vector<double> peak_rate_kpa_per_s;  ///< limits between the classes of peak_rate_of(), in increasing
                                             ///< order
-  std::vector<double> spread;               ///< standard deviation for each class; one element more than the
-                                            ///< limits
+  /// Standard deviation for each class; it has one element more than the list of limits.
+  std::vector<double> spread;
 
   [[nodiscard]] std::size_t class_of(double peak_rate) const;
   [[nodiscard]] double spread_at(double peak_rate) const {

@@ -31,9 +31,9 @@ struct ChangeOptions {
 
 /// Size of a change, stated as a quantity that a technician can check.
 struct ChangeSize {
-  std::string what;  ///< "dead time", "gain"
+  std::string what;  ///< name of the quantity: "dead time", "gain"
   double value = 0;
-  std::string unit;  ///< "s", "mm" (of any output unit), "kPa", "%"
+  std::string unit;  ///< unit of the quantity: "s", "mm" (of any output unit), "kPa" or "%"
 };
 
 struct ChangeCause {
@@ -45,11 +45,11 @@ struct ChangeCause {
   FittedEffect fitted;
   ChangeSize size;
   EffectIntervals intervals;
-  double full_pressure_mm = 0;  ///< change of the displacement at full pressure
-  double effect_mm = 0;         ///< root mean square effect in the later logs
-  double share_percent = 0;     ///< share of the whitened error beyond that of the healthy logs that the
-                                ///< cause explains
-  double gain = 0;              ///< reduction of the whitened mean square, whose healthy value is 1
+  double full_pressure_mm = 0;  ///< change of the displacement at full pressure due to the cause
+  double effect_mm = 0;         ///< root mean square of the effect of the cause on the later readings
+  /// Share of the whitened error above that of the healthy logs that the cause explains.
+  double share_percent = 0;
+  double gain = 0;  ///< reduction of the whitened mean square, whose healthy value is 1
   double gain_lower = 0, gain_upper = 0;
   std::vector<std::string> alternatives;  ///< ids of causes that explain the data equally well
 };
@@ -58,9 +58,10 @@ struct ChangeCause {
 struct TriedCause {
   std::string id, form;
   double gain = 0;          ///< reduction of the whitened mean square
-  double healthy_gain = 0;  ///< mean reduction in healthy units that were left out of the fit
+  double healthy_gain = 0;  ///< mean reduction in healthy units, each of which was left out of the fit
   double tolerance = 0;     ///< smallest reduction that counts as a change
-  std::string rejected;     ///< reason of the rejection; empty: not known
+  /// Reason of the rejection; empty: the cause was not rejected or the reason is not known.
+  std::string rejected;
 };
 
 /// RMS error of the baseline model in a run after subtraction of its mean, without the causes (`base`) and
@@ -78,27 +79,27 @@ struct JudgedChange {
   std::string base;     ///< description of the baseline model
   double noise_mm = 0;  ///< noise between consecutive samples; in kPa for the pressure
   std::size_t healthy_runs = 0;
-  double healthy_mm = 0;    ///< RMS error of the baseline model in left-out healthy units
-  double allowed_mm = 0;    ///< largest RMS error to be expected in a further healthy run
-  double later_mm = 0;      ///< RMS error of the baseline model in the later logs, apart from differences of
-                            ///< zero and gain
-  double explained_mm = 0;  ///< the same error if the causes are included
-  double loss_before = 1, loss_left = 1;  ///< whitened mean squares without and with the causes; 1: as in the
-                                          ///< healthy logs
-  double zero_mm = 0;                     ///< change of the zero
-  double gain_percent = 0;                ///< change of the gain that is within the spread of the healthy
-                                          ///< logs
+  double healthy_mm = 0;  ///< RMS error of the baseline model in left-out healthy units
+  double allowed_mm = 0;  ///< largest RMS error that is expected in another healthy run
+  /// RMS error of the baseline model in the later logs, after a fit of zero and gain.
+  double later_mm = 0;
+  double explained_mm = 0;  ///< value of `later_mm` if the model includes the causes
+  /// Mean squares of the whitened residual without and with the causes; 1 in the healthy logs.
+  double loss_before = 1, loss_left = 1;
+  double zero_mm = 0;  ///< change of the zero since the healthy logs
+  /// Change of the gain that is within the spread of the healthy logs.
+  double gain_percent = 0;
   bool left_over = false;
   std::vector<TriedCause> tried;
-  std::vector<EffectIntervals> intervals;  ///< intervals of the causes, in the order in which these were
-                                           ///< found
-  std::map<std::string, std::string> not_tested;  ///< causes by id, each with the recording that would test
-                                                  ///< it
+  /// Intervals of the causes, in the order in which the causes were found.
+  std::vector<EffectIntervals> intervals;
+  /// Causes that were not tested, by id, each with a recording that would test it.
+  std::map<std::string, std::string> not_tested;
   double bin_s = 0.05;
-  std::vector<RunLeft> runs;      ///< all runs, the healthy ones first
+  std::vector<RunLeft> runs;      ///< all runs; the healthy runs come first
   std::vector<std::string> logs;  ///< names of the later logs
-  Binned left, explained;         ///< residuals in the later logs: without the causes (left) and with them
-                                  ///< (explained)
+  /// Residuals in the later logs: `left` without the causes, `explained` with them.
+  Binned left, explained;
 };
 
 struct ChangeDiagnosis {

@@ -60,8 +60,8 @@ Eigen::MatrixXd spread_of_gradient(const LaterReadings& readings, const Eigen::M
         slopes.row(i).transpose() * (row < blocks.size() ? white(i) : 1);
   }
   const auto n = static_cast<double>(count), numbers = static_cast<double>(slopes.cols());
-  const double few = n > numbers ? n / (n - numbers) : 1;  // correction for the degrees of freedom: blocks
-                                                           // minus parameters
+  // Corrects for the degrees of freedom: number of blocks minus number of parameters.
+  const double few = n > numbers ? n / (n - numbers) : 1;
   return few * gradients * gradients.transpose();
 }
 

@@ -13,7 +13,7 @@ namespace softgrip::sysid {
 /// 95 % intervals of one effect. An interval is missing if the parameter has no effect on the readings.
 struct EffectIntervals {
   std::vector<std::optional<Interval>> numbers;  ///< intervals of the parameters, limited to their bounds
-  std::optional<Interval> size;                  ///< interval of the size; see size_of()
+  std::optional<Interval> size;                  ///< interval of the size that size_of() computes
 };
 
 /// A healthy unit that was left out of the fit, and the effects that the search finds in this unit. The

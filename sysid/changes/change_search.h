@@ -15,9 +15,10 @@ namespace softgrip::sysid {
 
 struct ScoredEffect {
   EffectFit fit;
-  double gain = 0;       ///< reduction of the whitened sum of squares minus the penalty, per row
-  double usual = 0;      ///< mean of `gain` for the cause in healthy units that were left out of the fit
-  double tolerance = 0;  ///< smallest gain that counts as a change
+  /// Reduction of the whitened sum of squares minus the penalty for parameters, per row.
+  double gain = 0;
+  double usual = 0;      ///< mean of `gain` for this cause in healthy units that were left out of the fit
+  double tolerance = 0;  ///< smallest value of `gain` that counts as a change
 };
 
 /// Returns the penalty for the parameters of an effect, in whitened squares.

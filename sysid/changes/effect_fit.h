@@ -49,7 +49,7 @@ class LaterReadings {
   /// Returns the root mean square of the residual with these effects, without whitening. One zero per record
   /// and one common gain are fitted before.
   [[nodiscard]] double plain_rms(const std::vector<FittedEffect>& effects) const;
-  /// Zero and gain that are fitted in addition to the effects: common zero [mm], relative gain.
+  /// Common zero [mm] and relative gain that are fitted in addition to the effects.
   struct Nuisance {
     double zero_mm = 0, gain = 0;
   };
@@ -80,9 +80,9 @@ class LaterReadings {
   /// Columns of the zeros and of the transients after unknown starts, and the matrix that computes their
   /// sizes.
   Eigen::MatrixXd nuisance_, solver_;
-  Eigen::VectorXd price_;                 ///< square root of the penalty of each column
-  Eigen::VectorXd motion_, motion_left_;  ///< motion of the baseline model: complete, and after the fit of
-                                          ///< the zeros
+  Eigen::VectorXd price_;  ///< square root of the penalty for each column
+  /// Motion of the baseline model: complete, and after subtraction of the fitted zeros.
+  Eigen::VectorXd motion_, motion_left_;
 };
 
 /// Returns the healthy records with the residual of each unit under a fit without this unit.

@@ -29,8 +29,8 @@ struct Effect {
   bool free_form = false;
   std::vector<EffectNumber> numbers;
   std::vector<std::vector<double>> starts;
-  std::vector<double> nothing;  ///< neutral value of each parameter; NaN: there is none, because the
-                                ///< parameter is irrelevant if the effect is neutral
+  /// Neutral value of each parameter; NaN: if the effect is neutral, the parameter has no influence.
+  std::vector<double> nothing;
   /// Adds the effect with these parameter values to an extension.
   std::function<void(Extension&, const std::vector<double>&)> apply;
   /// Id of a cause that gives equal readings for every command; empty: no such cause.

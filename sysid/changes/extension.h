@@ -30,7 +30,7 @@ struct SlowLine {
 /// Soc. A 455, 1999). If the range is 0, tanh() is replaced by 1, and the factor is equal at all pressures.
 struct Softening {
   double share = 0;
-  double range_kpa = 10;  ///< 0: the factor does not depend on the pressure
+  double range_kpa = 10;  ///< range [kPa]; 0: the factor does not depend on the pressure
 };
 
 /// A loop between the loading curve (p/largest)^exponent and the unloading curve p/largest. The difference
@@ -43,8 +43,8 @@ struct Crescent {
 
 /// Faults of a regulator: ports that leak although they are closed, and a tube with a reduced conductance.
 struct RegulatorFault {
-  double leak_per_s = 0;  ///< defined like Regulator::leak_per_s
-  double blocked = 0;     ///< lost share of the conductance of the tube, less than 1
+  double leak_per_s = 0;  ///< conductance of the leak, defined like Regulator::leak_per_s
+  double blocked = 0;     ///< share of the conductance of the tube that is lost, below 1
   [[nodiscard]] bool operator==(const RegulatorFault&) const = default;
 };
 

@@ -13,9 +13,9 @@
 namespace softgrip::sysid {
 
 enum class FilterKind {
-  valve,             ///< command to pressure: terms for nonlinearity, direction, saturation and supply
-  finger,            ///< pressure to displacement: terms for nonlinearity and plays
-  valve_and_finger,  ///< command to displacement: the terms of `valve` and `finger`
+  valve,             ///< from command to pressure: terms for nonlinearity, direction, saturation and supply
+  finger,            ///< from pressure to displacement: terms for nonlinearity and plays
+  valve_and_finger,  ///< from command to displacement: the terms of `valve` and of `finger`
 };
 
 /// Time constants of the filters for a finger [s]. The last four exceed the duration of most motions. They

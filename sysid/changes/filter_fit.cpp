@@ -57,9 +57,10 @@ class FilterBank {
 
   /// Residuals of a model, and the weights and errors of the filter bank that is fitted to them.
   struct Target {
-    std::vector<Eigen::VectorXd> values;   ///< residuals after the fit without each unit, and after the fit
-                                           ///< to all units
-    std::vector<Eigen::VectorXd> moments;  ///< columns times values, summed over the rows of the fit
+    /// Residuals after fits that leave out one unit each, and after the fit to all units.
+    std::vector<Eigen::VectorXd> values;
+    /// Products of columns and values, summed over the rows of the fit.
+    std::vector<Eigen::VectorXd> moments;
     Eigen::VectorXd plain_left, left, weights;
     double left_mm = std::numeric_limits<double>::infinity();
   };

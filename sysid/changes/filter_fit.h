@@ -18,10 +18,10 @@ namespace softgrip::sysid {
 /// Weights of a filter bank. The ridge parameter of the fit is the one with the smallest error in left-out
 /// units.
 struct FittedFilters {
-  Eigen::VectorXd weights;  ///< one weight per column of filter_columns(); empty if the filter bank does not
-                            ///< improve the prediction
-  Binned left;              ///< residual of each unit under a fit without this unit; NaN: no reading
-  double left_mm = 0;       ///< root mean square of `left` about the mean of each unit
+  /// One weight per column of filter_columns(); empty if the filter bank does not improve the prediction.
+  Eigen::VectorXd weights;
+  Binned left;         ///< residual of each unit, predicted by a fit to the other units; NaN: no reading
+  double left_mm = 0;  ///< root mean square of `left` after subtraction of the mean of each unit
 };
 
 /// Returns the sums of squares of two residuals in blocks of some seconds. Before, the mean of each unit is

@@ -12,7 +12,8 @@ constexpr double atmosphere_kpa = 101.325;
 /// dynamics of a regulator.
 constexpr double longest_step_s = 0.002;
 constexpr int most_steps = 50;
-constexpr double supply_unknown = 4;  ///< assumed supply, as a multiple of the largest command
+/// Supply pressure that is assumed if it is not recorded, as a multiple of the largest command.
+constexpr double supply_unknown = 4;
 /// Returns the flow between two absolute pressures, divided by the conductance [kPa], by ISO 6358-1 with a
 /// critical pressure ratio of 0.3.
 double flow(double from_kpa, double to_kpa) {

@@ -15,8 +15,8 @@ namespace softgrip::sysid {
 struct Regulator {
   double play_kpa = 0.15;     ///< half the width of the range to which the controller does not respond
   double dead_kpa = 0.5;      ///< pressure error at which a port opens
-  double full_kpa = 10;       ///< additional pressure error at which the port is fully open
-  double integral_per_s = 2;  ///< gain of the integral of the error
+  double full_kpa = 10;       ///< pressure error, in addition to dead_kpa, at which the port is fully open
+  double integral_per_s = 2;  ///< gain of the controller for the integral of the error
   double port_per_s = 5;      ///< conductance of a fully open port: pressure rise at choked flow in 1 s, as a
                               ///< share of the upstream pressure
   double tube_per_s = 10;     ///< conductance of the tube, defined like port_per_s

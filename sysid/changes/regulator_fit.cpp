@@ -109,7 +109,7 @@ class BinnedReadings {
 class RegulatorSearch {
  public:
   struct Point {
-    Eigen::VectorXd t, left;  ///< coordinates, and the residuals followed by the penalties
+    Eigen::VectorXd t, left;  ///< coordinates of the search; residuals, followed by the penalties
   };
 
   RegulatorSearch(const BinnedReadings& bank, double largest_kpa)
