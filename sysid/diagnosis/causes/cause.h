@@ -19,7 +19,7 @@ namespace softgrip::sysid {
 
 /// One form of a cause: a block that extends a model by the effect of the cause.
 struct CauseForm {
-  std::size_t type = 0;  ///< index in model::catalogue()
+  std::size_t type = 0;  ///< index of the block type in model::catalogue()
   /// True: the form has enough parameters to follow any slow signal. Its start point has all parameters at
   /// zero, so a scan of start points does not show how well the form fits.
   bool free_form = false;

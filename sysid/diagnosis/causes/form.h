@@ -82,8 +82,8 @@ struct SizedBy {
     full_pressure,  ///< mean effect at more than 90 % of the largest pressure
     /// Mean effect at more than 90 % of the largest pressure, as a share of the span of the readings.
     span,
-    largest,    ///< largest effect, with its sign
-    amplitude,  ///< largest effect, without its sign
+    largest,    ///< largest effect on the reading, with its sign
+    amplitude,  ///< magnitude of the largest effect on the reading
     number,     ///< value of a parameter of the block
   };
   Of of = Of::full_pressure;
@@ -101,7 +101,7 @@ struct WhenChanged {
   std::array<std::string_view, 2> next_steps;  ///< actions for the operator; the quicker action comes first
   /// Indicators of recorded grips that the cause changes; empty: the cause changes no indicator.
   HealthSigns signs{};
-  SizedBy size{};  ///< quantity that states the size
+  SizedBy size{};  ///< quantity that states the size of the change
 };
 
 /// Range in which a value may lie.

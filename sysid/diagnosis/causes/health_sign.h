@@ -13,18 +13,18 @@ enum class HealthNumber : std::uint8_t {
   gain,           ///< displacement at full pressure in free motion
   zero,           ///< reading at rest before the first motion, relative to the baseline
   lag,            ///< delay of free motion relative to the baseline
-  creep,          ///< additional motion at constant pressure, relative to the baseline
-  loop_width,     ///< additional displacement during unloading, relative to the baseline
+  creep,          ///< motion at constant pressure in addition to that of the baseline
+  loop_width,     ///< displacement during unloading in addition to that of the baseline
   pressure_loss,  ///< command minus measured pressure during HOLDING
   leak,           ///< decrease of the measured pressure per second at constant command
-  contact,        ///< reading at which a contact is detected
+  contact,        ///< reading at which a contact with the object is detected
   time_to_grip,   ///< time from the first step of the sequence to the result HOLDING
 };
 inline constexpr std::size_t health_numbers = 9;
 
 struct HealthNumberInfo {
-  std::string_view id;     ///< key in JSON, which includes the unit
-  std::string_view title;  ///< "gain", for display
+  std::string_view id;     ///< key of the indicator in JSON, which includes the unit
+  std::string_view title;  ///< name of the indicator for display, such as "gain"
   std::string_view unit;
 };
 inline constexpr std::array<HealthNumberInfo, health_numbers> health_number_infos{{

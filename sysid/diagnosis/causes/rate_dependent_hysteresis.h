@@ -28,7 +28,7 @@ struct RateDependentHysteresis {
                     {"time_constant_s", {0.3, 3.0}}});
     }
     static Bounds bounds(const Scales& s, const model::Model&) {
-      return {// An element that does not saturate within the pressure range is linear in the pressure: a
+      return {// An element that does not saturate within the pressure range acts like a linear
               // viscous branch.
               {"width_kpa", 0.01 * s.largest_kpa, 0.5 * s.largest_kpa},
               // The data cannot determine a time constant that is longer than the load cycles.

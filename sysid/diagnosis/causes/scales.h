@@ -21,13 +21,13 @@ enum class Column : std::uint8_t { none, temperature_c, supply_kpa };
 
 /// Scales of the data of a campaign.
 struct Scales {
-  double span_mm = 0;             ///< span of the displacement
+  double span_mm = 0;             ///< range of the displacement readings
   double largest_kpa = 0;         ///< largest pressure at the input of the model
   double campaign_s = 0;          ///< total duration of all records
   double sample_s = 0;            ///< typical interval between distinct readings, the shortest of all records
   double largest_supply_kpa = 0;  ///< largest supply pressure; 0: the logs have no such column
-  bool has_temperature = false;   ///< the temperature column exists and varies
-  bool has_supply = false;        ///< the supply column exists and varies
+  bool has_temperature = false;   ///< true: the logs have a temperature column whose values vary
+  bool has_supply = false;        ///< true: the logs have a supply column whose values vary
   bool has_valve = true;          ///< false: the input of the model is the measured pressure
   /// Significant lines in the spectrum of the residual. The most significant line comes first.
   std::vector<Line> residual_lines;

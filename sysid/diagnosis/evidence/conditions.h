@@ -18,7 +18,7 @@ enum class Branch : std::uint8_t { rest, loading, hold, unloading };
 struct DriveHistory {
   std::vector<double> rate_kpa_per_s;  ///< slope of the pressure over 0.1 s; 0 at constant pressure
   std::vector<Branch> branch;
-  std::vector<bool> falling;    ///< true: the last pressure change was a decrease
+  std::vector<bool> falling;    ///< true: the last change of the pressure was a decrease
   std::vector<double> dwell_s;  ///< time since the pressure became constant; NaN while it changes
   /// Time since the pressure last reversed, started to change or stopped changing.
   std::vector<double> since_turn_s;
@@ -26,7 +26,7 @@ struct DriveHistory {
   /// Peak pressure of the current excursion from rest; at rest, peak pressure of the previous excursion.
   std::vector<double> amplitude_kpa;
   std::vector<double> largest_kpa;  ///< largest pressure so far, in this record and in all records before
-  std::vector<std::size_t> cycle;   ///< number of the load cycle, from 0; see cycle_starts()
+  std::vector<std::size_t> cycle;   ///< index of the load cycle, from 0; see cycle_starts()
 };
 [[nodiscard]] DriveHistory history_of(const Record& record);
 
@@ -47,12 +47,14 @@ struct Samples {
 
 /// A condition on which the error may depend, with its value at each sample.
 struct Condition {
-  std::string id;             ///< id of the condition: "rate"
-  std::string axis;           ///< axis label: "rate of the pressure [kPa/s]"
-  std::string phrase;         ///< end of the sentence "the error depends on ..."
-  std::vector<double> value;  ///< value at each sample; NaN: the condition does not apply
+  std::string id;    ///< id of the condition: "rate"
+  std::string axis;  ///< axis label: "rate of the pressure [kPa/s]"
+  /// End of the sentence "the error depends on ...", such as "the rate of the pressure".
+  std::string phrase;
+  std::vector<double> value;  ///< value of the condition at each sample; NaN: the condition does not apply
   bool logarithmic = false;
-  std::vector<std::string> categories;  ///< names of the values 0, 1, ...; empty: the values are numbers
+  /// Names of the values 0, 1, ... of the condition; empty: the values are numbers.
+  std::vector<std::string> categories;
   /// For each sample, the index of its group in `groups`. Each group, such as loading or unloading, gets its
   /// own curve.
   std::vector<std::uint8_t> group;

@@ -150,8 +150,8 @@ Binning bin(const Condition& c) {
 /// Sums of the residual by block and bin, from which all tests and intervals are computed.
 struct Sums {
   std::size_t bins = 0, blocks = 0;
-  std::vector<double> sum;    ///< [block * bins + bin]
-  std::vector<double> count;  ///< [block * bins + bin]
+  std::vector<double> sum;    ///< sum of the residual, with the index [block * bins + bin]
+  std::vector<double> count;  ///< number of samples, with the index [block * bins + bin]
 
   [[nodiscard]] double total(const std::vector<double>& of, std::size_t bin) const {
     double t = 0;

@@ -28,7 +28,7 @@ struct ConditionBin {
   std::size_t group = 0;
   std::size_t samples = 0;
   double mean_mm = 0;
-  double lower_mm = 0;  ///< 95 % interval of the mean; NaN if all samples are in one block
+  double lower_mm = 0;  ///< lower end of the 95 % interval of the mean; NaN if all samples are in one block
   double upper_mm = 0;
   double rms_mm = 0;
 };
@@ -42,7 +42,7 @@ struct ConditionEvidence {
   /// Probability that chance alone makes the differences between the means so large.
   double p_value = 1;
   double p_adjusted = 1;  ///< p-value adjusted for the number of tested conditions (Holm 1979)
-  bool clear = false;     ///< is_clear(p_adjusted, share_percent)
+  bool clear = false;     ///< true: significant according to is_clear(p_adjusted, share_percent)
 };
 
 /// Spectrum of the residual and its most significant line.
@@ -80,7 +80,8 @@ struct ResidualEvidence {
 /// Indication that a refitted model is unphysical, because it has absorbed an effect that its structure does
 /// not contain.
 struct UnphysicalSign {
-  std::string id;  ///< "wrong_way_first", "stiffness_near_zero", "creep_beyond_data", "at_bound"
+  /// Id of the indication: "wrong_way_first", "stiffness_near_zero", "creep_beyond_data" or "at_bound".
+  std::string id;
   std::string sentence;
   double value = 0;
   double limit = 0;

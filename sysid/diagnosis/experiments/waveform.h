@@ -22,7 +22,7 @@ struct Corner {
 /// One experiment of the menu. Its slew rate never exceeds the limit of the rig.
 struct Waveform {
   std::string name;   ///< id of the waveform: "rest_and_repeat"
-  std::string about;  ///< description in one line, for display
+  std::string about;  ///< description of the waveform in one line, for display
   std::vector<Corner> corners;
 
   [[nodiscard]] double duration_s() const { return corners.empty() ? 0 : corners.back().time_s; }

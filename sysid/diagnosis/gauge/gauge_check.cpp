@@ -30,7 +30,7 @@ constexpr double least_covered_share = 0.5;
 /// Value that a standard normal variable exceeds with a probability of 1 in 1000.
 constexpr double deviate = 3.09;
 
-using Line = std::pair<double, double>;  // value at 0, and slope
+using Line = std::pair<double, double>;  // a straight line: its value at 0, and its slope
 
 /// Returns the value that a chi-square variable with `freedom` degrees of freedom exceeds with a probability
 /// of 1 in 1000 (Wilson and Hilferty 1931).

@@ -29,7 +29,7 @@ namespace softgrip::sysid {
 /// A hypothesis about the static shape of the sensor.
 struct SensorShape {
   std::vector<model::BlockSpec> blocks;  ///< blocks from static_sensor_blocks(); empty: the sensor is linear
-  double offset_mm = 0;                  ///< offset of the sensor zero, as fitted to the logs
+  double offset_mm = 0;                  ///< offset of the sensor zero that was fitted to the logs
 
   /// Returns the reading of the sensor at a displacement [mm].
   [[nodiscard]] double at(double displacement_mm) const;
@@ -50,12 +50,13 @@ struct GaugeFit {
   double zero_mm = 0;
   double scale = 1;
   std::size_t free = 2;
-  std::vector<double> predicted_mm;  ///< prediction for each reading, clipped like the readings
-  double rms_mm = 0;                 ///< RMS of the difference between reading and prediction, both clipped
+  /// Prediction for each reading, clipped at the same limits as the readings.
+  std::vector<double> predicted_mm;
+  double rms_mm = 0;  ///< RMS of the difference between reading and prediction, both clipped
   /// Error that is tolerated in addition to the noise when the hypothesis is compared with the most likely
   /// one.
   double tolerance_mm = 0;
-  bool explains = false;  ///< true: the hypothesis explains the readings
+  bool explains = false;  ///< true: the hypothesis explains the gauge readings
   bool ruled_out = false;
   /// Logarithm of the ratio: likelihood of the most likely hypothesis / likelihood of this hypothesis.
   double behind = 0;
@@ -82,9 +83,9 @@ struct GaugeCheck {
   std::vector<double> cut_mm;  ///< readings after clipping
   /// Share of the range of the readings in the logs that the gauge readings cover.
   double covered_share = 0;
-  double repeat_noise_mm = 0;  ///< scatter of repeated readings; 0: no position was repeated
+  double repeat_noise_mm = 0;  ///< scatter of repeated readings at one position; 0: no position was repeated
   double noise_mm = 0;         ///< noise that the test assumes
-  std::vector<GaugeFit> fits;  ///< fits in the order of the hypotheses
+  std::vector<GaugeFit> fits;  ///< results for the hypotheses, in their order
   std::size_t best = 0;        ///< index of the most likely hypothesis in `fits`
   /// Logarithm of the ratio of the likelihoods of the best and the second-best hypothesis; 0 if there is a
   /// single hypothesis.

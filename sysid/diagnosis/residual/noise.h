@@ -20,7 +20,7 @@ struct UnexplainedError {
   /// Square root of (mean square of the residual - noise squared); 0 if this difference is negative.
   double excess_mm = 0;
   double slow_correlation = 0;  ///< mean autocorrelation of the residual over the first 25 lags
-  bool present = false;         ///< true: the residual contains more than noise
+  bool present = false;         ///< true: the residual exceeds the noise
 };
 
 /// Returns the unexplained error in a residual.

@@ -72,7 +72,7 @@ class Tracks {
   }
 
  private:
-  std::vector<Track> all_;  ///< only the first `count_` elements are in use
+  std::vector<Track> all_;  ///< tracks; only the first `count_` of them are in use
   std::size_t count_ = 0;
 };
 

@@ -63,8 +63,7 @@ BlockLosses linear_held_out_losses(const std::vector<Record>& records, const Div
   for (std::size_t fold = 0; fold < division.folds; ++fold) {
     Eigen::MatrixXd normal = whole;
     Eigen::VectorXd right = gradient;
-    Eigen::Index done = 0;  // end of the rows that were already removed, because the surroundings of two
-                            // blocks may overlap
+    Eigen::Index done = 0;  // end of the removed rows; the rows near two blocks may overlap
     for (std::size_t b = 0; b < rows.size(); ++b) {
       if (division.blocks[b].fold != fold) continue;
       const Eigen::Index from = std::max(rows[b].hidden_first, done), length = rows[b].hidden_last - from;

@@ -48,7 +48,7 @@ class Scan {
   bool usable_ = false;
   Eigen::MatrixXd jacobian_;
   Eigen::LDLT<Eigen::MatrixXd> normal_;
-  Eigen::VectorXd residual_;  ///< prediction minus reading
+  Eigen::VectorXd residual_;  ///< prediction minus reading for each reading
   Eigen::VectorXd left_;      ///< part of `residual_` that the parameters of the structure cannot absorb
 };
 

@@ -26,8 +26,8 @@ struct CandidateScore {
 /// One of the selected causes.
 struct ChosenCause {
   Cause cause;
-  std::vector<Cause>
-      alternatives;     ///< causes that explain the data equally well or are indistinguishable from this one
+  std::vector<Cause> alternatives;  ///< causes that explain the data equally well, or that no command
+                                    ///< separates from this cause
   Spread gain_percent;  ///< held-out error reduction when this cause is added to all other selected causes
   /// Candidates for the place of this cause; the best one comes first.
   std::vector<CandidateScore> candidates;
@@ -41,7 +41,7 @@ struct ChosenCause {
 /// The selected structure and the evidence for it.
 struct Selection {
   StructureFit base;
-  StructureFit extended;  ///< equal to `base` if no cause was selected
+  StructureFit extended;  ///< fit of the selected structure; equal to `base` if no cause was selected
   std::vector<ChosenCause> chosen;
   std::vector<CandidateScore> last_candidates;  ///< candidates for a further cause; none of them was selected
   BlockLosses base_losses;
@@ -81,9 +81,9 @@ struct SelectionOptions {
   /// Called with the selection after its first cause was accepted, if an unexplained error remains.
   std::function<void(const Selection&)> one_cause_stands;
   /// Returns the mean square that another explanation leaves; infinity if there is no other explanation. A
-  /// second cause is fitted completely only if its mean square is not much larger. The function is called at
-  /// most once, after one_cause_stands. It is not called if a second cause reduces the error nearly to the
-  /// noise.
+  /// second cause is fitted completely only if the mean square with this cause is at most slightly larger.
+  /// The function is called at most once, after one_cause_stands. It is not called if a second cause reduces
+  /// the error nearly to the noise.
   std::function<double()> to_beat_mm2;
   /// Fits the base structure to modified readings of the same records. If the function is empty, the base
   /// structure is not refitted and only responds linearly.

@@ -17,7 +17,8 @@ struct StickSlipEvidence {
   std::size_t jumps = 0;       ///< number of jumps from whose distances the band was estimated
   double scatter = 0;          ///< standard deviation of the jump distances, divided by their mean
   double heldout_rmse_mm = 0;  ///< held-out RMSE if the jump times are determined from the readings
-  Spread gain_percent;         ///< held-out error reduction relative to the refitted model
+  /// Held-out error reduction by the stick-slip motion, relative to the refitted model.
+  Spread gain_percent;
 };
 
 struct StickSlipSelection {

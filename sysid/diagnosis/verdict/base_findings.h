@@ -32,7 +32,7 @@ struct BaseQuestion {
   double noise_mm = 0;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  Division division;  ///< held-out blocks
+  Division division;  ///< held-out blocks of the diagnosis
   std::function<void(const std::string&)> progress;
 };
 
@@ -50,10 +50,10 @@ struct BaseSearch {
 /// Limits for causes that are added to a richer base structure. No base structure matches a finger exactly,
 /// and a cause can absorb part of the resulting error.
 struct CausesUpon {
-  std::size_t most;  ///< maximum number of causes
+  std::size_t most;  ///< maximum number of causes on the richer base structure
   /// Smallest share of the mean square of the base structure that all causes together must remove.
   double least_share;
-  bool parts;  ///< true: causes that remove less than this share are reported as partial explanations
+  bool parts;  ///< true: causes that remove less than `least_share` are reported as partial explanations
 };
 inline constexpr CausesUpon upon_much_left{2, 0.3, true};
 /// Limits for a base structure that leaves a small error. Most of this error is due to the inexact form of

@@ -58,8 +58,8 @@ struct RunError {
 struct Diagnosis {
   /// Verdict from the displacement only; whole_verdict() also uses the measured pressure.
   Verdict verdict = Verdict::unexplained;
-  std::vector<NamedCause> causes;  ///< named causes for the verdicts cause_found, ambiguous and
-                                   ///< partly_explained
+  /// Named causes; present for the verdicts cause_found, ambiguous and partly_explained.
+  std::vector<NamedCause> causes;
   /// Causes that explain only part of the error, for the verdict unexplained.
   std::vector<NamedCause> partial;
   std::vector<CandidateScore> rejected;
@@ -67,8 +67,8 @@ struct Diagnosis {
   Spread gain;  ///< held-out error reduction by the extended model, relative to the refitted model [%]
   /// RMSE of the given model over all readings; initial states by sysid/fitting/start_estimate.h.
   double as_given_rmse_mm = 0;
-  double recalibrated_rmse_mm = 0;  ///< RMSE on held-out blocks
-  double extended_rmse_mm = 0;      ///< RMSE on held-out blocks
+  double recalibrated_rmse_mm = 0;  ///< RMSE of the refitted model on held-out blocks
+  double extended_rmse_mm = 0;      ///< RMSE of the extended model on held-out blocks
   /// RMSE on logs that were completely held out; not set if there is a single log.
   std::optional<double> recalibrated_other_logs_rmse_mm;
   std::optional<double> extended_other_logs_rmse_mm;
@@ -90,7 +90,8 @@ struct Diagnosis {
   StructureFit as_given;
   StructureFit recalibrated;
   StructureFit extended;
-  model::Model extended_model;  ///< model for the daemon, named GIVEN_extended
+  /// Model for the daemon; its name is GIVEN_extended, where GIVEN is the name of the given model.
+  model::Model extended_model;
   model::Model recalibrated_model;
   std::vector<Record> records;
   std::vector<std::string> warnings;

@@ -219,7 +219,7 @@ class Search {
     return evidence;
   }
 
-  /// Returns true if two lags in series fit almost as well as one lag and a dead time.
+  /// Returns true if two lags in series fit the pressure almost as well as one lag and a dead time.
   [[nodiscard]] bool may_be_second_lag() const {
     const ValveParts parts = without(whole_.parts, ValvePart::delay).set(index_of(ValvePart::second_lag));
     ValveStage start = whole_.stage;
