@@ -10,7 +10,7 @@ namespace softgrip::sysid {
 /// Losses of two hypotheses on the same blocks.
 struct PairedLosses {
   std::vector<double> worse, better;  ///< sums of squared residuals of the two hypotheses in each block
-  std::vector<double> rows;           ///< number of rows (residuals) of each block
+  std::vector<double> rows;           ///< number of rows (residuals) in each block
 };
 
 struct Comparison {

@@ -13,16 +13,17 @@ namespace softgrip::sysid {
 enum class Appears {
   anywhere,
   at_rest,    ///< also at zero pressure, because a shifted zero changes all readings equally
-  displaced,  ///< with an effect proportional to the displacement
-  held,       ///< while a pressure is held
-  moving,     ///< with an effect proportional to the rate of the input, zero at rest
+  displaced,  ///< where the displacement is large, because the effect is proportional to the displacement
+  held,       ///< where a pressure is held
+  /// Where the input changes fast; the effect is proportional to the rate of the input and zero at rest.
+  moving,
 };
 
 /// Input and predicted motion of the finger in one bin.
 struct OperatingPoint {
   double pressure_kpa = 0;    ///< pressure that drives the finger
   double rate_kpa_per_s = 0;  ///< rate of the driving pressure after a peak detector (see rates_of()), >= 0
-  double motion = 0;          ///< displacement predicted by the model, in the unit of the reading
+  double motion = 0;          ///< displacement that the model predicts, in the unit of the reading
 };
 
 /// Returns the rate |dp/dt| of the driving pressure at each sample [kPa/s], after a peak detector that decays

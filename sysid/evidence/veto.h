@@ -13,8 +13,8 @@ struct Claim {
   /// 95 % interval of the size of the cause; empty: the data do not determine the size.
   std::optional<Interval> size;
   double largest_size = 0;   ///< range of the signal on which the cause acts, in the unit of the size
-  double error_without = 0;  ///< RMSE without the cause, over all readings that should show it
-  double error_with = 0;     ///< RMSE with the cause, over the same readings
+  double error_without = 0;  ///< RMSE without the cause, over all readings that should show the cause
+  double error_with = 0;     ///< RMSE with the cause, over all readings that should show the cause
   /// True: with the cause, the error of readings that were left out of the fit is larger.
   bool predicts_worse = false;
   bool condition_met = true;  ///< true: the data fulfil the condition under which the cause acts
