@@ -74,7 +74,7 @@ class ChainResiduals final : public Residuals {
   struct Part {
     std::size_t record;
     const std::vector<std::size_t>& columns;
-    bool values;  ///< true: also store the residuals
+    bool values;  ///< true: the simulation also stores the residuals
   };
 
   /// Returns the groups of derivatives with respect to model parameters and previous peaks. There is at least
@@ -216,8 +216,8 @@ class ChainResiduals final : public Residuals {
     }
   }
 
-  std::vector<std::size_t> offsets_;    ///< columns of the records' offsets
-  std::vector<std::size_t> first_row_;  ///< first row of each record
+  std::vector<std::size_t> offsets_;    ///< columns of the Jacobian that belong to the offsets of the records
+  std::vector<std::size_t> first_row_;  ///< index of the first row of each record
 };
 
 }  // namespace

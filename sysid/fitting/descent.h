@@ -15,7 +15,7 @@ namespace softgrip::sysid {
 /// Derivatives of half the loss with respect to the coordinates of a search.
 struct NormalEquations {
   Eigen::VectorXd gradient;
-  Eigen::MatrixXd curvature;  ///< Gauss-Newton matrix
+  Eigen::MatrixXd curvature;  ///< Gauss-Newton approximation of the second derivatives
 };
 
 /// Largest permitted change of each coordinate in both directions, with lower <= 0 <= upper.
@@ -24,14 +24,14 @@ struct StepBounds {
 };
 
 struct DescentOptions {
-  int most_steps = 40;       ///< maximum number of steps that reduce the loss
-  int most_trials = 8;       ///< maximum number of trials per step, each with more damping than the previous
-                             ///< one
+  int most_steps = 40;  ///< maximum number of steps that reduce the loss
+  /// Maximum number of trials per step; each trial has more damping than the trial before.
+  int most_trials = 8;
   double damping = 1e-2;     ///< damping of the first trial, as a share of the curvature
   double longest_step = 1;   ///< largest change of a coordinate in one step
   double least_share = 0;    ///< the descent ends after a step that reduces the loss by less than least_share
                              ///< times the loss plus least_gain
-  double least_gain = 0;     ///< see least_share
+  double least_gain = 0;     ///< absolute part of the limit that least_share describes
   double least_damping = 0;  ///< smallest damping of a coordinate, as a share of the sum of all curvatures,
                              ///< multiplied by the current damping
 };

@@ -17,10 +17,10 @@ namespace softgrip::sysid {
 struct FreeParameter {
   enum class Kind { model, offset, peak_before, unsettled };
   Kind kind = Kind::model;
-  std::size_t flat_index = 0;  ///< index in the flat values of a model parameter
-  std::size_t record = 0;      ///< record to which a start state belongs
-  std::size_t branch = 0;      ///< creep branch to which unsettled creep belongs
-  std::string name;            ///< "kelvin_voigt.k1_kpa_per_mm", "tp1: offset_mm"
+  std::size_t flat_index = 0;  ///< index of a model parameter in the list of all parameter values
+  std::size_t record = 0;      ///< index of the record to which an initial state belongs
+  std::size_t branch = 0;      ///< index of the creep branch to which unsettled creep belongs
+  std::string name;            ///< name of the parameter: "kelvin_voigt.k1_kpa_per_mm", "tp1: offset_mm"
   std::string unit;            ///< unit of the value
   bool logarithmic = false;
   double scale = 1;

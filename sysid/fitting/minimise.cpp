@@ -36,7 +36,7 @@ class WholeTrajectory final : public ceres::CostFunction {
   }
 
   bool Evaluate(double const* const* parameters, double* r, double** jacobians) const override {
-    if (is_cancelled()) return false;  // exceptions must not propagate through Ceres
+    if (is_cancelled()) return false;  // Ceres does not permit exceptions in this function
     const std::size_t rows = residuals_.count();
     const std::size_t columns = residuals_.space().size();
     const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;

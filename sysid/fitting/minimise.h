@@ -29,7 +29,7 @@ struct MinimiseOptions {
 struct Minimum {
   std::vector<double> z;
   double rmse_mm = 0;  ///< RMSE of the residuals, without Huber's loss
-  double cost = 0;     ///< half the sum of squares, or half of Huber's loss
+  double cost = 0;     ///< half the sum of squared residuals, or half the sum of Huber's loss
   int iterations = 0;
   bool converged = false;
 };

@@ -99,7 +99,7 @@ LossDifference loss_difference(const BlockLosses& worse, const BlockLosses& bett
 }
 
 bool is_clearly_less(const BlockLosses& better, const BlockLosses& worse) {
-  constexpr double clearly = 2;  // threshold in standard errors
+  constexpr double clearly = 2;  // threshold of a clear difference, in standard errors
   const LossDifference plain = loss_difference(worse, better);
   if (!(plain.mean_mm2 > 0)) return false;
   if (plain.mean_mm2 > clearly * plain.standard_error_mm2) return true;

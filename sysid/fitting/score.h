@@ -15,15 +15,15 @@ inline constexpr double bad_percent = 10;
 /// A prediction and its errors. An error is reading minus prediction.
 struct Score {
   std::string name;
-  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of prediction and errors
+  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of the prediction and its errors
   Drive drive = Drive::command;                           ///< input signal of the model
   std::vector<double> prediction_mm;
-  std::vector<double> error_mm;  ///< NaN for samples without a reading
+  std::vector<double> error_mm;  ///< reading minus prediction; NaN for samples without a reading
   double rmse_mm = 0;
   double rmse_percent_of_span = 0;
   double largest_error_mm = 0;
-  double first_cycle_rmse_mm = 0;  ///< NaN if the command does not repeat
-  double settled_rmse_mm = 0;      ///< RMSE of the cycles after the first; NaN if there are none
+  double first_cycle_rmse_mm = 0;  ///< RMSE of the first cycle; NaN if the command does not repeat
+  double settled_rmse_mm = 0;      ///< RMSE of the cycles after the first; NaN if there is only one cycle
   /// True if the prediction is not finite. Also true if its RMSE exceeds the span of the readings and the
   /// prediction is not proportional to the readings. If it is proportional, a unit is probably wrong.
   bool diverges = false;

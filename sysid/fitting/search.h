@@ -17,7 +17,7 @@ struct Progress {
   std::size_t done = 0;
   std::size_t starts = 0;
   double best_rmse_mm = 0;
-  std::string stage;  ///< name of the current task; empty: the search from start points
+  std::string stage;  ///< name of the current task; empty: the search from many start points
 };
 
 /// Callback that receives the progress. It is called from any thread, but never concurrently, and may be
@@ -25,8 +25,8 @@ struct Progress {
 using ShowProgress = std::function<void(const Progress&)>;
 
 /// Searches from all start points and returns the results in the order of the start points. A separable chain
-/// is fitted by variable projection, first on thinned records from each start point. Each distinct minimum
-/// whose RMSE is at most 1.3 times the lowest one is then refined on all samples. Any other chain is fitted
+/// is fitted by variable projection, first on thinned records from each start point. Each different minimum
+/// whose RMSE is at most 1.3 times the lowest RMSE is then refined on all samples. Any other chain is fitted
 /// by minimise().
 /// @param threads  number of threads; 0: one for each core.
 [[nodiscard]] std::vector<SearchResult> search(const FitSpace& space, const std::vector<Record>& records,

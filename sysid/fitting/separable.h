@@ -45,9 +45,9 @@ struct SeparablePoint {
   double lag_s = 0;
   std::vector<double> rate_hz;     ///< k/c of each branch [1/s]
   double instantaneous = 0;        ///< alpha + 1/k0 [mm/kPa]
-  double beta = 0;                 ///< [mm/kPa]
+  double beta = 0;                 ///< parameter beta of the Bouc-Wen element [mm/kPa]
   std::vector<double> amplitude;   ///< 1/c of each branch [mm/(kPa s)]
-  std::vector<StartState> starts;  ///< start state of each record
+  std::vector<StartState> starts;  ///< initial state of each record
 };
 
 [[nodiscard]] SeparablePoint to_separable(const SeparableShape& shape, const FitPoint& point);
@@ -59,7 +59,7 @@ struct SeparableColumns {
   bool has_start = false;  ///< true: there are columns for unsettled creep and peak
 
   [[nodiscard]] static constexpr Eigen::Index pressure() { return 0; }
-  [[nodiscard]] static constexpr Eigen::Index hysteresis() { return 1; }  ///< -g
+  [[nodiscard]] static constexpr Eigen::Index hysteresis() { return 1; }  ///< this column contains -g
   [[nodiscard]] Eigen::Index branch(std::size_t b) const { return 2 + static_cast<Eigen::Index>(b); }
   [[nodiscard]] Eigen::Index offset() const { return branch(branches); }
   [[nodiscard]] Eigen::Index unsettled(std::size_t b) const {
@@ -105,7 +105,7 @@ class SeparableRecord {
   const Record& record_;
   SeparableShape shape_;
   SeparableColumns columns_;
-  PressureWalk still_;  ///< pressure without delay and lag, which does not depend on the parameters
+  PressureWalk still_;  ///< pressure for a chain without delay and lag; it does not depend on the parameters
 };
 
 }  // namespace softgrip::sysid

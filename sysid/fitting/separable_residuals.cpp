@@ -109,7 +109,7 @@ class SeparableResiduals final : public Residuals {
  private:
   SeparableShape shape_;
   std::vector<SeparableRecord> prepared_;
-  std::vector<std::size_t> first_row_;  ///< first row of each record
+  std::vector<std::size_t> first_row_;  ///< index of the first row of each record
 };
 
 }  // namespace

@@ -47,7 +47,7 @@ class SeparableSearch {
   struct Coordinate {
     enum class Kind { growing, eta, rate, delay, lag, peak };
     Kind kind;
-    std::size_t index = 0;  ///< index of the branch or record
+    std::size_t index = 0;  ///< index of the branch or of the record to which the parameter belongs
     double scale = 1;
     double lower = 0;
     double upper = 0;
@@ -56,7 +56,7 @@ class SeparableSearch {
   struct Linear {
     Eigen::VectorXd values;
     std::vector<bool> at_bound;
-    double cost = 0;  ///< sum of squares [mm^2]
+    double cost = 0;  ///< sum of the squared residuals [mm^2]
   };
   struct Descending;
   struct FreeParts;

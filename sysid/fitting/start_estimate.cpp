@@ -69,8 +69,8 @@ struct Trust {
 /// A trial of an initial state, and the residual of the first readings with this state.
 struct Trial {
   StartState start;
-  double misfit = std::numeric_limits<double>::infinity();  ///< -2 times the logarithm of the posterior
-                                                            ///< probability
+  /// -2 times the logarithm of the posterior probability of the state.
+  double misfit = std::numeric_limits<double>::infinity();
   Trust left;
 };
 
@@ -259,9 +259,9 @@ class StartSearch {
   std::vector<double> time_constants_s_;
   double first_kpa_, lowest_kpa_ = 0, highest_kpa_ = 0;
   bool under_pressure_;
-  std::vector<std::size_t> rows_;  ///< samples with readings
+  std::vector<std::size_t> rows_;  ///< indices of the samples that have a reading
   Eigen::MatrixXd columns_;        ///< contributions of the offset and of unsettled creep to the readings
-  Eigen::VectorXd precision_;      ///< precision of the priors of these contributions
+  Eigen::VectorXd precision_;      ///< precision of the priors of the offset and of the unsettled creep
 };
 
 }  // namespace
