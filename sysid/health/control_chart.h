@@ -47,10 +47,10 @@ namespace softgrip::sysid::health {
 
 /// Limits of a chart.
 struct ChartLimits {
-  double allowance = 0.5;     ///< half the shift to be detected, in standard deviations
+  double allowance = 0.5;     ///< half the shift that the CUSUM is designed to detect, in standard deviations
   double cusum = 0;           ///< threshold of the CUSUM, in standard deviations
   double single = 0;          ///< limit of the magnitude of a single standard normal value
-  double pause_learning = 5;  ///< learning pauses while a CUSUM exceeds this value
+  double pause_learning = 5;  ///< while a CUSUM exceeds this value, the reference is not updated
 
   /// @param run_length  mean number of healthy values between false alarms of one chart, at least 20.
   [[nodiscard]] static ChartLimits for_run_length(double run_length);
@@ -75,7 +75,7 @@ using ChartValues = std::map<std::string, ChartValue>;
 struct ChartAlarm {
   std::size_t noticed = 0;  ///< index of the point at which the alarm was raised
   std::size_t since = 0;    ///< index of the first changed point
-  double change = 0;        ///< mean deviation from the reference since the change
+  double change = 0;        ///< mean deviation from the reference, from the start of the change on
 };
 
 /// Control chart of one indicator of one finger. If a point has values of several recipes, each value is

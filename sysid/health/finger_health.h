@@ -40,7 +40,7 @@ struct HealthPoint {
   /// Difference from the peer fingers in the same runs, minus the reference of this difference. Absent if the
   /// finger has no peer fingers.
   std::array<std::optional<double>, sysid::health_numbers> beside{};
-  std::optional<double> temperature_c;  ///< median temperature of the runs
+  std::optional<double> temperature_c;  ///< median temperature of the runs in this point [degC]
 };
 
 /// An alarm of one indicator.

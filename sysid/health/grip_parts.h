@@ -14,7 +14,7 @@ namespace softgrip::sysid::health {
 enum class Part : std::uint8_t {
   neither,  ///< in contact but not held; released but not yet clear of the object; after the loss of a part
             ///< or after a fault
-  rest,     ///< vented, before the first motion
+  rest,     ///< samples of a vented finger before its first motion
   free,
   held,  ///< HOLDING with the command that was active at the start of HOLDING
 };

@@ -13,7 +13,7 @@ namespace softgrip::sysid::health {
 
 /// Data that the page of a finger shows in addition to the health of this finger.
 struct HealthSource {
-  std::string baseline;  ///< folder of the baseline
+  std::string baseline;  ///< path of the folder of the baseline
   ScoreBase base;
   HealthOptions options;
   std::vector<SharedChange> shared{};  ///< changes that several fingers of the rig share

@@ -16,8 +16,8 @@
 namespace softgrip::sysid::health {
 
 struct Note {
-  std::string date;    ///< UTC, "2026-11-03" (start of the day) or "2026-11-03T14:30:00Z"
-  std::string finger;  ///< empty: the note applies to all fingers
+  std::string date;    ///< date in UTC: "2026-11-03" (start of the day) or "2026-11-03T14:30:00Z"
+  std::string finger;  ///< name of the finger; empty: the note applies to all fingers
   std::string action;  ///< maintenance action, in a few words
 };
 

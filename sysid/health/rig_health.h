@@ -48,7 +48,7 @@ struct SharedChange {
 
 struct RigHealth {
   std::vector<FingerHealth> fingers;  ///< in the order of the argument `fingers` of judge_rig()
-  std::vector<SharedChange> shared;   ///< ordered by indicator, then by the time of detection
+  std::vector<SharedChange> shared;   ///< sorted by indicator, then by the time of detection
 };
 
 /// Judges all fingers of a rig. Runs with the same name belong to the same grip. Fingers that have runs of

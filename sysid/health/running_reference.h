@@ -48,9 +48,9 @@ class SerialSums {
 
 /// Linear dependence of an indicator on the temperature.
 struct TemperatureSlope {
-  double per_c = 0;  ///< in the unit of the indicator per degree Celsius
+  double per_c = 0;  ///< slope, in the unit of the indicator per degree Celsius
   double standard_error = 0;
-  double lowest_c = 0, highest_c = 0;  ///< range of the measured temperatures
+  double lowest_c = 0, highest_c = 0;  ///< range of the temperatures at which the indicator was measured
   double mean_c = 0;                   ///< temperature at which the line has the value `mean`
   double mean = 0;
 

@@ -19,7 +19,7 @@ struct ScoredRun {
   std::string run;         ///< name of the folder of the recording
   std::string finger;      ///< name of the finger's channel
   std::string started_at;  ///< UTC; empty: the start time is not known
-  std::string recipe;      ///< only runs of the same recipe are compared
+  std::string recipe;      ///< recipe of the run; only runs with equal recipes are compared
   std::string baseline;    ///< id of the baseline relative to which the run was scored
   GripScore score;
   /// Median temperature of the run [degC]; NaN: not recorded.
