@@ -21,7 +21,8 @@ namespace softgrip::sysid {
 
 /// A value that is estimated or fixed, with its interval.
 struct Estimate {
-  std::string name;  ///< "kelvin_voigt.k1_kpa_per_mm", "tp1: offset_mm", "instantaneous_gain_mm_per_kpa"
+  /// Name of the value: "kelvin_voigt.k1_kpa_per_mm", "tp1: offset_mm", "instantaneous_gain_mm_per_kpa".
+  std::string name;
   std::string unit;
   std::string formula;  ///< formula of a combination of parameters; empty for a single parameter
   double value = 0;
@@ -65,7 +66,7 @@ struct IdentifyOptions {
 struct StructureEvidence {
   /// A structure that was fitted so that it can be compared with other structures.
   struct Candidate {
-    std::string structure;  ///< "bouc_wen", "prandtl_ishlinskii"
+    std::string structure;  ///< name of the structure: "bouc_wen" or "prandtl_ishlinskii"
     std::string description;
     double rmse_mm = 0;          ///< RMSE of the readings to which the structure was fitted
     double heldout_rmse_mm = 0;  ///< RMSE of held-out blocks, each predicted by a fit without this block

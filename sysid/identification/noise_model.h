@@ -8,7 +8,7 @@ namespace softgrip::sysid {
 
 /// The autoregressive process e_t = a_1 e_(t-1) + ... + a_p e_(t-p) + innovation.
 struct NoiseModel {
-  std::vector<double> coefficients;  ///< a_1 ... a_p; empty: white noise
+  std::vector<double> coefficients;  ///< coefficients a_1 ... a_p; empty: the process is white noise
   double innovation_mm = 0;          ///< standard deviation of the innovation [mm]
   double deviation_mm = 0;           ///< standard deviation of the process e [mm]
   double lag1_correlation = 0;

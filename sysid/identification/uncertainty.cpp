@@ -26,7 +26,7 @@ class CorrelatedNoise {
   CorrelatedNoise(const Jacobian& jacobian, const std::vector<std::size_t>& rows)
       : jacobian_(jacobian), rows_(rows) {}
 
-  /// Returns J' C J.
+  /// Returns the product J' C J.
   [[nodiscard]] MatrixXd product(const NoiseModel& noise) const {
     MatrixXd sum = MatrixXd::Zero(jacobian_.cols(), jacobian_.cols());
     for_each_record([&](Index first, Index count) {
