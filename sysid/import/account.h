@@ -35,9 +35,10 @@ inline constexpr double refused_share = 0.8;
 /// Row counts of an imported file. If the file has two time columns, each row is counted twice, once per time
 /// column.
 struct RowAccount {
-  std::size_t rows = 0;    ///< all rows of the file
-  std::size_t used = 0;    ///< rows that became samples of the log
-  std::size_t joined = 0;  ///< rows whose values were added to the sample of another row with the same time
+  std::size_t rows = 0;  ///< number of all rows of the file
+  std::size_t used = 0;  ///< number of rows that became samples of the log
+  /// Number of rows whose values were added to the sample of another row with the same time.
+  std::size_t joined = 0;
   std::array<std::size_t, left_out_count> left_out{};
 
   void leave_out(LeftOut reason, std::size_t count = 1) {

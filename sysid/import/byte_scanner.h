@@ -1,5 +1,5 @@
 #pragma once
-// Sequential reader of the numbers and texts in a binary file.
+// Reads numbers and texts from a binary file, one after the other.
 
 #include <cstdint>
 #include <cstring>

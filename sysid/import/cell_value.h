@@ -16,15 +16,15 @@ enum class CellKind : std::uint8_t { number, missing, moment, text };
 
 struct CellValue {
   CellKind kind = CellKind::text;
-  double number = 0;            ///< value of a number; finite
-  Nanoseconds moment = 0;       ///< value of a timestamp
-  bool dated = false;           ///< the timestamp has a date
+  double number = 0;            ///< value of a cell that contains a number; always finite
+  Nanoseconds moment = 0;       ///< value of a cell that contains a timestamp
+  bool dated = false;           ///< true: the timestamp has a date
   bool short_clock = false;     ///< the timestamp has two fields only, such as "12:34"
-  bool surely_minutes = false;  ///< the two fields are minutes and seconds
+  bool surely_minutes = false;  ///< true: the two fields can only be minutes and seconds
   /// Index of the word in `missing` that the cell contains; -1: the cell contains no such word.
   int missing_word = -1;
-  bool with_comma = false;  ///< the number has a decimal comma
-  bool with_point = false;  ///< the number has a decimal point
+  bool with_comma = false;  ///< true: the number has a decimal comma
+  bool with_point = false;  ///< true: the number has a decimal point
 };
 
 /// Interprets a cell. A comma followed by digits is a decimal comma. A cell with a comma and a point

@@ -172,8 +172,8 @@ std::string foreign_storage(hid_t dataset) {
 struct Walk {
   ArrayCollector& arrays;
   char separator = '/';
-  hid_t access = H5P_DEFAULT;  ///< access properties of links
-  std::string refused{};       ///< reason why the file is refused
+  hid_t access = H5P_DEFAULT;  ///< properties with which libhdf5 accesses links
+  std::string refused{};       ///< reason why the file is refused; empty: it is not refused
   int objects = 0;
 };
 
@@ -186,7 +186,7 @@ struct Visit {
 herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* data) {
   auto& where = *static_cast<Visit*>(data);
   Walk& walk = where.walk;
-  if (name[0] == '#') return 0;  // internal objects of MATLAB
+  if (name[0] == '#') return 0;  // objects whose names begin with # are internal objects of MATLAB
   const std::string path = where.prefix + name;
   // The number of objects is limited, because groups that link to each other in a cycle would otherwise be
   // read without end.

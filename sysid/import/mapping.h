@@ -22,7 +22,7 @@ inline constexpr std::size_t role_count = 6;
 /// Names, quantity and unit of a role.
 struct RoleSpec {
   Role role;
-  std::string_view word;  ///< name in options and mapping files
+  std::string_view word;  ///< name of the role in options and mapping files
   Quantity quantity;
   std::string_view unit;  ///< unit in the log, as written in options; a displacement can be in deg instead
   std::vector<double> Log::*values;
@@ -58,7 +58,7 @@ struct ColumnMapping {
 struct Mapping {
   std::array<ColumnMapping, role_count> columns;
   std::optional<double> rate_hz;  ///< sampling rate; used if the file contains no times
-  char separator = 0;             ///< 0: detected automatically
+  char separator = 0;             ///< character between the columns; 0: detected automatically
   std::vector<std::string> missing;
   std::string channel;
   std::string sheet;            ///< name of the sheet of a workbook

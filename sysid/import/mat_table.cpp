@@ -190,7 +190,8 @@ std::optional<ForeignTable> read_mat_table(const std::string& path, const std::s
   while (true) {
     const MatVariable variable{Mat_VarReadNextInfo(file.get()), Mat_VarFree};
     if (!variable) break;
-    if (variable->name == nullptr || variable->name[0] == '#') continue;  // internal variables of MATLAB
+    // Variables whose names begin with # are internal variables of MATLAB.
+    if (variable->name == nullptr || variable->name[0] == '#') continue;
     MatCollector(file.get(), arrays).collect(*variable, variable->name, {}, 0);
   }
   return arrays.table(version == MAT_FT_MAT4 ? "MATLAB 4" : "MATLAB 5", problems);

@@ -12,9 +12,10 @@ namespace softgrip::sysid {
 struct Moment {
   /// Time since 1970 in UTC if the text has a date, otherwise time since midnight.
   Nanoseconds time = 0;
-  bool dated = false;           ///< true: the text has a date; false: the text has a time of day only
-  bool short_clock = false;     ///< the text has two fields ("12:34"), read as minutes and seconds
-  bool surely_minutes = false;  ///< the text has two fields that cannot be hours and minutes
+  bool dated = false;  ///< true: the text has a date; false: the text has a time of day only
+  /// True: the text has two fields ("12:34"), which were read as minutes and seconds.
+  bool short_clock = false;
+  bool surely_minutes = false;  ///< true: the text has two fields that cannot be hours and minutes
 };
 
 /// Parses a date with a time of day, or a time of day. Accepted are ISO 8601 (2024-05-31T12:00:00.25+02:00,

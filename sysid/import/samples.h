@@ -16,7 +16,7 @@ namespace softgrip::sysid {
 /// Samples of an external file. All vectors that are not empty have the same length. NaN is a missing value.
 struct ForeignSamples {
   std::array<std::vector<double>, role_count>
-      values;                    ///< in the units of a log; empty: the file has no column for this role
+      values;  ///< values for each role, in the units of a log; empty: the file has no column for this role
   std::vector<std::size_t> row;  ///< for each sample, the index of its row in the table
 
   [[nodiscard]] std::vector<double>& operator[](Role role) { return values[static_cast<std::size_t>(role)]; }

@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, 7> nanosecond_words{"nanosec", "nanosecs"
                                                            "ns",      "nanosecond", "nanoseconds"};
 
 struct LastWord {
-  std::string before;  ///< text before the last word, without the separator
+  std::string before;  ///< text before the last word, without the separator between them
   std::string word;    ///< last word, in lower case
 };
 

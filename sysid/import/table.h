@@ -40,7 +40,8 @@ struct TableColumn {
   /// since the first date or time of day [s].
   std::size_t moments = 0;
   Nanoseconds first_moment = 0;  ///< first date or time of day; origin as in moments.h
-  std::size_t short_clocks = 0;  ///< number of times with two fields ("12:34"), read as minutes and seconds
+  /// Number of times with two fields ("12:34"), which were read as minutes and seconds.
+  std::size_t short_clocks = 0;
   /// True if the nanoseconds in this column were added to the times of another column (split_times.h).
   bool is_part_of_time = false;
   bool surely_minutes = false;  ///< true: one of the times with two fields cannot be hours and minutes
@@ -52,13 +53,13 @@ struct TableColumn {
 
 /// The columns of a file. All columns have the same number of values.
 struct ForeignTable {
-  std::string file;    ///< name of the file as the user gave it
+  std::string file;    ///< name of the file as the user wrote it
   std::string format;  ///< name of the format: "CSV, ';' between columns, decimal comma"
   std::string sha256;  ///< SHA-256 of the bytes of the file
   std::vector<TableColumn> columns;
   std::vector<int> line;  ///< for each row of a text file, its line number; empty for a binary file
   std::vector<std::string>
-      channels;  ///< texts of the column of the fingers, in the order of their first rows
+      channels;  ///< texts in the column that identifies the finger, in the order of their first rows
   /// Name of the column that identifies the finger of each row; empty: there is none, or topics are fingers.
   std::string channel_column;
   std::vector<std::string> notes;  ///< notes about skipped contents
@@ -78,10 +79,10 @@ struct ForeignTable {
 
 /// Options that determine how a file is interpreted if its content is ambiguous.
 struct TableOptions {
-  char separator = 0;  ///< 0: detected automatically
+  char separator = 0;  ///< character between the columns; 0: detected automatically
   std::vector<std::string>
-      missing;          ///< words for a missing value, in addition to empty cells, NaN, NA and similar words
-  std::string channel;  ///< name of the finger whose rows are read; empty: all rows are read
+      missing;  ///< words that mean a missing value, in addition to an empty cell, NaN, NA and similar words
+  std::string channel;          ///< name of the finger whose rows are read; empty: all rows are read
   bool skip_bad_lines = false;  ///< true: lines with a wrong number of cells are left out and counted
   std::string sheet{};          ///< name of the workbook sheet; empty: the only sheet that contains numbers
 };

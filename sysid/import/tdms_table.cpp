@@ -140,7 +140,7 @@ struct TdmsChannel {
   std::uint64_t count = 0;  ///< number of values of this channel in a chunk
   std::uint64_t bytes = 0;  ///< size of the values of this channel in a chunk
   std::vector<double> values;
-  std::optional<Stamp> first;  ///< first value of a channel of time stamps
+  std::optional<Stamp> first;  ///< first value, if the channel contains time stamps
   double increment_s = 0;      ///< sampling interval of a waveform; 0: not a waveform
   double start_offset_s = 0;
   std::optional<Stamp> start;
@@ -446,7 +446,7 @@ class TdmsReader {
   ArrayCollector& arrays_;
   std::vector<TdmsChannel> channels_;
   std::map<std::string, std::size_t> by_path_;
-  std::vector<std::size_t> listed_;  ///< the channels with values in this segment
+  std::vector<std::size_t> listed_;  ///< indices of the channels that have values in this segment
   std::size_t steps_ = 0;
   std::size_t values_ = 0;
   /// Number of bytes that the header of the last segment states but that are missing in the file.

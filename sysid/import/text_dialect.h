@@ -38,7 +38,7 @@ struct Dialect {
   /// Units of the columns, from a row below the names; empty: the text has no such row.
   std::vector<std::string> units;
   int names_line = 0;     ///< number of the line with the names; 0: the text has no names
-  std::size_t width = 0;  ///< number of columns
+  std::size_t width = 0;  ///< number of columns of the table
   /// True if each row ends with an empty cell that has no column name.
   bool extra_cell = false;
 };

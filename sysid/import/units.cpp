@@ -89,10 +89,11 @@ std::string normalised(std::string_view text) {
   std::string unit(trimmed(text));
   if (unit == "mPa") return "millipascal";
   if (unit == "\xc2\xb0" || unit == "\xc2\xba") return "deg";
-  replace_all(unit, "\xc2\xb5", "u");  // micro sign
-  replace_all(unit, "\xce\xbc", "u");  // small mu
-  replace_all(unit, "\xc2\xb0", "");   // degree sign
-  replace_all(unit, "\xc2\xba", "");   // ordinal indicator, often used as a degree sign
+  replace_all(unit, "\xc2\xb5", "u");  // the micro sign becomes u
+  replace_all(unit, "\xce\xbc", "u");  // the Greek letter mu becomes u
+  replace_all(unit, "\xc2\xb0", "");   // the degree sign is removed
+  // The ordinal indicator, which is often used as a degree sign, is removed.
+  replace_all(unit, "\xc2\xba", "");
   replace_all(unit, " ", "");
   replace_all(unit, "\xc2\xb2", "2");
   replace_all(unit, "^", "");

@@ -27,12 +27,12 @@ constexpr std::size_t cells_named = 5;
 enum class Content : std::uint8_t { none, number, date, text, error, no_value };
 
 struct SheetCell {
-  std::size_t row = 0;     ///< counted from 1
-  std::size_t column = 0;  ///< counted from 0
+  std::size_t row = 0;     ///< number of the row, counted from 1
+  std::size_t column = 0;  ///< index of the column, counted from 0
   Content content = Content::none;
   std::string text;      ///< text, number as written in the file, or code of an error
   double serial = 0;     ///< value of a date, in days since the origin of the calendar
-  bool formula = false;  ///< the cell contains a formula, and the value is its stored result
+  bool formula = false;  ///< true: the cell contains a formula; its value is the stored result
   bool is_bool = false;
 };
 
@@ -221,7 +221,7 @@ class SheetReader {
       return refuse_cell(cell, "style '" + document::shown(style) + "' is none of the " +
                                    std::to_string(texts_.date_styles.size()) + " of the workbook");
     if (!texts_.date_styles[*index]) return;
-    constexpr double most_days = 2958466;  // the end of the year 9999
+    constexpr double most_days = 2958466;  // number of the last day of the year 9999
     if (*number < 0 || *number >= most_days)
       return refuse_cell(
           cell, "'" + document::shown(cell.text) + "' is not a date, although its format is that of a date");
@@ -384,7 +384,7 @@ class SheetReader {
   std::size_t last_column_ = 0;
   std::vector<std::pair<std::size_t, std::size_t>>
       filled_;                             ///< for each row with content: row number and number of cells
-  std::size_t full_row_ = 0;               ///< first row below the titles
+  std::size_t full_row_ = 0;               ///< number of the first row below the titles
   std::size_t shared_bytes_ = 0;           ///< total size of the shared strings to which the cells refer
   std::map<std::size_t, double> longest_;  ///< for each column: latest date below the titles
   std::size_t numbers_ = 0;                ///< number of cells with a number in the current row

@@ -15,7 +15,7 @@ namespace softgrip::sysid {
 
 /// Texts and number formats of the workbook. The cells of all sheets refer to them.
 struct WorkbookTexts {
-  std::vector<std::string> strings;  ///< shared strings
+  std::vector<std::string> strings;  ///< texts that several cells can share
   /// For each style, true if numbers in this style are dates or times of day.
   std::vector<bool> date_styles;
   bool from_1904 = false;  ///< true: dates count from 1904 instead of 1900
@@ -23,8 +23,8 @@ struct WorkbookTexts {
 
 struct SheetText {
   std::string text;              ///< CSV text; line N is row N of the sheet
-  std::size_t first_column = 0;  ///< counted from 0
-  std::size_t first_row = 0;     ///< counted from 1; 0: the sheet is empty
+  std::size_t first_column = 0;  ///< index of the first used column, counted from 0
+  std::size_t first_row = 0;     ///< number of the first used row, counted from 1; 0: the sheet is empty
   std::size_t last_row = 0;
   std::size_t rows_of_numbers = 0;  ///< number of rows that contain at least 2 numbers
   std::vector<std::string> notes;

@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t most_sheets = 1000;
 constexpr const char* as_csv = "export the sheet as CSV";
 
-/// A reference from one part of the package to another.
+/// A reference from one part of the workbook package to another part.
 struct Relation {
   std::string type;  ///< kind of the target, the last word of the type address: "worksheet"
   std::string part;
@@ -285,12 +285,12 @@ class WorkbookReader {
   WorkbookPackage package_;
   const TableOptions& options_;
   document::Problems& problems_;
-  std::string text_;  ///< the characters to which `document_` refers
+  std::string text_;  ///< text to whose characters `document_` refers
   pugi::xml_document document_;
   WorkbookTexts texts_;
   std::vector<Sheet> sheets_;
   SheetText chosen_;
-  std::vector<std::string> others_;  ///< notes about the other sheets
+  std::vector<std::string> others_;  ///< notes about the sheets that are not read
 };
 
 }  // namespace
