@@ -12,7 +12,7 @@ namespace softgrip::sysid {
 
 /// Motions that the logs of a fit should contain.
 enum class Excitation : std::uint8_t {
-  unloading,  ///< the pressure decreases by 20 % of the largest pressure
+  unloading,  ///< a decrease of the pressure by at least 20 % of the largest pressure
   rest,       ///< pressure below 2 % of the largest pressure for more than 3 s
   /// Two peaks whose pressures differ by at least 5 % of the largest pressure. Each peak exceeds the next
   /// turning point by 5 % of the largest pressure.

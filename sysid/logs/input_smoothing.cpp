@@ -168,7 +168,8 @@ double white_noise_of(std::span<const double> time_s, std::span<const double> va
     if (std::isfinite(off))
       deviations.push_back(std::abs(off) / std::sqrt(1 + share * share + (1 - share) * (1 - share)));
   }
-  return median_of(std::span(deviations)) / 0.6745;  // the median of a standard normal's magnitude
+  // The magnitude of a standard normal variable has a median of 0.6745.
+  return median_of(std::span(deviations)) / 0.6745;
 }
 
 std::vector<double> smoothed(std::span<const double> time_s, std::span<const double> values, double noise) {

@@ -40,7 +40,7 @@ struct Sampling {
   double median_interval_s = 0;
   double shortest_interval_s = 0;
   double longest_interval_s = 0;
-  double jitter_s = 0;   ///< mean absolute deviation of the intervals from their median
+  double jitter_s = 0;   ///< mean absolute deviation of the intervals from their median interval
   bool regular = false;  ///< true: every interval differs from the median interval by at most 0.1 %
 
   /// Returns the median interval [s] if the intervals are regular, otherwise 0.
@@ -50,7 +50,7 @@ struct Sampling {
 /// The recorded run of one channel. All columns have as many values as time_s; optional columns may be empty
 /// instead.
 struct Log {
-  std::string path;  ///< path as the user gave it
+  std::string path;  ///< path of the file as the user wrote it
   /// Name of the log in legends: the file name without folder and extension, followed by the channel.
   std::string name;
   std::string channel;  ///< channel of the log; "" if the file has no channel column

@@ -26,8 +26,8 @@ enum class Start {
   /// In a fit, `rest` if the first pressure is nearly 0, otherwise `unknown`. For a prediction, see
   /// sysid/fitting/start_estimate.h.
   automatic,
-  rest,     ///< settled at the first pressure, which was reached by a single rise from 0
-  unknown,  ///< hysteresis, creep and offset at the beginning are estimated
+  rest,     ///< the finger has settled at the first pressure, after a single rise from zero pressure
+  unknown,  ///< unknown state; a fit estimates hysteresis, creep and offset at the beginning
 };
 
 /// Options for the conversion of logs into records.
@@ -79,7 +79,7 @@ struct Record {
   /// remaining samples.
   double finest_interval_s = 0;
   double campaign_time_s = 0;     ///< start of the record, relative to the start of the first log
-  double span_mm = 0;             ///< span of the readings
+  double span_mm = 0;             ///< range of the readings
   double drive_noise_kpa = 0;     ///< standard deviation of the noise of a measured drive before smoothing
   double largest_kpa = 0;         ///< largest magnitude of the drive
   double largest_before_kpa = 0;  ///< largest magnitude of the drive in all earlier records of the campaign

@@ -28,8 +28,8 @@ struct LogSeries {
   std::string name;  ///< name of the log
   model::OutputUnit output_unit = model::OutputUnit::mm;
   std::vector<double> time_s;
-  std::vector<double> drive_kpa;    ///< input of the models; a measured pressure is smoothed
-  std::vector<double> measured_mm;  ///< NaN: no reading
+  std::vector<double> drive_kpa;    ///< input of the models at each sample; a measured pressure is smoothed
+  std::vector<double> measured_mm;  ///< reading at each sample; NaN: no reading
   std::vector<Predicted> predicted;
   std::vector<bool> held_out;  ///< true: no model was fitted to this reading; empty: all readings were fitted
 };
