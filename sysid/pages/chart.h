@@ -24,7 +24,7 @@ struct Series {
     line,
     points,
     band,   ///< area between the curves y and y_upper
-    bars,   ///< bars from 0 to y, as wide as possible
+    bars,   ///< bars from 0 to y that touch each other
     steps,  ///< a line that keeps the value of y until the next x
   };
   std::string label;  ///< text in the legend; "": the curve is not in the legend
@@ -60,8 +60,8 @@ struct Chart {
   Axis y;
   std::vector<Series> series;
   std::vector<Mark> marks;
-  int width = 760;   ///< [px]
-  int height = 280;  ///< [px]
+  int width = 760;   ///< width of the chart [px]
+  int height = 280;  ///< height of the chart [px]
 };
 
 /// Returns a chart whose x axis is labelled with names in place of numbers.

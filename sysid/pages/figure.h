@@ -11,9 +11,9 @@ namespace softgrip::sysid {
 
 /// A picture of a figure that has no charts.
 struct Drawing {
-  std::string markup;  ///< SVG elements from a Canvas
-  int width = 760;     ///< [px]
-  int height = 100;    ///< [px]
+  std::string markup;  ///< SVG elements that a Canvas has produced
+  int width = 760;     ///< width of the drawing [px]
+  int height = 100;    ///< height of the drawing [px]
   /// Names of the columns of `rows`. The rows contain the values that the drawing shows.
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
@@ -22,7 +22,7 @@ struct Drawing {
 struct Figure {
   /// Short name of the figure: "error over time tp1". It is also part of the names of the figure's files.
   std::string name;
-  std::string caption;  ///< one or more sentences
+  std::string caption;  ///< caption of one or more sentences
   ChartRows charts;
   std::optional<Drawing> drawing = {};  ///< drawing that replaces the charts; absent: the charts are drawn
 };
