@@ -74,7 +74,8 @@ ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& rec
   }
   const double from_s = shortest_in_intervals * interval_s;
   const double to_s = std::clamp(longest_share * length_s, from_s, longest_s);
-  std::array<ResonantFit, damping_ratios.size()> best;  // best start point for each damping ratio
+  // For each damping ratio, the best fit of all start points.
+  std::array<ResonantFit, damping_ratios.size()> best;
   for (int i = 0; i < periods; ++i) {
     const double period_s = from_s * std::pow(to_s / from_s, static_cast<double>(i) / (periods - 1));
     for (std::size_t d = 0; d < damping_ratios.size(); ++d) {

@@ -21,23 +21,23 @@ enum class HysteresisForm { bouc_wen, play };
 /// The components that a structure has.
 struct BaseStructure {
   HysteresisForm hysteresis = HysteresisForm::play;
-  bool hysteretic = true;      ///< true: hysteresis; false: only the elastic gain
-  bool creep = true;           ///< a chain of Kelvin-Voigt branches with fixed time constants
-  bool slow_creep = true;      ///< the chain has time constants above 10 % of the longest record
-  bool delay = true;           ///< dead time between the drive and the finger
-  bool lag = true;             ///< a first-order lag after the delay
-  bool two_way = true;         ///< filling and venting have different time constants
-  bool second_lag = false;     ///< a second lag before the first one, with one time constant for both
-                               ///< directions
-  bool rate_limit = false;     ///< a rate limit behind the lag, see model::RateLimit
-  bool regulator = false;      ///< the lag is that of a regulator with an overlap, see RegulatedPressure
-  bool characteristic = true;  ///< a nonlinear, monotonic map after the sum
-  bool resonance = false;      ///< a second-order mode after the map, see with_resonance()
-  bool envelopes = false;      ///< generalised play operators with nonlinear envelopes
+  bool hysteretic = true;  ///< true: the structure has hysteresis; false: it only has an elastic gain
+  /// True: the structure has a chain of creep branches with fixed time constants.
+  bool creep = true;
+  bool slow_creep = true;  ///< true: the chain includes time constants above 10 % of the longest record
+  bool delay = true;       ///< true: there is a dead time between the drive and the finger
+  bool lag = true;         ///< true: there is a first-order lag after the dead time
+  bool two_way = true;     ///< true: the lag has different time constants for filling and venting
+  /// True: there is another lag before the first one, with one time constant for both directions.
+  bool second_lag = false;
+  bool regulator = false;      ///< true: the lag is that of a regulator with an overlap (RegulatedPressure)
+  bool characteristic = true;  ///< true: the sum of all operators passes a nonlinear, monotonic map
+  bool resonance = false;      ///< true: a second-order mode follows this map (with_resonance())
+  bool envelopes = false;      ///< true: the play operators are generalised ones with nonlinear envelopes
   bool hinged_creep =
-      false;               ///< pressure-dependent creep: a short chain above each threshold pressure (hinge)
-  bool wandering = false;  ///< a piecewise linear drift of the zero of each record, which is not a part of
-                           ///< the finger
+      false;  ///< pressure-dependent creep: a short chain above each threshold pressure (hinge)
+  /// True: the zero of each record drifts along a piecewise linear curve; this is no part of the finger.
+  bool wandering = false;
   /// The published element: one lag, Bouc-Wen, and two Kelvin-Voigt branches with fitted time constants.
   bool published = false;
 
@@ -53,12 +53,13 @@ struct BaseStructure {
 /// Parameters of the operators that a fit does not change. These are thresholds, time constants and threshold
 /// pressures of creep (hinges).
 struct StructureGrid {
-  double largest_kpa = 0;              ///< largest magnitude of the drive
-  double span_mm = 0;                  ///< largest magnitude of the readings
-  std::vector<double> thresholds_kpa;  ///< thresholds of the play operators in increasing order, without that
-                                       ///< of the elastic operator (0)
-  std::vector<double> ladder_s;        ///< time constants of the creep branches, in increasing order
-  double slow_from_s = 0;              ///< branches with this or a larger time constant count as slow creep
+  double largest_kpa = 0;  ///< largest magnitude of the drive
+  double span_mm = 0;      ///< largest magnitude of the readings
+  /// Thresholds of the play operators except the elastic one (threshold 0), in increasing order.
+  std::vector<double> thresholds_kpa;
+  std::vector<double> ladder_s;  ///< time constants of the creep branches, in increasing order
+  /// A branch counts as slow creep if its time constant is at least this value.
+  double slow_from_s = 0;
   std::vector<double> hinges_kpa;  ///< threshold pressures of pressure-dependent creep, in increasing order
   std::vector<double> hinge_ladder_s;  ///< time constants of pressure-dependent creep
 };
@@ -66,24 +67,25 @@ struct StructureGrid {
 /// The nonlinear parameters of a structure.
 struct NonlinearNumbers {
   double delay_s = 0;
-  double filling_s = 0;  ///< time constant while the pressure rises; 0: no lag
+  double filling_s = 0;  ///< time constant of the lag while the pressure rises; 0: no lag
   double venting_s = 0;
   double second_s = 0;           ///< time constant of the second lag
   double filling_s_per_kpa = 0;  ///< rate limit: shortest time in which the pressure rises by 1 kPa
   double venting_s_per_kpa = 0;
   double pilot_band_kpa = 0;  ///< regulator: change of the command that the regulator ignores after a
                               ///< reversal
-  double overlap_kpa = 0;     ///< regulator: this and the next two parameters are those of RegulatorNumbers
+  /// Overlap of the regulator; this and the next two members are those of RegulatorNumbers.
+  double overlap_kpa = 0;
   double integral_s = 0;
   double full_open_kpa = 0;
   double curvature = 0;        ///< curvature of the characteristic
-  double growing_per_kpa = 0;  ///< Bouc-Wen: gamma + eta
-  double narrowing = 0.5;      ///< Bouc-Wen: eta / (gamma + eta), in (0, 1]
-  double trained_kpa = 0;      ///< play operators: the largest pressure before the logs
-  double envelope_bend = 0;    ///< this and the next parameter are those of model::EnvelopeMap
+  double growing_per_kpa = 0;  ///< gamma + eta of the Bouc-Wen element
+  double narrowing = 0.5;      ///< eta / (gamma + eta) of the Bouc-Wen element, in (0, 1]
+  double trained_kpa = 0;      ///< largest pressure before the logs, which affects the play operators
+  double envelope_bend = 0;    ///< this member and the next one are those of model::EnvelopeMap
   double envelope_skew = 0;
-  std::vector<double> peak_before_kpa;  ///< for each record, see StartState; 0 for records that start from
-                                        ///< rest
+  /// Last peak before each record (see StartState); 0 for a record that starts from rest.
+  std::vector<double> peak_before_kpa;
 
   bool operator==(const NonlinearNumbers&) const = default;
 };

@@ -24,7 +24,7 @@ struct StructureChoiceOptions {
   /// lack a cause, one block may dominate the standard error and make the difference insignificant.
   double published_yields_below = 0;
   StructureQuestion question = StructureQuestion::automatic;
-  Drive drive = Drive::command;  ///< input; Drive::measured: the structures have no dead time
+  Drive drive = Drive::command;  ///< input of the structures; with Drive::measured, they have no dead time
   /// True: a second lag and a resonance are tried too. The diagnosis does not need these extensions, because
   /// it treats them as causes.
   bool dynamics = false;
@@ -33,26 +33,27 @@ struct StructureChoiceOptions {
   double slow_from_s = 0;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  std::function<void(const std::string&)> progress;  ///< receives the progress; may be called from any thread
+  /// Called with a text that states the progress, from any thread.
+  std::function<void(const std::string&)> progress;
 };
 
 /// Components of a structure. Each is removed once to measure how much it reduces the error.
 enum class Ingredient {
   hysteresis,
-  play_operators,  ///< replaced by the Bouc-Wen element
+  play_operators,  ///< play operators; the Bouc-Wen element replaces them
   creep,
   slow_creep,
   pressure_dependent_creep,
   delay,
   lag,
   second_lag,
-  rate_limit,
-  latency,         ///< delay and lag together, because one of them can largely replace the other
-  regulator,       ///< replaced by a lag
-  venting_lag,     ///< replaced by one time constant for both directions
-  characteristic,  ///< together with the envelopes, because one of them can largely replace the other
+  latency,      ///< delay and lag together, because one of them can largely replace the other
+  regulator,    ///< regulator; a lag replaces it
+  venting_lag,  ///< separate time constant for venting; one time constant for both directions replaces it
+  /// Characteristic and envelopes together, because one of them can largely replace the other.
+  characteristic,
   resonance,
-  envelopes  ///< generalised play operators, replaced by ordinary play operators
+  envelopes  ///< generalised play operators; ordinary play operators replace them
 };
 inline constexpr std::array all_ingredients{Ingredient::hysteresis,
                                             Ingredient::play_operators,
@@ -76,20 +77,21 @@ inline constexpr std::array all_ingredients{Ingredient::hysteresis,
 struct StructureTrial {
   BaseStructure structure;
   FitPoint point;
-  NonlinearNumbers numbers;  ///< empty for the published element
+  NonlinearNumbers numbers;  ///< nonlinear parameters; not used for the published element
   double ridge = 0;
-  double rmse_mm = 0;  ///< RMSE over the fitted readings
+  double rmse_mm = 0;  ///< RMSE over the readings to which the structure was fitted
   bool converged = false;
-  bool bounded = true;     ///< see stays_bounded(); a trial that is not bounded cannot be chosen
+  bool bounded = true;     ///< result of stays_bounded(); a trial that is not bounded cannot be chosen
   bool invertible = true;  ///< false: the published element has an inverse response, so the trial cannot be
                            ///< chosen
-  std::vector<double> start_rmse_mm;     ///< RMSE of the search from each start point
-  std::vector<double> block_losses_mm2;  ///< mean square error of each block under the fit without it
-  double heldout_rmse_mm = 0;            ///< square root of the mean of the block losses
+  std::vector<double> start_rmse_mm;  ///< RMSE of the search from each start point
+  /// Mean square error of each block, predicted by a fit without this block.
+  std::vector<double> block_losses_mm2;
+  double heldout_rmse_mm = 0;  ///< square root of the mean of the block losses
 };
 
 struct StructureChoice {
-  std::vector<StructureTrial> trials;  ///< all trials, the simplest structure first
+  std::vector<StructureTrial> trials;  ///< all trials; the simplest structure comes first
   std::size_t chosen = 0;
   double ridge = 0;
   std::size_t blocks = 0;
@@ -127,7 +129,7 @@ struct WithoutIngredient {
     const std::vector<Record>& records, const StructureChoice& choice, const StructureChoiceOptions& options,
     std::span<const Ingredient> ingredients = all_ingredients);
 
-/// Fits the structure of a trial, with the ridge parameter of the trial, to other readings of the same
+/// Fits the structure of a trial, with the ridge parameter of the trial, to modified readings of the same
 /// records.
 /// @param trial  trial without a resonance, that is, from a choice without `dynamics`.
 [[nodiscard]] FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records,

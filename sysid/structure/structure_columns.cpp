@@ -137,10 +137,10 @@ class PressureMemory {
   model::EnvelopeMap<double> envelopes_;
   bool bouc_wen_;
   HysteresisRates rates_;
-  std::vector<double> plays_, untouched_;  ///< current states, and states after the largest load before the
-                                           ///< logs
+  /// States of the play operators: the current ones, and those after the largest load before the logs.
+  std::vector<double> plays_, untouched_;
   double g_ = 0;
-  double steepest_;  ///< maximum of dg/dp
+  double steepest_;  ///< largest value of dg/dp
 };
 
 std::size_t branches_of(const BaseStructure& structure, const StructureGrid& grid) {
@@ -201,7 +201,7 @@ StructureColumns::StructureColumns(const std::vector<Record>& records, const Bas
 const Eigen::MatrixXd& StructureColumns::at(const NonlinearNumbers& numbers) {
   const bool driven_alike = !driven_.empty() && drive_alike(numbers_, numbers);
   NonlinearNumbers same = numbers;
-  same.curvature = numbers_.curvature;  // the curvature does not affect the columns
+  same.curvature = numbers_.curvature;  // the columns do not depend on the curvature
   if (driven_alike && same == numbers_) return columns_;
   numbers_ = numbers;
   driven_.resize(records_.size());

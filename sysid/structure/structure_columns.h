@@ -78,8 +78,8 @@ class StructureColumns {
                    const StructureGrid& grid);
 
   /// Returns the matrix for the given nonlinear parameters. Parameters that the structure does not have are
-  /// ignored. A column is only computed again if its parameters differ from those of the last call. The
-  /// columns that depend on the delay and the lags are expensive. Idle threads process the records in
+  /// ignored. A column is recomputed only if its parameters differ from those of the previous call. The
+  /// columns that depend on the delay and the lags take most of the time. Idle threads process the records in
   /// parallel. The result is valid until the next call.
   [[nodiscard]] const Eigen::MatrixXd& at(const NonlinearNumbers& numbers);
 
@@ -92,7 +92,7 @@ class StructureColumns {
   const BaseStructure& structure_;
   const StructureGrid& grid_;
   ColumnLayout layout_;
-  std::vector<std::size_t> first_row_;  ///< first row of each record
+  std::vector<std::size_t> first_row_;  ///< index of the first row of each record
   Eigen::MatrixXd columns_;
   NonlinearNumbers numbers_;            ///< parameters for which columns_ was computed
   std::vector<DrivenPressure> driven_;  ///< pressure of each record; empty before the first call of at()

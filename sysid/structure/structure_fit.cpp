@@ -37,7 +37,8 @@ struct Coordinate {
   double centre = 0;
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
-  bool drives = false;  ///< true: the pressure in the finger depends on it, so its derivative is expensive
+  /// True: the pressure in the finger depends on this coordinate, so its derivative is expensive.
+  bool drives = false;
 };
 
 Coordinate straight(double NonlinearNumbers::*member, double width, double centre, double lower,

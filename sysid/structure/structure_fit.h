@@ -13,10 +13,10 @@
 namespace softgrip::sysid {
 
 struct StructureFitOptions {
-  double ridge = 1e-5;           ///< see ProjectionProblem
-  int most_iterations = 40;      ///< maximum number of iterations from each start point
-  std::size_t most_rows = 2500;  ///< maximum number of readings in the search; the weights are then fitted to
-                                 ///< all readings
+  double ridge = 1e-5;       ///< factor of the ridge penalty (ProjectionProblem)
+  int most_iterations = 40;  ///< maximum number of iterations from each start point
+  /// Maximum number of readings in the search; the final weights are fitted to all readings.
+  std::size_t most_rows = 2500;
 };
 
 /// A structure with its fitted parameters.

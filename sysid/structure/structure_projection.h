@@ -17,15 +17,15 @@ struct ProjectionProblem {
   double largest_kpa =
       1;  ///< largest pressure, which converts a weight to the largest motion of its operator [mm]
   double least_elastic =
-      0;             ///< lower bound of the elastic weight; if it is positive, the model has an inverse
-  double ridge = 0;  ///< penalty factor for the squares of weight * largest_kpa, which are added to the mean
-                     ///< square error
+      0;  ///< lower bound of the elastic weight; if it is positive, the model has an inverse
+  /// Factor of the ridge penalty: the squares of weight * largest_kpa are added to the mean square error.
+  double ridge = 0;
 };
 
 struct Projection {
   Eigen::VectorXd weights;
   Eigen::VectorXd error_mm;    ///< prediction minus reading, for all rows
-  Eigen::VectorXd penalty_mm;  ///< the ridge penalty as additional residuals with the same scale as error_mm
+  Eigen::VectorXd penalty_mm;  ///< the ridge penalty as additional residuals, in the scale of error_mm
   double mean_square_mm2 = 0;  ///< mean square error of all rows
 };
 

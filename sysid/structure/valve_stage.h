@@ -18,7 +18,7 @@ enum class ValvePart : std::uint8_t {
   delay,
   dead_band,
   lag,
-  two_ways,  ///< a separate time constant of the lag for venting
+  two_ways,  ///< a separate time constant of the lag for venting, in addition to that for filling
   supply_sag,
   limit,
   second_lag,  ///< a second lag after the first one, with one time constant for both directions
@@ -41,13 +41,14 @@ using ValveParts = std::bitset<valve_part_count>;
 
 struct ValveStage {
   double delay_s = 0;
-  double band_kpa = 0;  ///< change of the command that the valve ignores after a reversal
+  double band_kpa = 0;  ///< after a reversal of the command, the valve ignores a change of this size
   double filling_s = 0;
   double venting_s = 0;
-  double second_s = 0;            ///< time constant of the second lag
-  double coupling = 0;            ///< relative decrease of the pressure per relative decrease of the supply
-  double nominal_supply_kpa = 0;  ///< supply pressure relative to which the decrease is computed; 0: the
-                                  ///< supply is not recorded
+  double second_s = 0;  ///< time constant of the second lag
+  /// Relative decrease of the pressure divided by the relative decrease of the supply pressure.
+  double coupling = 0;
+  /// Supply pressure at which the coupling has no effect; 0: the supply is not recorded.
+  double nominal_supply_kpa = 0;
   double limit_kpa = std::numeric_limits<double>::infinity();
   double leak_share = 0;  ///< share of a small pressure that a leak in the line loses (model/line_loss.h)
   double gauge_gain = 1;  ///< gain of the pressure sensor
@@ -69,10 +70,10 @@ enum class PressureSensorFit : std::uint8_t { nothing, zero, gain_and_zero };
 struct ValveFit {
   ValveParts parts = usual_valve_parts();
   PressureSensorFit sensor = PressureSensorFit::nothing;
-  bool held = false;  ///< true: the command keeps its value until the next sample
+  bool held = false;  ///< true: the command is constant until the next sample
   /// Returns true for the samples that are fitted; empty: all samples are fitted.
   std::function<bool(std::size_t log, std::size_t sample)> is_fitted = {};
-  std::vector<ValveStage> from = {};  ///< start points of the search; empty: three default ones
+  std::vector<ValveStage> from = {};  ///< start points of the search; empty: three default start points
   double tolerance = 1e-12;           ///< relative change of the cost at which the search ends
 };
 
