@@ -1,7 +1,7 @@
 #pragma once
-// Reads the folder that `softgrip baseline` has written. It contains the logs healthy_1.csv ..., the logs
-// second_1.csv ... of a second run that checked the first, gauge.csv, model.yaml, and baseline.json.
-// baseline.json states the origin and the hash of each file.
+// Reads the folder that `softgrip baseline` has written. It contains healthy_1.csv and further healthy logs,
+// second_1.csv and further logs of a second run that checked the first run, gauge.csv, model.yaml and
+// baseline.json. baseline.json states the origin and the hash of each file.
 
 #include <string>
 #include <vector>

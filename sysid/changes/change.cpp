@@ -116,8 +116,8 @@ Tolerance tolerance_of(const std::vector<HealthyFits>& healthy, std::size_t runs
   return {gains, runs};
 }
 
-/// Errors of healthy units, each predicted by a fit to the others, and the largest permitted error of another
-/// healthy run.
+/// Errors of healthy units, each predicted by a fit to all other healthy units, and the largest permitted
+/// error of another healthy run.
 class RunSpread {
  public:
   RunSpread() = default;

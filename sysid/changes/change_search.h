@@ -1,6 +1,6 @@
 #pragma once
 // Finds the effects in one quantity, one after the other. The error reduction by each effect is compared with
-// the reduction that the same search finds in readings of the healthy finger.
+// the reduction that an equal search finds in readings of the healthy finger.
 
 #include <cstdint>
 #include <functional>
