@@ -65,8 +65,8 @@
 
 namespace softgrip::sysid {
 
-/// Actions by which an operator separates causes that no waveform separates. Two causes are separated by an
-/// action that both list.
+/// Actions by which an operator separates causes that no waveform separates. An action separates two causes
+/// if both causes list this action.
 enum class Advice : std::uint8_t {
   change_load,         ///< change the load, move the object, or hold the sensor against a gauge
   leave_vented,        ///< leave the finger vented for an hour and read the sensor zero

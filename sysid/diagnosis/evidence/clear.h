@@ -5,8 +5,8 @@ namespace softgrip::sysid {
 
 /// Returns true if an effect is significant, so that it is drawn and described. Its p-value must be below
 /// 0.02, and it must explain at least 5 % of the unexplained error. For effects that are tested together,
-/// pass the adjusted p-value. The intended level is 5 %. The limit of 0.02 is stricter, because the tests
-/// reject too often in short logs whose residuals have a long correlation time.
+/// pass the adjusted p-value. The intended level is 5 %. The tests reject too often in short logs whose
+/// residuals have a long correlation time, so the limit is stricter.
 [[nodiscard]] constexpr bool is_clear(double p_value, double share_percent) {
   constexpr double once_in_fifty = 0.02;
   constexpr double a_twentieth_percent = 5;

@@ -1,7 +1,7 @@
 #pragma once
-// Designs the next experiment: selects the waveform that best separates alternatives which explain the logs
-// equally well. Before two alternatives are compared, each of them is refitted to the prediction of the other
-// one.
+// Designs the next experiment. Several causes may explain the logs equally well; the waveform that best
+// separates these alternatives is selected. Before two alternatives are compared, each of them is refitted to
+// the prediction of the other one.
 
 #include <optional>
 #include <string>

@@ -16,9 +16,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Distance of the clipping limits from the lowest and the highest reading of the logs, as a share of the
-/// range of these readings and in standard deviations of the noise. It is large enough to distinguish a
-/// sensor that saturates from a sensor that does not.
+/// Distance of the lower clipping limit from the lowest reading of the logs, and of the upper limit from the
+/// highest reading. One value is a share of the range of the readings, the other a number of standard
+/// deviations of the noise. The distance is large enough to distinguish a sensor that saturates from a sensor
+/// that does not.
 constexpr double beyond_share = 0.05;
 constexpr double beyond_noise = 10;
 /// Share of the difference between two hypotheses that counts as tolerance in their comparison.
@@ -116,8 +117,8 @@ class Checker {
   }
 
   /// Returns start values of zero and scale as straight lines. The first line is fitted to all readings, and
-  /// the second to the readings that are not clipped. The third is fitted to the lower half of the latter,
-  /// which a saturation does not affect. The last line has zero 0 and scale 1.
+  /// the second to the readings that are not clipped. The third is fitted to the lower half of the unclipped
+  /// readings, which a saturation does not affect. The last line has zero 0 and scale 1.
   [[nodiscard]] std::vector<Line> starts(double offset_mm) const {
     const double middle = (scales_.lowest_mm + scales_.highest_mm) / 2;
     const auto all = [](std::size_t) { return true; };

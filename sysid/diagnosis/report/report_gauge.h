@@ -8,7 +8,7 @@
 namespace softgrip::sysid {
 
 /// Returns a chart of the readings and the predictions of the hypotheses over the gauge position. The
-/// straight line that fits the readings best is subtracted from both.
+/// straight line that fits the readings best is subtracted from the readings and from the predictions.
 [[nodiscard]] Chart gauge_chart(const GaugeEvidence& gauge);
 
 /// Adds the section about the gauge check to the page.

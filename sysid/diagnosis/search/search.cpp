@@ -24,8 +24,8 @@ constexpr double glance_interval_s = 0.04;
 /// become the best candidate or an alternative.
 constexpr FitEffort coarse_fit{.most_iterations = 8, .tolerance = 1e-5};
 constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
-/// Number of causes that always get a medium fit, and ratio of mean squares for the others. A further cause
-/// gets a medium fit if the mean square of its coarse fit is below this ratio times the smallest one.
+/// Number of causes that always get a medium fit. Each further cause gets a medium fit if the mean square of
+/// its coarse fit is below worth_a_look times the smallest one.
 constexpr std::size_t always_looked_at = 7;
 constexpr double worth_a_look = 1.5;
 constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
@@ -33,9 +33,9 @@ constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
 constexpr std::size_t followed = 2;
 /// A form with more parameters is preferred if it reduces the mean square by at least this share.
 constexpr double more_numbers_gain = 0.02;
-/// Numbers of candidates that always get a full fit on thinned records and on all samples, and ratios of mean
-/// squares for the others. A further candidate gets a full fit if its mean square is below the ratio times
-/// the smallest one.
+/// Numbers of candidates that always get a full fit: always_followed on thinned records, always_finished on
+/// all samples. Each further candidate gets a full fit if its mean square is below near_enough or
+/// next_to_best times the smallest one.
 constexpr std::size_t always_followed = 5;
 constexpr double near_enough = 1.4;
 constexpr std::size_t always_finished = 4;
@@ -156,8 +156,8 @@ class CandidateFitter {
     });
   }
 
-  /// Fits the best candidate completely before all others, and returns true if the others need no full fit.
-  /// The comparison with another explanation needs the full fit of the best candidate.
+  /// Fits the best candidate completely before all other candidates. Returns true if the other candidates
+  /// need no full fit. The comparison with another explanation needs the full fit of the best candidate.
   bool is_hopeless() {
     if (!search_.is_hopeless) return false;
     leader_ = ranking().front();
@@ -206,7 +206,7 @@ class CandidateFitter {
   std::vector<Candidate> candidates_;
   /// For each candidate, its fits to thinned records; the best fit comes first.
   std::vector<std::vector<StructureFit>> fits_;
-  /// Index of the candidate that got its full fit before the others.
+  /// Index of the candidate that got its full fit before all other candidates.
   std::optional<std::size_t> leader_;
 };
 

@@ -73,7 +73,7 @@ class BestStickSlip {
     if (!found || (best_ && found->fit.mean_square_mm2 > best_->fit.mean_square_mm2)) return;
     best_ = std::move(found);
   }
-  /// Returns true if the remaining error is so small that at most a few jumps are wrong.
+  /// Returns true if the remaining error is so small that at most a few jumps in the path can be wrong.
   [[nodiscard]] bool meets_all() const {
     return best_ &&
            unexplained_error_of(best_->fit.residual_mm, noise_mm_).excess_mm < a_jump_off * noise_mm_;

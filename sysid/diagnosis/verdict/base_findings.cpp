@@ -38,9 +38,9 @@ constexpr double as_good_with_fewer = 1.25;
 /// element, and this fit only checks that its error is not much larger.
 constexpr std::size_t published_starts = 6;
 
-/// Returns true if the richer base structure predicts better than the given one. For this, both are fitted to
-/// the first half of each log and predict the second half. Also returns true if the given model has an
-/// inverse response, because no finger has an inverse response.
+/// Returns true if the richer base structure predicts better than the given one. For this test, both
+/// structures are fitted to the first half of each log and predict its second half. Also returns true if the
+/// given model has an inverse response, because no finger has an inverse response.
 bool foretells_better(const std::vector<Record>& records, const StructureTrial& chosen, const FitPoint& given,
                       Drive drive) {
   if (beta_over_gain(given.model) > 1) return true;

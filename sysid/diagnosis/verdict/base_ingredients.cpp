@@ -130,9 +130,9 @@ class Labeller {
 };
 
 /// Returns the latency of the finger (delay or lag) as a finding. A delay can largely replace a lag, and a
-/// lag a delay. The data may then require neither of the two, although the finger responds late. The one
-/// whose removal increases the loss more is reported for both. Returns nullopt if a delay or lag is already
-/// named.
+/// lag a delay. The data may then require neither of the two, although the finger responds late. The
+/// component whose removal increases the loss more is reported, in place of both components. Returns nullopt
+/// if a delay or lag is already named.
 std::optional<NamedCause> latency_of(const std::vector<WithoutIngredient>& ablation, const Labeller& labeller,
                                      const BaseFindings& found) {
   const StructureTrial* const neither = trial_without(ablation, Ingredient::latency);

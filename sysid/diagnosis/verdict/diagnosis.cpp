@@ -32,8 +32,8 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr double clearly_correlated = 0.05;
 constexpr std::size_t fewest_samples = 200;
-/// Refits the base structure from the given model and from start points at the scale of the data, because the
-/// given model may be far from the data.
+/// Refits the base structure. The given model may be far from the data, so the fits start at the given model
+/// and at points at the scale of the data.
 tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, const DiagnosisOptions& options) {
   StructureFit best = fit_structure(data.records, {}, data.given);
   IdentifyOptions wide;

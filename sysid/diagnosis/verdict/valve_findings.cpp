@@ -230,8 +230,8 @@ class Search {
   }
 
   void add_lost_pressure(ValveFindings& found, ValveParts kept) const {
-    // A falling supply or a pressure limit reduces the pressure too. Therefore the fit that includes both
-    // comes first.
+    // A falling supply or a pressure limit reduces the pressure too. Therefore the fit that includes supply
+    // and pressure limit comes first.
     if (!(whole_.stage.gauge_gain < 1 - scales_agree_within)) return;
     const auto lost = find_lost_pressure(logs_, valve_, kept, found.stage);
     if (!lost) return;
