@@ -22,7 +22,7 @@ struct Comparison {
 /// Compares the weighted mean losses per row, with random weights of the blocks (Bayesian bootstrap: Rubin,
 /// Annals of Statistics 9, 1981).
 /// @param tolerance  difference of the losses per row that `better` must exceed.
-/// @param seed  seed of the random weights; the same seed gives the same result.
+/// @param seed  seed of the random weights; equal seeds give equal results.
 [[nodiscard]] Comparison compare(const PairedLosses& losses, double tolerance, std::uint64_t seed);
 
 /// Returns true if the loss of `better` is smaller by more than the tolerance in at least limits::probability
