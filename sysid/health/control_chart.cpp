@@ -9,8 +9,9 @@
 namespace softgrip::sysid::health {
 namespace {
 
-/// Start of the change if a single value raises the alarm: if the CUSUM before this value exceeded this share
-/// of `pause_learning`, the change starts where the CUSUM starts. Otherwise the change starts at this value.
+/// Limit of the CUSUM before a single value that raises the alarm, as a share of `pause_learning`. If the
+/// CUSUM exceeded this limit, the change starts where the CUSUM starts. Otherwise the change starts at the
+/// single value.
 constexpr double on_its_way_share = 0.6;
 
 /// Returns the limit of the magnitude of a standard normal value. On average, one of `once_in` values exceeds

@@ -7,10 +7,10 @@
 // normal value. For independent normal values, the results are independent and standard normal from the third
 // value on, for any mean and standard deviation (Hawkins, The Statistician 36, 1987; Quesenberry, Journal of
 // Quality Technology 23, 1991). If the values depend significantly on a recorded temperature, the chart
-// compares them with their regression line over the temperature, as in a control chart of regression-adjusted
-// variables (Hawkins, Technometrics 33, 1991). Two tests use the results: a two-sided CUSUM (Page, Biometrika
-// 41, 1954) for lasting shifts, and a limit for single large values (Lucas, Journal of Quality Technology 14,
-// 1982). Each test receives half of the specified false alarm rate.
+// compares them with their regression line over the temperature. Hawkins describes such charts of
+// regression-adjusted variables (Technometrics 33, 1991). Two tests use the results: a two-sided CUSUM (Page,
+// Biometrika 41, 1954) for lasting shifts, and a limit for single large values (Lucas, Journal of Quality
+// Technology 14, 1982). Each test receives half of the specified false alarm rate.
 //
 // While a CUSUM exceeds `pause_learning`, the chart adds no values to the reference. Otherwise a change soon
 // after the start would become part of the reference before it is detected. The mean of a few reference
@@ -21,11 +21,11 @@
 //
 // The weather lasts for days, so the values of neighbouring days are correlated. A CUSUM of correlated values
 // drifts farther than a CUSUM of independent values. The chart therefore estimates the lag-one correlation of
-// the values and subtracts half the standard error of this estimate. It divides the values of the CUSUM by
-// the factor by which this correlation increases the standard deviation of a mean of many values (Johnson and
-// Bagshaw, Technometrics 16, 1974). 4000 charts with 90 healthy values each were simulated. With a
-// correlation of 0.5, 4.4 % of the charts alarmed (24 % without this correction); with 0.7, 15 % alarmed (65
-// % without the correction). The specified false alarm rate applies to independent values.
+// the values and subtracts half the standard error of this estimate. The correlation increases the standard
+// deviation of a mean of many values by a factor. The chart divides the values of the CUSUM by this factor
+// (Johnson and Bagshaw, Technometrics 16, 1974). 4000 charts with 90 healthy values each were simulated. With
+// a correlation of 0.5, 4.4 % of the charts alarmed (24 % without this correction); with 0.7, 15 % alarmed
+// (65 % without the correction). The specified false alarm rate applies to independent values.
 //
 // 200,000 charts of independent values were simulated, with limits for a mean of 32850 values between two
 // false alarms. Within the first 90 values, 1.2 times as many charts alarmed as these limits imply. These

@@ -12,9 +12,9 @@
 namespace softgrip::sysid::health {
 
 enum class Part : std::uint8_t {
-  neither,  ///< in contact but not held; released but not yet clear of the object; after the loss of a part
-            ///< or after a fault
-  rest,     ///< samples of a vented finger before its first motion
+  /// Neither rest, free motion nor HOLDING; for example in contact before HOLDING, or after a fault.
+  neither,
+  rest,  ///< samples of a vented finger before its first motion
   free,
   held,  ///< HOLDING with the command that was active at the start of HOLDING
 };

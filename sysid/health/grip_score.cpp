@@ -18,8 +18,8 @@ namespace {
 
 using sysid::HealthNumber;
 
-/// Gain and lag are computed only if the motion has at least this range [share of the displacement at full
-/// pressure] and this RMS speed [share of the displacement at full pressure, per second].
+/// Smallest range and smallest RMS speed of a motion from which gain and lag are computed. The range is a
+/// share of the displacement at full pressure. The speed is such a share per second.
 constexpr double least_motion = 0.1;
 constexpr double least_speed_per_s = 0.02;
 /// A motion has a direction only if its speed is at least this value [share of the displacement at full

@@ -33,8 +33,8 @@ bool has_days(const FingerHealth& health) {
                      [](const HealthPoint& point) { return day_of(point.label).has_value(); });
 }
 
-/// Returns the horizontal position of a point in the charts: the days since the first point if both labels
-/// are days, otherwise the index of the point.
+/// Returns the horizontal position of a point in the charts. It is the number of days since the first point
+/// if the labels are days. Otherwise it is the index of the point.
 double place_of(const FingerHealth& health, std::size_t point) {
   const auto first = day_of(health.points.front().label), now = day_of(health.points[point].label);
   if (!first || !now) return static_cast<double>(point);

@@ -3,8 +3,9 @@
 //
 // Influences that last for days, above all the weather, change all fingers of a rig in the same way. Every
 // indicator of a finger therefore has two control charts. One shows the finger's own values. The other shows
-// their difference from the peer fingers in the same runs, as for a process with several streams (Mortell and
-// Runger, Journal of Quality Technology 27, 1995). The charts distinguish three cases:
+// the difference between the finger and its peer fingers in the same runs. Mortell and Runger describe such
+// charts for processes with several streams (Journal of Quality Technology 27, 1995). The charts distinguish
+// three cases:
 //
 // - The difference has changed. The change is attributed to a finger if its own values have changed more than
 //   the values of its peers, with a likelihood ratio of at least 20 to 1. Otherwise the change is reported as

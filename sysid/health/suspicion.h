@@ -19,7 +19,7 @@ struct Suspect {
 };
 
 struct Suspicion {
-  /// Candidate causes; the best one comes first, and the others have nearly the same score.
+  /// Candidate causes; the best one comes first, and all of them have nearly equal scores.
   std::vector<Suspect> suspects;
   std::vector<std::string> advice;  ///< checks that distinguish the candidates from each other
 };
