@@ -25,8 +25,8 @@ struct Overflow {
 /// not changed. @param unit_s  unit of the clock [s].
 std::optional<Overflow> continue_overflows(std::vector<double>& clock, double unit_s);
 
-/// Returns the indices of the columns that probably contain times: dates, times of day, or increasing numbers
-/// in a column with the name or the unit of a time.
+/// Returns the indices of the columns that probably contain times. Such a column contains dates, times of
+/// day, or increasing numbers under a name or unit of time.
 [[nodiscard]] std::vector<std::size_t> time_columns(const ForeignTable& table);
 
 /// Returns the values of a time column [s]; NaN for a missing value. Returns nullopt if the unit of the

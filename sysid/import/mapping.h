@@ -42,10 +42,10 @@ inline constexpr std::array<RoleSpec, role_count> roles{{
 /// Source of the values of a role. The value in the log is (value - zero), converted from `unit` to the unit
 /// of the log or multiplied by `scale`.
 struct ColumnMapping {
-  std::vector<std::string>
-      columns;       ///< names, or numbers from 1; several columns are averaged, but each of several time
-                     ///< columns belongs to its own values (clock.h); empty: the file does not have the role
-  std::string unit;  ///< empty: the unit that the header of the column states
+  /// Names or numbers (from 1) of the columns; empty: the file does not have the role. Several columns are
+  /// averaged. If there are several time columns, each applies to its own values (clock.h).
+  std::vector<std::string> columns;
+  std::string unit;             ///< empty: the unit that the header of the column states
   std::optional<double> scale;  ///< log units per unit of the column, instead of the factor of a unit; if
                                 ///< `unit` is an angle, `scale` of a displacement gives that unit
   std::optional<double> zero;   ///< value that is subtracted before the conversion, in the unit of the column

@@ -91,8 +91,8 @@ struct TableOptions {
 /// this name, the number of the column counted from 1. Returns the number of columns if there is no such
 /// column or if several columns have this name.
 [[nodiscard]] std::size_t column_index(const ForeignTable& table, std::string_view word);
-/// Returns the word that names a column in messages and options: its name, or its number if another column
-/// has the same name or the column has no name.
+/// Returns the word that names a column in messages and options: its name or, if the name is missing or not
+/// unique, its number.
 [[nodiscard]] std::string word_of(const ForeignTable& table, std::size_t index);
 
 }  // namespace softgrip::sysid

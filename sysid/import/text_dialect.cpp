@@ -41,8 +41,8 @@ bool is_data(const Row& row, std::size_t width) {
   return row.cells == width && row.numbers > 0 && 2 * row.values > row.cells;
 }
 
-/// For one separator, the number of cells per row with which the text has the most values, and the number of
-/// these values.
+/// Result for one separator. `width` is the number of cells per row for which the rows contain the most
+/// values, and `values` is the number of these values.
 struct Fit {
   std::size_t values = 0;
   std::size_t width = 0;
