@@ -9,7 +9,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Reports an unknown column name that is similar to a name of the log format, and suggests the latter.
+/// Reports an unknown column name that is similar to a name of the log format, and suggests the name of the
+/// log format.
 void report_near_miss(const Cell& cell, std::string_view name, std::string_view line, LogReporter& report) {
   for (const KnownColumn& known : known_columns) {
     const std::string_view unit = known.name.substr(known.quantity.size() + 1);

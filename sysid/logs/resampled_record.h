@@ -16,8 +16,9 @@ namespace softgrip::sysid {
 /// readings only increase the computing time of a diagnosis or of the choice of a structure.
 inline constexpr std::size_t enough_readings = 40'000;
 
-/// Returns the samples with the indices `kept`, with the durations between these samples. @param kept
-/// ascending indices; the first is 0. The sampling of the result counts as irregular.
+/// Returns the samples with the indices `kept`, with the durations between these samples. The sampling of the
+/// result counts as irregular.
+/// @param kept  ascending indices; the first is 0.
 [[nodiscard]] Record thinned_record(const Record& record, std::span<const std::size_t> kept);
 /// Returns every `stride`-th sample, beginning with the first, for a coarse fit from many starting points. A
 /// held command is replaced by its mean over the removed samples. If the command jumps between two kept
