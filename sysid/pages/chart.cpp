@@ -96,8 +96,8 @@ class Painter {
     upper_ = top_ + 10 + line_px * head_lines();
     lower_ = top_ + chart_.height - (chart_.x.label.empty() ? 22 : 40);
   }
-  /// Returns the number of text lines that the title and the legend need. If both fit on one line, they share
-  /// it.
+  /// Returns the number of text lines that the title and the legend need. If title and legend fit on one
+  /// line, they share this line.
   [[nodiscard]] int head_lines() const {
     const double legend = legend_width();
     if (chart_.title.empty()) return legend > 0 ? 1 : 0;

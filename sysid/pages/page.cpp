@@ -10,8 +10,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Numbers of bytes below the size limit of a page that must remain free: after a figure is added, and after
-/// the copy of a figure for saving is added.
+/// Numbers of bytes that must remain free below the size limit of a page. The first applies after a figure is
+/// added. The second applies after a copy of a figure is added that the reader can save.
 constexpr std::size_t kept_for_text = 150'000;
 constexpr std::size_t kept_for_figures = 450'000;
 /// A page has a table of contents if it has at least this number of sections.
