@@ -19,9 +19,10 @@ namespace softgrip::sysid {
 enum class StructureQuestion { automatic, bouc_wen, prandtl_ishlinskii };
 
 struct StructureChoiceOptions {
-  /// The published element is rejected if another structure has a much smaller held-out error: less than this
-  /// share of the error of the element; 0: never. The difference need not be significant. If all structures
-  /// lack a cause, one block may dominate the standard error and make the difference insignificant.
+  /// The published element is rejected if the ratio of another structure's held-out error to its own error is
+  /// below this value, even if the difference is not significant. 0: this rule is not applied. If all
+  /// structures lack a cause, one block may dominate the standard error and make the difference
+  /// insignificant.
   double published_yields_below = 0;
   StructureQuestion question = StructureQuestion::automatic;
   Drive drive = Drive::command;  ///< input of the structures; with Drive::measured, they have no dead time
@@ -47,7 +48,7 @@ enum class Ingredient {
   delay,
   lag,
   second_lag,
-  latency,      ///< delay and lag together, because one of them can largely replace the other
+  latency,      ///< delay and lag together, because a delay can largely replace a lag, and a lag a delay
   regulator,    ///< regulator; a lag replaces it
   venting_lag,  ///< separate time constant for venting; one time constant for both directions replaces it
   /// Characteristic and envelopes together, because one of them can largely replace the other.
@@ -124,7 +125,7 @@ struct WithoutIngredient {
 
 /// For each of the given components that the chosen structure contains, fits and evaluates the structure
 /// without this component. Returns an empty list for the published element.
-/// @param records, options  the same as for choose_structure().
+/// @param records, options  the arguments of choose_structure().
 [[nodiscard]] std::vector<WithoutIngredient> ablation_of(
     const std::vector<Record>& records, const StructureChoice& choice, const StructureChoiceOptions& options,
     std::span<const Ingredient> ingredients = all_ingredients);

@@ -28,7 +28,7 @@ struct FittedStructure {
   double mean_square_mm2 = 0;
   double ridge = 0;
   bool converged = false;
-  std::vector<double> start_rmse_mm;  ///< RMSE at the end of the search from each start point
+  std::vector<double> start_rmse_mm;  ///< for each start point, the RMSE at the end of the search
 };
 
 /// Returns the thresholds, time constants and hinges for these records. If the records contain few cycles,
