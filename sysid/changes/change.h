@@ -83,7 +83,7 @@ struct JudgedChange {
   double allowed_mm = 0;  ///< largest RMS error that is expected in another healthy run
   /// RMS error of the baseline model in the later logs, after a fit of zero and gain.
   double later_mm = 0;
-  double explained_mm = 0;  ///< value of `later_mm` if the model includes the causes
+  double explained_mm = 0;  ///< RMS error in the later logs if the model includes the causes
   /// Mean squares of the whitened residual without and with the causes; 1 in the healthy logs.
   double loss_before = 1, loss_left = 1;
   double zero_mm = 0;  ///< change of the zero since the healthy logs

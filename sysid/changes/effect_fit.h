@@ -81,7 +81,8 @@ class LaterReadings {
   /// sizes.
   Eigen::MatrixXd nuisance_, solver_;
   Eigen::VectorXd price_;  ///< square root of the penalty for each column
-  /// Motion of the baseline model: complete, and after subtraction of the fitted zeros.
+  /// `motion_`: motion of the baseline model; `motion_left_`: this motion after subtraction of the fitted
+  /// zeros.
   Eigen::VectorXd motion_, motion_left_;
 };
 

@@ -109,7 +109,7 @@ class BinnedReadings {
 class RegulatorSearch {
  public:
   struct Point {
-    Eigen::VectorXd t, left;  ///< coordinates of the search; residuals, followed by the penalties
+    Eigen::VectorXd t, left;  ///< `t`: coordinates of the search; `left`: residuals, followed by penalties
   };
 
   RegulatorSearch(const BinnedReadings& bank, double largest_kpa)
