@@ -51,7 +51,8 @@ struct Condition {
   std::string axis;  ///< axis label: "rate of the pressure [kPa/s]"
   /// End of the sentence "the error depends on ...", such as "the rate of the pressure".
   std::string phrase;
-  std::vector<double> value;  ///< value of the condition at each sample; NaN: the condition does not apply
+  std::vector<double>
+      value;  ///< value of the condition at each sample; NaN: the condition is not defined for the sample
   bool logarithmic = false;
   /// Names of the values 0, 1, ... of the condition; empty: the values are numbers.
   std::vector<std::string> categories;

@@ -22,7 +22,7 @@ struct OutlierEvidence {
   double size_low_mm = 0;  ///< lower end of the 95 % interval of the size
   double size_high_mm = 0;
   bool distorts = false;  ///< true: the outliers increase the error by more than a quarter of the noise
-  /// True: `distorts`, and the outliers are too many for noise or a knock on the table.
+  /// True: `distorts` is true, and noise or a knock on the table cannot cause so great a number of outliers.
   bool present = false;
   std::vector<double> sizes_mm;
 };

@@ -253,7 +253,7 @@ class Selector {
     std::optional<StructureFit> fit;
     std::optional<BlockLosses> losses;
   };
-  /// For each index of a cause, the candidates that are still valid.
+  /// For each cause, by its index, candidates whose results are still valid.
   std::map<std::size_t, std::vector<Scored>> fresh_;
   /// For each index of a cause, the structure without this cause.
   std::map<std::size_t, Without> without_;

@@ -29,7 +29,7 @@ struct ChosenCause {
   std::vector<Cause> alternatives;  ///< causes that explain the data equally well, or that no command
                                     ///< separates from this cause
   Spread gain_percent;  ///< held-out error reduction when this cause is added to all other selected causes
-  /// Candidates for the place of this cause; the best one comes first.
+  /// Candidates that were tested in the place of this cause; the best one comes first.
   std::vector<CandidateScore> candidates;
   Spread gain_mm2;  ///< reduction of the held-out mean square by this cause
   /// Bootstrap inclusion frequency. This is the share of the bootstrap samples of blocks in which a structure
@@ -59,8 +59,8 @@ struct Selection {
 /// the squared noise. No base structure matches the hysteresis loop of a finger exactly. A cause that is not
 /// present can absorb part of the resulting error.
 struct LeastTaken {
-  double anyhow;          ///< limit if the reduction may be concentrated in a few blocks
-  double in_most_blocks;  ///< limit if the losses of most blocks decrease by at least about 10 %
+  double anyhow;          ///< limit for a reduction that may come from a few blocks only
+  double in_most_blocks;  ///< smallest reduction if the losses of most blocks decrease by at least about 10 %
 };
 /// Limits for a model whose input is the command. The remaining error then includes the error of the valve
 /// model. Causes that are not present absorb 0.1 to 1.4 squares of the noise. Causes that are present with an

@@ -266,8 +266,8 @@ class Diagnostician {
     return true;
   }
 
-  /// Returns true if the selection leaves too large an error. If it contains causes, the limit is what these
-  /// causes may leave. Otherwise the limit is the noise.
+  /// Returns true if the selection leaves too large an error. The limit is the error that its causes may
+  /// leave. If the selection contains no causes, the limit is the noise.
   [[nodiscard]] bool leaves_too_much(const Selection& selection) const {
     if (!selection.left.present) return false;
     if (selection.extended.causes.empty()) {
