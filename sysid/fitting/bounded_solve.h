@@ -13,7 +13,7 @@ struct BoundedSolution {
   std::vector<bool> at_bound;  ///< true: the variable is at a bound
 };
 
-/// Solves the problem.
+/// Returns the minimum of x' G x / 2 - b' x subject to lower <= x <= upper.
 /// @param gram  G, symmetric and positive semidefinite. It may be badly scaled or singular, because the
 /// solver scales it to a unit diagonal and adds a small regularisation.
 [[nodiscard]] BoundedSolution solve_bounded(const Eigen::MatrixXd& gram, const Eigen::VectorXd& b,

@@ -37,7 +37,7 @@ struct SeparableShape {
 /// Returns the shape of a separable model; nullopt for any other model.
 [[nodiscard]] std::optional<SeparableShape> separable_shape(const model::Model& model);
 
-/// The parameters of a separable chain, named as in the equations above.
+/// The parameters of a separable chain. The names are those of the equations at the top of this file.
 struct SeparablePoint {
   double growing_per_kpa = 0;
   double shrinking_per_kpa = 0;
