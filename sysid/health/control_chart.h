@@ -117,7 +117,8 @@ class ControlChart {
   ChartLimits limits_;
   double least_spread_;
   std::map<std::string, RunningReference> references_;
-  std::vector<ChartValues> history_, waiting_;  ///< all points; the points that are not in the references
+  std::vector<ChartValues> history_,
+      waiting_;  ///< `history_`: all points; `waiting_`: points not yet in a reference
   std::optional<ChartAlarm> alarm_;
   double up_ = 0, down_ = 0;
   std::size_t up_since_ = 0, down_since_ = 0;

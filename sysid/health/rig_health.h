@@ -42,7 +42,8 @@ struct SharedChange {
   std::vector<std::string> fingers;
   /// True: the temperature was recorded, and the change does not contain its known effect.
   bool temperature_recorded = false;
-  /// False: a later repair or a later shared change ended it, or the alarm of a finger explains it.
+  /// True: the change is active. False: a later repair or a later shared change ended the change, or the
+  /// alarm of a finger explains it.
   bool stands = true;
   model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of `change`
 };
