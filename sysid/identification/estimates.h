@@ -23,7 +23,8 @@ void name_the_sum(std::vector<Estimate>& parameters);
 /// Returns the estimates of the fitted initial states of the logs.
 [[nodiscard]] std::vector<Estimate> start_estimates(const FittedPoint& fit);
 /// Returns the estimates of combinations of parameters. Their intervals are computed by linear error
-/// propagation. For a positive value whose `scale` is 0, the propagation applies to the logarithm.
+/// propagation. If a combination is positive and has no typical value (Combination::scale is 0), the
+/// propagation applies to its logarithm.
 [[nodiscard]] std::vector<Estimate> combination_estimates(const FittedPoint& fit);
 
 }  // namespace softgrip::sysid
