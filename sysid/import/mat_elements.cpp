@@ -138,7 +138,8 @@ bool mat_elements_within(std::string_view file, std::size_t most_parts, std::siz
   while (file.size() >= tag_bytes) {
     const std::uint32_t type = word(file.data(), big_endian);
     const bool compressed = type == type_compressed;
-    // A compressed element has no padding. The size of an uncompressed element includes its tag.
+    // A compressed element has no padding. If an element is not compressed, its tag is read together with its
+    // data.
     const std::size_t size = word(file.data() + 4, big_endian);
     if (!counter.take(file.substr(compressed ? tag_bytes : 0, compressed ? size : size + tag_bytes),
                       compressed))

@@ -60,7 +60,7 @@ struct ForeignTable {
   std::vector<int> line;  ///< for each row of a text file, its line number; empty for a binary file
   std::vector<std::string>
       channels;  ///< texts in the column that identifies the finger, in the order of their first rows
-  /// Name of the column that identifies the finger of each row; empty: there is none, or topics are fingers.
+  /// Name of the column that identifies the finger of each row; empty: no column identifies the finger.
   std::string channel_column;
   std::vector<std::string> notes;  ///< notes about skipped contents
   /// Counts of all rows of a text file. For a binary file, counts of the rows that were left out only.
