@@ -25,7 +25,7 @@ constexpr std::array damping_ratios{0.1, 0.5};
 /// Shortest period of the search, in sampling intervals. The samples do not determine the amplitude of a sine
 /// with a shorter period.
 constexpr double shortest_in_intervals = 6;
-/// Limits of the longest period of the search: as a share of the longest record, and in seconds.
+/// Longest period of the search. It is limited to a share of the longest record and to a number of seconds.
 constexpr double longest_share = 0.1;
 constexpr double longest_s = 10;
 

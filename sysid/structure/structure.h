@@ -35,7 +35,7 @@ struct BaseStructure {
   bool resonance = false;      ///< true: a second-order mode follows this map (with_resonance())
   bool envelopes = false;      ///< true: the play operators are generalised ones with nonlinear envelopes
   bool hinged_creep =
-      false;  ///< pressure-dependent creep: a short chain above each threshold pressure (hinge)
+      false;  ///< true: above each threshold pressure (hinge), a short chain of creep branches is added
   /// True: the zero of each record drifts along a piecewise linear curve; this is no part of the finger.
   bool wandering = false;
   /// The published element: one lag, Bouc-Wen, and two Kelvin-Voigt branches with fitted time constants.
@@ -69,11 +69,9 @@ struct NonlinearNumbers {
   double delay_s = 0;
   double filling_s = 0;  ///< time constant of the lag while the pressure rises; 0: no lag
   double venting_s = 0;
-  double second_s = 0;           ///< time constant of the second lag
-  double filling_s_per_kpa = 0;  ///< rate limit: shortest time in which the pressure rises by 1 kPa
-  double venting_s_per_kpa = 0;
-  double pilot_band_kpa = 0;  ///< regulator: change of the command that the regulator ignores after a
-                              ///< reversal
+  double second_s = 0;  ///< time constant of the second lag
+  /// After a reversal of the command, the regulator ignores a change of this size.
+  double pilot_band_kpa = 0;
   /// Overlap of the regulator; this and the next two members are those of RegulatorNumbers.
   double overlap_kpa = 0;
   double integral_s = 0;
@@ -84,7 +82,7 @@ struct NonlinearNumbers {
   double trained_kpa = 0;      ///< largest pressure before the logs, which affects the play operators
   double envelope_bend = 0;    ///< this member and the next one are those of model::EnvelopeMap
   double envelope_skew = 0;
-  /// Last peak before each record (see StartState); 0 for a record that starts from rest.
+  /// For each record, the last peak of the pressure before its start (StartState); 0 for a start from rest.
   std::vector<double> peak_before_kpa;
 
   bool operator==(const NonlinearNumbers&) const = default;

@@ -140,7 +140,7 @@ class PressureMemory {
   /// States of the play operators: the current ones, and those after the largest load before the logs.
   std::vector<double> plays_, untouched_;
   double g_ = 0;
-  double steepest_;  ///< largest value of dg/dp
+  double steepest_;  ///< largest slope dg/dp of the hysteretic state g over the pressure p
 };
 
 std::size_t branches_of(const BaseStructure& structure, const StructureGrid& grid) {
