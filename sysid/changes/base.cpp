@@ -162,7 +162,7 @@ std::vector<FilterKind> kinds_for(Judged judged, Drive drive) {
 /// A candidate, its residuals after fits that leave out one unit each, and its fit to all units.
 struct Fitted {
   std::vector<Record> driven;
-  model::Model model;  ///< fitted to all records
+  model::Model model;  ///< model that was fitted to all records
   LeftByUnit left;
 };
 std::vector<Fitted> fit_all(const std::vector<Candidate>& all, const std::vector<Record>& records,

@@ -45,8 +45,8 @@ struct Base {
   Eigen::VectorXd filter_weights;
   double temperature_c = 20;  ///< mean temperature in the healthy logs
   double gain_per_c = 0;      ///< temperature coefficient of the gain in the healthy logs
-  double noise_mm = 0;        ///< noise of the readings between consecutive samples
-  Units units;                ///< division of the healthy records into units
+  double noise_mm = 0;        ///< standard deviation of the noise between consecutive readings
+  Units units;                ///< division of the healthy records into units for cross-validation
   double left_mm = 0;         ///< RMS residual of left-out units after subtraction of the mean of each unit
   double span_mm = 0;
   double gain_spread = 0;  ///< relative spread of the gain between units of the healthy logs

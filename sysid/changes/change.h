@@ -57,9 +57,9 @@ struct ChangeCause {
 /// A cause that was tested. If it was rejected, `rejected` states the reason.
 struct TriedCause {
   std::string id, form;
-  double gain = 0;          ///< reduction of the whitened mean square
+  double gain = 0;          ///< reduction of the whitened mean square by the cause
   double healthy_gain = 0;  ///< mean reduction in healthy units, each of which was left out of the fit
-  double tolerance = 0;     ///< smallest reduction that counts as a change
+  double tolerance = 0;     ///< smallest value of `gain` that counts as a change
   /// Reason of the rejection; empty: the cause was not rejected or the reason is not known.
   std::string rejected;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Computes intervals of the sizes of changes.
+// Computes confidence intervals for the sizes of changes.
 
 #include <optional>
 #include <vector>

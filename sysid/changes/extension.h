@@ -52,7 +52,7 @@ struct Extension {
   std::vector<model::BlockSpec> valve;  ///< blocks between the command and the baseline model
   RegulatorFault fault;                 ///< faults of the regulator, if the baseline model has one
   std::vector<model::BlockSpec> chain;  ///< blocks within the model of the finger or after it
-  double gain = 1;                      ///< factor by which the displacement is multiplied
+  double gain = 1;                      ///< factor that multiplies the displacement
   double gain_per_c = 0;  ///< relative change of the gain per degree above the mean temperature of the
                           ///< healthy logs
   Softening softening;
