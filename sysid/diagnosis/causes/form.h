@@ -84,7 +84,7 @@ struct SizedBy {
     span,
     largest,    ///< largest effect on the reading, with its sign
     amplitude,  ///< magnitude of the largest effect on the reading
-    number,     ///< value of a parameter of the block
+    number,     ///< value of a parameter of the cause's block
   };
   Of of = Of::full_pressure;
   std::string_view what = "at full pressure";

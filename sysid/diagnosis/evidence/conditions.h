@@ -33,7 +33,7 @@ struct DriveHistory {
 /// Samples of all records that have a reading, evenly thinned and combined into one list.
 struct Samples {
   std::vector<std::size_t> record;
-  std::vector<std::size_t> index;  ///< index of each sample in its record
+  std::vector<std::size_t> index;  ///< for each sample, its index in its record
   std::vector<double> campaign_s;
 
   [[nodiscard]] std::size_t size() const noexcept { return record.size(); }

@@ -282,7 +282,7 @@ ConditionEvidence judge(const Condition& condition, const std::vector<double>& r
   return e;
 }
 
-/// Adjusts the p-values by Holm's step-down method.
+/// Adjusts the p-values for the number of tests by Holm's step-down method.
 void adjust(std::vector<ConditionEvidence>& list) {
   std::vector<ConditionEvidence*> judged;
   for (ConditionEvidence& e : list) {

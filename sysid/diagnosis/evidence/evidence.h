@@ -33,7 +33,7 @@ struct ConditionBin {
   double rms_mm = 0;
 };
 
-/// Dependence of a residual on one condition.
+/// Dependence of the residual of a model on one condition.
 struct ConditionEvidence {
   Condition condition;  ///< the condition; its vector of values is empty
   std::vector<ConditionBin> bins;
@@ -49,7 +49,7 @@ struct ConditionEvidence {
 struct SpectrumEvidence {
   std::vector<double> frequency_hz;
   std::vector<double> density_mm2_per_hz;
-  double peak_hz = 0;  ///< frequency of the most significant line
+  double peak_hz = 0;  ///< frequency of the most significant line in the spectrum
   double peak_amplitude_mm = 0;
   double share_percent = 0;  ///< share of the variance above the noise that the line contains
   double p_value = 1;  ///< probability that a smooth spectrum has such a line at any frequency (Bonferroni)

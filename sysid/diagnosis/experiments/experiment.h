@@ -49,8 +49,9 @@ struct JudgedWaveform {
 /// A proposed check of the sensor at known positions. It can separate alternatives that no waveform
 /// separates, if their sensors differ in shape.
 struct ProposedGaugeCheck {
-  std::vector<double> positions_mm;                       ///< positions in the order of reading
-  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of the positions
+  /// Positions in the order in which the sensor is read there.
+  std::vector<double> positions_mm;
+  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of `positions_mm`
   std::vector<std::string> separates;                     ///< ids of the causes that the check separates
   double minutes = 0;
 };

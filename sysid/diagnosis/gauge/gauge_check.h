@@ -80,12 +80,12 @@ struct GaugeCheck {
   GaugeOutcome outcome = GaugeOutcome::undecided;
   double lower_mm = 0;         ///< lower limit at which readings are clipped
   double upper_mm = 0;         ///< upper limit at which readings are clipped
-  std::vector<double> cut_mm;  ///< readings after clipping
+  std::vector<double> cut_mm;  ///< gauge readings after they were clipped at these limits
   /// Share of the range of the readings in the logs that the gauge readings cover.
   double covered_share = 0;
   double repeat_noise_mm = 0;  ///< scatter of repeated readings at one position; 0: no position was repeated
-  double noise_mm = 0;         ///< noise that the test assumes
-  std::vector<GaugeFit> fits;  ///< results for the hypotheses, in their order
+  double noise_mm = 0;         ///< standard deviation of the noise that the test assumes for a reading
+  std::vector<GaugeFit> fits;  ///< results of the hypotheses, in the order of the hypotheses
   std::size_t best = 0;        ///< index of the most likely hypothesis in `fits`
   /// Logarithm of the ratio of the likelihoods of the best and the second-best hypothesis; 0 if there is a
   /// single hypothesis.

@@ -239,14 +239,14 @@ Json json_of(const Diagnosis& d) {
                           {"heldout_rmse_mm", stick_slip->heldout_rmse_mm},
                           {"gain_percent", spread(stick_slip->gain_percent)}};
   }
-  json["staircase"] = json["stick_slip"];  // deprecated key
+  json["staircase"] = json["stick_slip"];  // the key `staircase` is deprecated
   json["gauge"] = d.gauge ? gauge_json(*d.gauge) : Json(nullptr);
   json["not_tested"] = d.not_tested;
   json["partial_causes"] = Json::array();
   for (const NamedCause& named : d.partial) json["partial_causes"].push_back(cause_json(named, budget));
   json["unexplained_rms_mm"] = {{"recalibrated", d.unexplained_recalibrated.excess_mm},
                                 {"left", d.unexplained_error.excess_mm}};
-  json["structure_mm"] = json["unexplained_rms_mm"];  // deprecated key
+  json["structure_mm"] = json["unexplained_rms_mm"];  // the key `structure_mm` is deprecated
   Json candidates = Json::object();
   for (const auto* list : {&d.causes, &d.partial}) {
     for (const NamedCause& named : *list) {

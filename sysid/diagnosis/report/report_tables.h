@@ -1,5 +1,5 @@
 #pragma once
-// Builds the tables of a diagnosis report.
+// Creates the tables of a diagnosis report.
 
 #include <string>
 #include <vector>

@@ -13,7 +13,7 @@ namespace softgrip::sysid {
 /// square).
 struct OutlierEvidence {
   std::size_t count = 0;
-  std::size_t readings = 0;  ///< number of readings, including the hidden outliers
+  std::size_t readings = 0;  ///< number of all readings, including the hidden outliers
   double share = 0;
   double size_mm = 0;
   double excess_mm = 0;  ///< contribution of the outliers to the root mean square error of all readings

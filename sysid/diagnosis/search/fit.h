@@ -12,7 +12,7 @@
 
 namespace softgrip::sysid {
 
-/// A fitted structure.
+/// A model structure with its fitted parameters.
 struct StructureFit {
   /// Causes in the order in which they were added; empty: the base structure alone.
   std::vector<Cause> causes;

@@ -44,11 +44,11 @@ class Scan {
 
   const std::vector<Record>& records_;
   FitPoint place_;
-  FitSpace space_;  ///< parameters of the structure
+  FitSpace space_;  ///< space of the parameters of the structure
   bool usable_ = false;
   Eigen::MatrixXd jacobian_;
   Eigen::LDLT<Eigen::MatrixXd> normal_;
-  Eigen::VectorXd residual_;  ///< prediction minus reading for each reading
+  Eigen::VectorXd residual_;  ///< prediction minus reading, for each reading
   Eigen::VectorXd left_;      ///< part of `residual_` that the parameters of the structure cannot absorb
 };
 

@@ -175,7 +175,7 @@ class CandidateFitter {
     });
   }
 
-  /// Makes the final fits on all samples.
+  /// Makes the final fits of the candidates on all samples.
   void finish() {
     const std::vector<std::size_t> order = ranking();
     const double best = best_of(order.front());

@@ -18,12 +18,12 @@ namespace softgrip::sysid {
 struct CandidateScore {
   Cause cause;
   std::string why_not;         ///< reason why the candidate was not fitted or was rejected
-  double rmse_mm = 0;          ///< RMSE of the fit to all readings
+  double rmse_mm = 0;          ///< RMSE of the fit of the candidate to all readings
   double heldout_rmse_mm = 0;  ///< RMSE on held-out blocks; NaN if the fit was much worse than the best fit
   Spread gain_percent;         ///< held-out error reduction relative to the structure without the candidate
 };
 
-/// One of the selected causes.
+/// One of the causes that a search has selected.
 struct ChosenCause {
   Cause cause;
   std::vector<Cause> alternatives;  ///< causes that explain the data equally well, or that no command
@@ -60,7 +60,7 @@ struct Selection {
 /// present can absorb part of the resulting error.
 struct LeastTaken {
   double anyhow;          ///< limit for a reduction that may come from a few blocks only
-  double in_most_blocks;  ///< smallest reduction if the losses of most blocks decrease by at least about 10 %
+  double in_most_blocks;  ///< limit for a reduction in most blocks, each by at least about 10 %
 };
 /// Limits for a model whose input is the command. The remaining error then includes the error of the valve
 /// model. Causes that are not present absorb 0.1 to 1.4 squares of the noise. Causes that are present with an

@@ -19,7 +19,7 @@ struct LostPressure {
   BlockLosses losses_kpa2;
   BlockLosses without_kpa2;  ///< losses without a leak; the sensor gain is 1
   double highest_kpa = 0;    ///< highest measured pressure
-  double missing_kpa = 0;    ///< pressure lost at the highest measured pressure
+  double missing_kpa = 0;    ///< lost pressure when the measured pressure has its highest value
 };
 
 /// Searches for a leak. Returns nullopt in three cases: the fitted gain of the pressure sensor is within the

@@ -120,7 +120,7 @@ Eigen::VectorXd MeasuredValve::derivative(const ValveStage& at, double ValveStag
   ValveStage above = at, below = at;
   above.*number += step;
   below.*number -= step;
-  // One time constant for filling and venting.
+  // In this case, the model has one time constant for filling and venting.
   if (number == &ValveStage::filling_s && at.filling_s == at.venting_s) {
     above.venting_s = above.filling_s;
     below.venting_s = below.filling_s;
