@@ -14,14 +14,14 @@ enum class Appears {
   anywhere,
   at_rest,    ///< also at zero pressure, because a shifted zero changes all readings equally
   displaced,  ///< where the displacement is large, because the effect is proportional to the displacement
-  held,       ///< where a pressure is held
+  held,       ///< where a pressure is held constant
   /// Where the input changes fast; the effect is proportional to the rate of the input and zero at rest.
   moving,
 };
 
 /// Input and predicted motion of the finger in one bin.
 struct OperatingPoint {
-  double pressure_kpa = 0;    ///< pressure that drives the finger
+  double pressure_kpa = 0;    ///< pressure that is the input of the finger
   double rate_kpa_per_s = 0;  ///< rate of the driving pressure after a peak detector (see rates_of()), >= 0
   double motion = 0;          ///< displacement that the model predicts, in the unit of the reading
 };

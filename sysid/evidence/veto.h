@@ -8,7 +8,7 @@
 
 namespace softgrip::sysid {
 
-/// Evidence on one cause.
+/// Evidence that decides whether a cause is reported.
 struct Claim {
   /// 95 % interval of the size of the cause; empty: the data do not determine the size.
   std::optional<Interval> size;
