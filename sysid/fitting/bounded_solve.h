@@ -10,7 +10,7 @@ namespace softgrip::sysid {
 /// The minimum of x' G x / 2 - b' x subject to lower <= x <= upper.
 struct BoundedSolution {
   Eigen::VectorXd x;
-  std::vector<bool> at_bound;  ///< true: the variable is at a bound
+  std::vector<bool> at_bound;  ///< true for each variable that is at a bound
 };
 
 /// Returns the minimum of x' G x / 2 - b' x subject to lower <= x <= upper.

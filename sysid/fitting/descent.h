@@ -36,7 +36,7 @@ struct DescentOptions {
                              ///< multiplied by the current damping
 };
 
-/// Result of a descent.
+/// Result of a descent to a minimum.
 template <class Point>
 struct Descent {
   Point point;

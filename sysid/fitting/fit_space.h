@@ -21,10 +21,10 @@ struct FreeParameter {
   std::size_t record = 0;      ///< index of the record to which an initial state belongs
   std::size_t branch = 0;      ///< index of the creep branch to which unsettled creep belongs
   std::string name;            ///< name of the parameter: "kelvin_voigt.k1_kpa_per_mm", "tp1: offset_mm"
-  std::string unit;            ///< unit of the value
+  std::string unit;            ///< unit of the parameter's value
   bool logarithmic = false;
   double scale = 1;
-  double lower = 0;  ///< lower bound of the value
+  double lower = 0;  ///< lower bound of the parameter's value
   double upper = 0;
 
   [[nodiscard]] double to_z(double value) const;

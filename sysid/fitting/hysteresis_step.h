@@ -41,8 +41,8 @@ struct Hysteresis {
 };
 
 struct HysteresisRates {
-  double growing;    ///< gamma + eta [1/kPa]
-  double shrinking;  ///< gamma - eta [1/kPa]
+  double growing;    ///< parameter sum gamma + eta [1/kPa]
+  double shrinking;  ///< parameter difference gamma - eta [1/kPa]
 };
 
 /// Returns g after a monotonic change of the pressure, without derivatives.

@@ -1,5 +1,5 @@
 #pragma once
-// Matrix type for the Jacobian of residuals.
+// Defines the matrix type for the Jacobian of residuals.
 
 #include <Eigen/Core>
 

@@ -13,7 +13,7 @@ namespace softgrip::sysid {
 /// Mean square error of each block [mm^2]. The fit that predicts a block did not use this block.
 using BlockLosses = std::vector<double>;
 
-/// A value with its uncertainty.
+/// A value with its standard error and its interval.
 struct Spread {
   double value = 0;
   double standard_error = 0;

@@ -43,10 +43,10 @@ struct SeparablePoint {
   double shrinking_per_kpa = 0;
   double delay_s = 0;
   double lag_s = 0;
-  std::vector<double> rate_hz;     ///< k/c of each branch [1/s]
-  double instantaneous = 0;        ///< alpha + 1/k0 [mm/kPa]
+  std::vector<double> rate_hz;     ///< rate k/c of each branch [1/s]
+  double instantaneous = 0;        ///< instantaneous gain alpha + 1/k0 [mm/kPa]
   double beta = 0;                 ///< parameter beta of the Bouc-Wen element [mm/kPa]
-  std::vector<double> amplitude;   ///< 1/c of each branch [mm/(kPa s)]
+  std::vector<double> amplitude;   ///< amplitude 1/c of each branch [mm/(kPa s)]
   std::vector<StartState> starts;  ///< initial state of each record
 };
 
@@ -59,7 +59,8 @@ struct SeparableColumns {
   bool has_start = false;  ///< true: there are columns for unsettled creep and peak
 
   [[nodiscard]] static constexpr Eigen::Index pressure() { return 0; }
-  [[nodiscard]] static constexpr Eigen::Index hysteresis() { return 1; }  ///< this column contains -g
+  /// Index of the column that contains -g.
+  [[nodiscard]] static constexpr Eigen::Index hysteresis() { return 1; }
   [[nodiscard]] Eigen::Index branch(std::size_t b) const { return 2 + static_cast<Eigen::Index>(b); }
   [[nodiscard]] Eigen::Index offset() const { return branch(branches); }
   [[nodiscard]] Eigen::Index unsettled(std::size_t b) const {

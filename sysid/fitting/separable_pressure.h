@@ -21,7 +21,7 @@ struct Stretch {
   double turn_kpa = std::numeric_limits<double>::quiet_NaN();
   double turn_by_lag = 0;
   double rate_kpa_per_s = 0;   ///< slope of the pressure at the end of the segment
-  std::uint32_t duration = 0;  ///< index of the duration in PressureWalk::duration_s
+  std::uint32_t duration = 0;  ///< index of the segment's duration in PressureWalk::duration_s
   bool ends_sample = false;    ///< true: the segment ends at a sample
 };
 
@@ -29,7 +29,7 @@ struct Stretch {
 struct PressureWalk {
   double first_kpa = 0;
   std::vector<Stretch> stretches;
-  std::vector<double> duration_s;  ///< all different durations of segments
+  std::vector<double> duration_s;  ///< list of all different durations of segments
 };
 
 /// Computes the pressure at the actuator.

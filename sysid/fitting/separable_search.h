@@ -52,7 +52,7 @@ class SeparableSearch {
     double lower = 0;
     double upper = 0;
   };
-  /// Optimal linear parameters at a point.
+  /// The linear parameters that are optimal for given nonlinear parameters.
   struct Linear {
     Eigen::VectorXd values;
     std::vector<bool> at_bound;
