@@ -45,7 +45,7 @@
 
 namespace softgrip::sysid::health {
 
-/// Limits of a chart.
+/// Limits of a control chart.
 struct ChartLimits {
   double allowance = 0.5;     ///< half the shift that the CUSUM is designed to detect, in standard deviations
   double cusum = 0;           ///< threshold of the CUSUM, in standard deviations
@@ -74,7 +74,7 @@ using ChartValues = std::map<std::string, ChartValue>;
 
 struct ChartAlarm {
   std::size_t noticed = 0;  ///< index of the point at which the alarm was raised
-  std::size_t since = 0;    ///< index of the first changed point
+  std::size_t since = 0;    ///< index of the first point that the change affects
   double change = 0;        ///< mean deviation from the reference, from the start of the change on
 };
 

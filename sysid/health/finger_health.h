@@ -43,12 +43,12 @@ struct HealthPoint {
   std::optional<double> temperature_c;  ///< median temperature of the runs in this point [degC]
 };
 
-/// An alarm of one indicator.
+/// An alarm of the control chart of one indicator.
 struct HealthAlarm {
   sysid::HealthNumber number = sysid::HealthNumber::gain;
   std::size_t epoch = 0;
   std::size_t noticed = 0;  ///< index of the point at which the alarm was raised
-  std::size_t since = 0;    ///< index of the first changed point
+  std::size_t since = 0;    ///< index of the first point that the change affects
   double change = 0;        ///< size of the change, in the unit of the indicator
   std::size_t grips = 0;    ///< number of grips from the change to its detection
   /// Names of the peer fingers if the difference of the finger from them has changed. The list is empty if
@@ -61,7 +61,7 @@ struct HealthAlarm {
 
 /// Reference of an indicator since the last maintenance record.
 struct HealthReference {
-  std::string recipe;  ///< recipe that has the most points
+  std::string recipe;  ///< recipe that has the most points; the reference belongs to this recipe
   double mean = 0;
   double spread = 0;
   std::size_t points = 0;
@@ -94,7 +94,7 @@ struct FingerHealth {
   /// Maintenance records, each with the index of the first point after it.
   std::vector<std::pair<std::size_t, Note>> notes;
 
-  /// Returns the alarms that are still active.
+  /// Returns the alarms that no repair has ended.
   [[nodiscard]] std::vector<HealthAlarm> standing() const;
   [[nodiscard]] std::size_t epoch() const { return points.empty() ? 0 : points.back().epoch; }
   /// Returns the median of an indicator at the last point that has this indicator; nullopt if no point has

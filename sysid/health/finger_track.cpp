@@ -89,7 +89,8 @@ FingerTrack track_of(const std::string& finger, const std::vector<ScoredRun>& ru
 }
 
 std::size_t place_in_time(std::vector<FingerTrack>& tracks) {
-  std::map<std::string, std::pair<std::string, std::size_t>> begins;  // for each label: start time and order
+  // For each label: start time of its runs, and their order.
+  std::map<std::string, std::pair<std::string, std::size_t>> begins;
   std::size_t order = 0;
   for (const FingerTrack& track : tracks) {
     for (const RunGroup& group : track.groups) {

@@ -31,8 +31,8 @@ struct PlacedRun {
 struct FingerTrack {
   FingerHealth health;  ///< track_of() sets the points and notes; NumberWatch adds alarms and references
   ScoreBase base;
-  std::vector<RunGroup> groups;             ///< runs of each point
-  std::map<std::string, PlacedRun> by_run;  ///< runs by their name
+  std::vector<RunGroup> groups;             ///< one element per point: the runs of this point
+  std::map<std::string, PlacedRun> by_run;  ///< the runs; the key is the name of the run
 };
 
 /// Groups the runs of a finger into points, and assigns each maintenance record to the first point after it.

@@ -17,7 +17,7 @@
 
 namespace softgrip::sysid::health {
 
-/// The baseline of a finger.
+/// Baseline of a finger, to which its grips are compared.
 struct ScoreBase {
   model::Model model;   ///< baseline model; its input is the command, and it contains no noise
   double full_kpa = 0;  ///< largest command of the healthy logs
