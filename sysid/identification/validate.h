@@ -16,7 +16,7 @@ namespace softgrip::sysid {
 struct Validation {
   model::Model model;
   std::vector<Record> records;
-  std::vector<Score> scores;  ///< one element per log
+  std::vector<Score> scores;  ///< scores of the predictions, one element per log
   std::vector<std::string> warnings;
   std::optional<double> at_most_percent;  ///< largest permitted RMSE of a log, in % of its span
   /// Command line of the user; empty if no command started the validation.
