@@ -12,7 +12,7 @@
 
 namespace softgrip::sysid {
 
-/// Overflows that were corrected in a clock.
+/// Corrected overflows of a clock.
 struct Overflow {
   std::size_t count = 0;
   std::size_t first = 0;  ///< index of the first value after the first overflow

@@ -154,7 +154,8 @@ void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arr
   if (matlab_class.empty()) {
     arrays.add(name, unit_of(dataset), size[0], size[1], by_columns(values, size[0], size[1]));
   } else {
-    arrays.add(name, {}, size[1], size[0], values);  // MATLAB stores its dimensions in reverse order
+    // MATLAB stores the dimensions of an array in reverse order.
+    arrays.add(name, {}, size[1], size[0], values);
   }
 }
 

@@ -37,7 +37,7 @@ constexpr double clock_tolerance_s = 1;
 struct McapTopic {
   std::string name;
   std::vector<TableColumn> columns;
-  std::map<std::string, std::size_t> places;  ///< index of the column of each key
+  std::map<std::string, std::size_t> places;  ///< for each key, the index of its column
   std::vector<std::size_t> rows;              ///< for each message, the row of the table that contains it
 
   [[nodiscard]] bool offers(Role role) const {

@@ -15,7 +15,7 @@ namespace softgrip::sysid {
 /// Byte sequence at the beginning and at the end of an MCAP file.
 inline constexpr std::string_view mcap_magic{"\x89MCAP0\r\n"};
 
-/// Kinds of records.
+/// Kinds of records in an MCAP file.
 enum class McapOpcode : std::uint8_t {
   header = 0x01,
   footer = 0x02,

@@ -9,7 +9,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Reads a text from left to right.
+/// Reads the parts of a text from left to right.
 class Scanner {
  public:
   explicit Scanner(std::string_view text) : left_(text) {}

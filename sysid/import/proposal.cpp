@@ -124,8 +124,8 @@ std::string epoch_unit(const TableColumn& column) {
   const auto first =
       std::find_if(column.values.begin(), column.values.end(), [](double v) { return std::isfinite(v); });
   if (first == column.values.end() || column.moments > 0) return {};
-  constexpr double earliest_s = 6e8;  // [s] since 1970; year 1989
-  constexpr double latest_s = 4e9;    // [s] since 1970; year 2096
+  constexpr double earliest_s = 6e8;  // earliest plausible time since 1970 [s]: the year 1989
+  constexpr double latest_s = 4e9;    // latest plausible time since 1970 [s]: the year 2096
   double factor = 1;
   for (const char* unit : {"s", "ms", "us", "ns"}) {
     if (*first >= earliest_s * factor && *first <= latest_s * factor) return unit;

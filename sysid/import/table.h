@@ -35,7 +35,7 @@ struct TableColumn {
   /// Name of the column in the file; empty if the file does not name its columns.
   std::string name;
   std::string unit;            ///< unit as written in a row of units or an attribute; empty: not stated
-  std::vector<double> values;  ///< values by row; NaN: missing value
+  std::vector<double> values;  ///< value in each row; NaN: missing value
   /// Number of values that are dates or times of day in the file. Each of them was converted to the time
   /// since the first date or time of day [s].
   std::size_t moments = 0;
@@ -45,7 +45,7 @@ struct TableColumn {
   /// True if the nanoseconds in this column were added to the times of another column (split_times.h).
   bool is_part_of_time = false;
   bool surely_minutes = false;  ///< true: one of the times with two fields cannot be hours and minutes
-  std::vector<BadCell> bad;     ///< the first bad cells
+  std::vector<BadCell> bad;     ///< the first cells of the column that could not be read
   std::size_t bad_count = 0;
   /// All rows with a bad cell; filled only if bad lines are to be skipped.
   std::vector<std::size_t> bad_rows;
@@ -62,7 +62,7 @@ struct ForeignTable {
       channels;  ///< texts in the column that identifies the finger, in the order of their first rows
   /// Name of the column that identifies the finger of each row; empty: no column identifies the finger.
   std::string channel_column;
-  std::vector<std::string> notes;  ///< notes about skipped contents
+  std::vector<std::string> notes;  ///< notes about contents of the file that were skipped
   /// Counts of all rows of a text file. For a binary file, counts of the rows that were left out only.
   RowAccount account;
   bool is_text = false;

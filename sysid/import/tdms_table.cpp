@@ -28,7 +28,7 @@ constexpr const char* has_daqmx = "has raw values of DAQmx, which need its scale
 /// Value of the length field of a segment whose recording was not finished.
 constexpr std::uint64_t no_length = ~std::uint64_t{0};
 
-// Flags of a segment.
+// Flags in the header of a segment.
 constexpr std::uint32_t has_metadata = 2;
 constexpr std::uint32_t has_new_list = 4;
 constexpr std::uint32_t has_raw_data = 8;

@@ -18,7 +18,7 @@ namespace softgrip::sysid {
 [[nodiscard]] tl::expected<std::string, std::string> utf8_of(std::string_view bytes);
 
 struct ForeignText {
-  std::string text;  ///< text in UTF-8, as utf8_of() returns it
+  std::string text;  ///< text of the file, in UTF-8 as utf8_of() returns it
   /// Notes about NUL bytes that were removed at the end. A data logger leaves such bytes after a power
   /// failure.
   std::vector<std::string> notes;

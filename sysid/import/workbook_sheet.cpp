@@ -60,7 +60,7 @@ std::optional<std::size_t> row_number(std::string_view text) {
   return row && *row >= 1 && *row <= most_sheet_rows ? row : std::nullopt;
 }
 
-/// The position of a cell.
+/// The row and the column of a cell.
 struct Place {
   std::size_t row = 0;
   std::size_t column = 0;
