@@ -23,7 +23,7 @@ namespace softgrip::sysid {
 /// Input data and options of an identification.
 struct IdentifyQuestion {
   std::vector<Log> logs;        ///< logs to which the model is fitted; at least one
-  std::vector<Log> validation;  ///< logs that the fitted model predicts
+  std::vector<Log> validation;  ///< logs that the fitted model has to predict
   /// Initial model of the fit; nullopt: the default structure, scaled to the data.
   std::optional<model::Model> start;
   std::string start_file;    ///< name of the file that contains `start`, for a warning
