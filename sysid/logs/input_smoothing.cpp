@@ -41,7 +41,8 @@ constexpr int rounds = 12;
 struct Estimate {
   double level = 0, slope = 0;
   double ll = 0, ls = 0, ss = 0;
-  double innovation = 0, variance = 0;  ///< variance of the innovation; 0: no measurement
+  /// Variance of the innovation; 0: there is no measurement at this time.
+  double innovation = 0, variance = 0;
 };
 
 /// A signal whose slope is a Wiener process. The variance rate of the slope in a step is `drift_rate` times
@@ -134,7 +135,7 @@ Smooth disturbances(const Path& path, double drift_rate) {
   double r0 = 0, r1 = 0, n00 = 0, n01 = 0, n11 = 0;
   for (std::size_t i = n; i-- > 0;) {
     const Estimate& e = before[i];
-    if (i + 1 < n) {  // the step after sample i
+    if (i + 1 < n) {  // computed for the step after sample i
       const double dt = path.step_s(i + 1);
       r1 += dt * r0;
       n11 += 2 * dt * n01 + dt * dt * n00;

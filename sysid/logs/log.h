@@ -58,12 +58,12 @@ struct Log {
   std::string sha256;
   std::vector<double> time_s;
   std::vector<double> pressure_command_kpa;
-  std::vector<double> displacement_mm;  ///< readings in `output_unit`; NaN: no reading
+  std::vector<double> displacement_mm;  ///< reading at each sample, in `output_unit`; NaN: no reading
   /// Measured pressure; NaN: no reading; empty: the log has no such column.
   std::vector<double> pressure_kpa;
-  std::vector<double> temperature_c;  ///< empty: the log has no such column
+  std::vector<double> temperature_c;  ///< temperature at each sample; empty: the log has no such column
   std::vector<double> supply_kpa;     ///< supply pressure; empty: the log has no such column
-  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of the readings
+  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of `displacement_mm`
   std::vector<OtherColumn> others;
   std::vector<LogNote> notes;
 

@@ -13,7 +13,7 @@ namespace softgrip::sysid {
 /// Positions of the samples of a log in its text.
 struct LogSource {
   std::string file;
-  std::vector<int> line;                    ///< line number for each sample
+  std::vector<int> line;                    ///< for each sample, its line number in the text
   std::vector<std::string_view> line_text;  ///< text line for each sample, without its line break
   /// Position of the time column in the header line, counted in bytes, for messages.
   int time_column = 1;

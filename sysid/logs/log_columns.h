@@ -12,7 +12,7 @@
 
 namespace softgrip::sysid {
 
-/// A column of the log format.
+/// A column of the log format, with its name and its unit.
 struct KnownColumn {
   std::string_view name;
   std::string_view quantity;  ///< name of the column without its unit

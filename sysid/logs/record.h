@@ -41,7 +41,7 @@ struct RecordOptions {
 
 /// Part of the initial state of a record that the model and the samples do not determine.
 struct StartState {
-  double offset_mm = 0;  ///< offset of the zero of the sensor
+  double offset_mm = 0;  ///< offset of the sensor's zero
   /// Last peak of the pressure before the first sample. The hysteresis at the first sample depends on this
   /// peak. A peak that is not above the first pressure has no effect.
   double peak_before_kpa = -std::numeric_limits<double>::infinity();
@@ -70,7 +70,7 @@ struct Record {
   /// For each sample, the duration of the step that ends at this sample; 0 for the first sample.
   std::vector<double> duration_s;
   std::vector<double> drive_kpa;
-  std::vector<double> reading_mm;  ///< NaN: no reading
+  std::vector<double> reading_mm;  ///< reading at each sample; NaN: no reading
   std::vector<double> temperature_c;
   std::vector<double> supply_kpa;
   double sample_time_s = 0;  ///< nominal sampling interval; 0: the sampling is irregular
