@@ -23,14 +23,14 @@ struct Series {
   enum class Style {
     line,
     points,
-    band,   ///< area between the curves y and y_upper
+    band,   ///< the area between the curves y and y_upper
     bars,   ///< bars from 0 to y that touch each other
     steps,  ///< a line that keeps the value of y until the next x
   };
   std::string label;  ///< text in the legend; "": the curve is not in the legend
   std::vector<double> x;
   std::vector<double> y;
-  std::vector<double> y_upper;  ///< upper edge of a band
+  std::vector<double> y_upper;  ///< upper edge of a band; used if the style is `band`
   Style style = Style::line;
   Colour colour = Colour::measured;
   Dash dash = Dash::solid;

@@ -30,7 +30,7 @@ struct Table {
 /// Returns the table as lines of text with aligned columns. The first line is the caption.
 [[nodiscard]] std::string text_of(const Table& table);
 
-/// Terms, each with its value.
+/// Terms and the value of each term.
 using Terms = std::vector<std::pair<std::string, std::string>>;
 
 /// A report page, built from top to bottom.

@@ -22,11 +22,11 @@ enum class Colour {
   good,
   bad,
   text,
-  muted,  ///< text that is less important
+  muted,  ///< colour of text that is less important
   axis,
   grid,
-  paper,  ///< background of the page
-  panel,  ///< background of a box on the page
+  paper,  ///< colour of the background of the page
+  panel,  ///< colour of the background of a box on the page
 };
 
 /// Returns the colour code of the light scheme, such as "#0072b2".
