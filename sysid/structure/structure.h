@@ -61,10 +61,10 @@ struct StructureGrid {
   /// A branch counts as slow creep if its time constant is at least this value.
   double slow_from_s = 0;
   std::vector<double> hinges_kpa;  ///< threshold pressures of pressure-dependent creep, in increasing order
-  std::vector<double> hinge_ladder_s;  ///< time constants of pressure-dependent creep
+  std::vector<double> hinge_ladder_s;  ///< time constants of the creep branches that belong to the hinges
 };
 
-/// The nonlinear parameters of a structure.
+/// The parameters of a structure that affect the displacement nonlinearly.
 struct NonlinearNumbers {
   double delay_s = 0;
   double filling_s = 0;  ///< time constant of the lag while the pressure rises; 0: no lag

@@ -75,7 +75,7 @@ class Search {
   struct State {
     NonlinearNumbers numbers;
     Projection projection;
-    Eigen::VectorXd residual;  ///< prediction errors, followed by the penalties
+    Eigen::VectorXd residual;  ///< prediction errors, followed by the penalties for the parameters
     double value = std::numeric_limits<double>::infinity();
   };
 
