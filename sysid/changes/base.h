@@ -83,12 +83,12 @@ struct BaseOptions {
 /// A record after the simulated valve of a baseline model, and the predictions of the model and of the filter
 /// bank.
 struct Driven {
-  Record record;       ///< record whose drive is the input of the finger at each sample
-  Record walked;       ///< record with which `model` is simulated: equal to `record`, or with the command as
-                       ///< drive
-  model::Model model;  ///< model of the baseline, including the valve blocks if they can be added to it
-  Eigen::VectorXd filters;    ///< contribution of the filter bank at each sample
-  StartState start;           ///< initial state of the model, without an offset
+  Record record;  ///< record whose drive is the input of the finger at each sample
+  /// Record with which `model` is simulated: equal to `record`, or with the command as drive.
+  Record walked;
+  model::Model model;       ///< model of the baseline, including the valve blocks if they can be added to it
+  Eigen::VectorXd filters;  ///< contribution of the filter bank at each sample
+  StartState start;         ///< initial state of the model, without an offset
   std::vector<double> plain;  ///< prediction of the model alone at each sample
 };
 /// Simulates the valve of the baseline model.

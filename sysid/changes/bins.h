@@ -32,9 +32,9 @@ using Binned = std::vector<std::vector<double>>;
 /// Whitens a residual: computes the error of its prediction by an autoregression and divides it by the
 /// standard deviation for the current input rate.
 struct Whitener {
-  std::vector<double> before;               ///< weights of the previous bins; the nearest bin comes first
-  std::vector<double> peak_rate_kpa_per_s;  ///< limits between the classes of peak_rate_of(), in increasing
-                                            ///< order
+  std::vector<double> before;  ///< weights of the previous bins; the nearest bin comes first
+  /// Limits between the classes of peak_rate_of(), in increasing order.
+  std::vector<double> peak_rate_kpa_per_s;
   /// Standard deviation for each class; it has one element more than the list of limits.
   std::vector<double> spread;
 

@@ -80,7 +80,7 @@ class LaterReadings {
   /// Columns of the zeros and of the transients after unknown starts, and the matrix that computes their
   /// sizes.
   Eigen::MatrixXd nuisance_, solver_;
-  Eigen::VectorXd price_;  ///< square root of the penalty for each column
+  Eigen::VectorXd price_;  ///< for each column of `nuisance_`, the square root of its penalty
   /// `motion_`: motion of the baseline model; `motion_left_`: this motion after subtraction of the fitted
   /// zeros.
   Eigen::VectorXd motion_, motion_left_;

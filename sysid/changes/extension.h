@@ -53,8 +53,8 @@ struct Extension {
   RegulatorFault fault;                 ///< faults of the regulator, if the baseline model has one
   std::vector<model::BlockSpec> chain;  ///< blocks within the model of the finger or after it
   double gain = 1;                      ///< factor that multiplies the displacement
-  double gain_per_c = 0;  ///< relative change of the gain per degree above the mean temperature of the
-                          ///< healthy logs
+  /// Relative change of the gain per degree above the mean temperature of the healthy logs.
+  double gain_per_c = 0;
   Softening softening;
   Crescent crescent;
   PressureLoss loss;

@@ -17,13 +17,14 @@ struct Regulator {
   double dead_kpa = 0.5;      ///< pressure error at which a port opens
   double full_kpa = 10;       ///< pressure error, in addition to dead_kpa, at which the port is fully open
   double integral_per_s = 2;  ///< gain of the controller for the integral of the error
-  double port_per_s = 5;      ///< conductance of a fully open port: pressure rise at choked flow in 1 s, as a
-                              ///< share of the upstream pressure
-  double tube_per_s = 10;     ///< conductance of the tube, defined like port_per_s
-  double spool_lag_s = 0.01;  ///< time constant of the spool
+  /// Conductance of a fully open port: pressure rise at choked flow in 1 s, as a share of the upstream
+  /// pressure.
+  double port_per_s = 5;
+  double tube_per_s = 10;      ///< conductance of the tube, defined like port_per_s
+  double spool_lag_s = 0.01;   ///< time constant of the spool
   double chamber_share = 0.2;  ///< volume between valve and tube, as a share of the volume of the finger
-  double leak_per_s = 0;       ///< conductance of a leak from the finger to the atmosphere, defined like
-                               ///< tube_per_s
+  /// Conductance of a leak from the finger to the atmosphere, defined like tube_per_s.
+  double leak_per_s = 0;
 };
 
 /// Returns the rate at which a finger without inflow loses pressure [kPa/s] through a leak whose leak_per_s

@@ -10,9 +10,10 @@ namespace softgrip::sysid {
 
 /// Signal that was recorded behind a regulator.
 enum class ReadBy {
-  gauge,   ///< the pressure; gain and zero of its sensor are fitted
-  finger,  ///< the displacement, described by a bank of plays and lags with weights that are refitted for
-           ///< each regulator
+  gauge,  ///< the pressure; gain and zero of its sensor are fitted
+  /// The displacement, described by a bank of plays and lags with weights that are refitted for each
+  /// regulator.
+  finger,
 };
 
 /// Returns the regulator that leaves the smallest residual of the readings.
