@@ -32,8 +32,8 @@ class Hypothesis {
   StructureFit fit_;
   NoiseModel noise_;
   std::vector<std::size_t> free_;
-  Eigen::MatrixXd information_;  ///< information matrix of the parameters after elimination of the initial
-                                 ///< states
+  /// Information matrix of the parameters after elimination of the initial states.
+  Eigen::MatrixXd information_;
 };
 
 /// Returns the innovations of a series, divided by their standard deviation. They are white noise if the

@@ -26,8 +26,8 @@ struct CandidateScore {
 /// One of the causes that a search has selected.
 struct ChosenCause {
   Cause cause;
-  std::vector<Cause> alternatives;  ///< causes that explain the data equally well, or that no command
-                                    ///< separates from this cause
+  /// Causes that explain the data equally well, or that no command separates from this cause.
+  std::vector<Cause> alternatives;
   Spread gain_percent;  ///< held-out error reduction when this cause is added to all other selected causes
   /// Candidates that were tested in the place of this cause; the best one comes first.
   std::vector<CandidateScore> candidates;
