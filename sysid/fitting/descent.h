@@ -27,13 +27,15 @@ struct DescentOptions {
   int most_steps = 40;  ///< maximum number of steps that reduce the loss
   /// Maximum number of trials per step; each trial has more damping than the trial before.
   int most_trials = 8;
-  double damping = 1e-2;     ///< damping of the first trial, as a share of the curvature
-  double longest_step = 1;   ///< largest change of a coordinate in one step
-  double least_share = 0;    ///< the descent ends after a step that reduces the loss by less than least_share
-                             ///< times the loss plus least_gain
-  double least_gain = 0;     ///< absolute part of the limit that least_share describes
-  double least_damping = 0;  ///< smallest damping of a coordinate, as a share of the sum of all curvatures,
-                             ///< multiplied by the current damping
+  double damping = 1e-2;    ///< damping of the first trial, as a share of the curvature
+  double longest_step = 1;  ///< largest change of a coordinate in one step
+  /// The descent ends after a step that reduces the loss by less than least_share times the loss plus
+  /// least_gain.
+  double least_share = 0;
+  double least_gain = 0;  ///< absolute part of the limit that least_share describes
+  /// Smallest damping of a coordinate, as a share of the sum of all curvatures, multiplied by the current
+  /// damping.
+  double least_damping = 0;
 };
 
 /// Result of a descent to a minimum.

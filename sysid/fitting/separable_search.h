@@ -82,10 +82,10 @@ class SeparableSearch {
   SeparableShape shape_;
   std::vector<SeparableRecord> records_;
   std::vector<Coordinate> coordinates_;
-  std::vector<Eigen::Index> first_own_;  ///< index of the first linear parameter that belongs to one record
-                                         ///< only, for each record
-  std::vector<bool> offset_free_;        ///< true: the offset of the record is free
-  std::vector<double> lower_;            ///< lower bounds of the linear parameters
+  /// For each record, the index of the first linear parameter that belongs to this record only.
+  std::vector<Eigen::Index> first_own_;
+  std::vector<bool> offset_free_;  ///< true: the offset of the record is free
+  std::vector<double> lower_;      ///< lower bounds of the linear parameters
   std::vector<double> upper_;
   bool alpha_free_ = false;
   std::size_t residual_count_ = 0;
