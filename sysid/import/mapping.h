@@ -45,11 +45,12 @@ struct ColumnMapping {
   /// Names or numbers (from 1) of the columns; empty: the file does not have the role. Several columns are
   /// averaged. If there are several time columns, each applies to its own values (clock.h).
   std::vector<std::string> columns;
-  std::string unit;             ///< empty: the unit that the header of the column states
-  std::optional<double> scale;  ///< log units per unit of the column, instead of the factor of a unit; if
-                                ///< `unit` is an angle, `scale` of a displacement gives that unit
-  std::optional<double> zero;   ///< value that is subtracted before the conversion, in the unit of the column
-  bool zero_first = false;      ///< true: the first value is subtracted
+  std::string unit;  ///< unit of the column; empty: the unit that the header of the column states
+  /// Factor from the unit of the column to the unit of the log; if set, it replaces the conversion of `unit`.
+  /// If `unit` is an angle, a displacement times `scale` is in this unit.
+  std::optional<double> scale;
+  std::optional<double> zero;  ///< value that is subtracted before the conversion, in the unit of the column
+  bool zero_first = false;     ///< true: the first value is subtracted
 
   [[nodiscard]] bool given() const noexcept { return !columns.empty(); }
   bool operator==(const ColumnMapping&) const = default;
