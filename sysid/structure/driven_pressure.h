@@ -16,8 +16,8 @@ namespace softgrip::sysid {
 struct DrivenPressure {
   double first_kpa = 0;                          ///< pressure at the first sample
   std::vector<model::Segment<double>> segments;  ///< segments with durations in s and pressures in kPa
-  std::vector<std::size_t> until;                ///< for each sample: number of segments that end at or
-                                                 ///< before this sample
+  /// For each sample: number of segments that end at or before this sample.
+  std::vector<std::size_t> until;
 
   [[nodiscard]] double at_kpa(std::size_t sample) const {
     return until[sample] == 0 ? first_kpa : segments[until[sample] - 1].end;

@@ -82,9 +82,9 @@ struct StructureTrial {
   double ridge = 0;
   double rmse_mm = 0;  ///< RMSE over the readings to which the structure was fitted
   bool converged = false;
-  bool bounded = true;     ///< result of stays_bounded(); a trial that is not bounded cannot be chosen
-  bool invertible = true;  ///< false: the published element has an inverse response, so the trial cannot be
-                           ///< chosen
+  bool bounded = true;  ///< result of stays_bounded(); a trial that is not bounded cannot be chosen
+  /// False: the published element has an inverse response, so the trial cannot be chosen.
+  bool invertible = true;
   std::vector<double> start_rmse_mm;  ///< RMSE of the search from each start point
   /// Mean square error of each block, predicted by a fit without this block.
   std::vector<double> block_losses_mm2;

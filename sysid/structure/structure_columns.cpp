@@ -137,7 +137,8 @@ class PressureMemory {
   model::EnvelopeMap<double> envelopes_;
   bool bouc_wen_;
   HysteresisRates rates_;
-  /// States of the play operators: the current ones, and those after the largest load before the logs.
+  /// `plays_`: current states of the play operators; `untouched_`: their states after the largest load before
+  /// the logs.
   std::vector<double> plays_, untouched_;
   double g_ = 0;
   double steepest_;  ///< largest slope dg/dp of the hysteretic state g over the pressure p
