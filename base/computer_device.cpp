@@ -139,7 +139,7 @@ UnclearDevice several_devices(const std::vector<ComputerDevice>& devices,
           in_backticks(word) + " fits " + std::to_string(found.size()) + " " + std::string(kind) + "s: " +
               enumerated(found, " and ", [](const ComputerDevice& device) { return text_of(device); }),
           "write " + enumerated(instead, " or ") +
-              (stays ? "" : "; the numbers of the kernel may change at the next start")};
+              (stays ? "" : "; the kernel may assign other device numbers after a reboot")};
 }
 
 }  // namespace softgrip

@@ -10,8 +10,9 @@ namespace softgrip {
 ExitCode with_output_checked(ExitCode code, const char* program) noexcept {
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-  // stdout stores only the fact that an earlier write failed, and not the reason.
-  const char* const reason = errno != 0 ? text_of_errno(errno) : "an earlier part is lost";
+  // stdout stores that an earlier write failed, but not the reason.
+  const char* const reason =
+      errno != 0 ? text_of_errno(errno) : "an earlier write failed, so a part of the output is lost";
   std::fprintf(stderr, "%s: cannot write to the standard output: %s\n", program, reason);
   return code == ExitCode::done ? ExitCode::io : code;
 }

@@ -32,12 +32,14 @@ using model::Kind;
 using model::Station;
 
 constexpr std::string_view wrong_way_first = ": the model has an inverse response";
-constexpr std::string_view usual_cause = "a latency in the data is the usual cause, run `softgrip diagnose`";
+constexpr std::string_view usual_cause =
+    "the usual cause is a latency in the data that the model lacks: run `softgrip diagnose`";
 
 constexpr std::string_view creep_alone =
-    ": at this pressure, only creep moves the model, and no elastic element (a play with threshold 0, or a "
-    "spring) does";
-constexpr std::string_view planned_needs_none = "feedforward `planned` needs no elastic element";
+    ": at this pressure, the model moves only by creep, because it has no elastic element (a play with "
+    "threshold 0, or a spring)";
+constexpr std::string_view planned_needs_none =
+    "use feedforward `planned`, which also works without an elastic element";
 
 /// If the gain is below this value, no element responds immediately to the pressure. The value is above 1e-9
 /// mm/kPa, the gain of a Kelvin-Voigt spring that has no effect.
@@ -156,9 +158,9 @@ tl::expected<void, Refusal> check_planned(const model::Model& model, const Limit
     return tl::unexpected(Refusal{"the model has no element that moves the finger"});
   const double gain = settled_line(model, limits).gain_mm_per_kpa;
   if (gain > 0) return {};
-  return tl::unexpected(Refusal{"the model's settled gain between the lowest and the highest command is " +
-                                significant(gain) +
-                                model::in_unit(" mm/kPa: planning needs one above 0", model.output_unit)});
+  return tl::unexpected(
+      Refusal{"the model's settled gain between the lowest and the highest command is " + significant(gain) +
+              model::in_unit(" mm/kPa: feedforward `planned` requires a gain above 0", model.output_unit)});
 }
 
 tl::expected<void, Refusal> check_full_model(const model::Model& model, const LimitSettings& limits,

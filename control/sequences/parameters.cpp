@@ -24,7 +24,8 @@ constexpr std::size_t most_parameters = 16;
 constexpr double largest = 1e6;
 constexpr std::array<std::string_view, 6> units{"kpa", "mm", "s", "hz", "kpa_per_s", "mm_per_s"};
 constexpr const char* unit_hint =
-    "end the name in _kpa, _mm, _s, _hz, _kpa_per_s or _mm_per_s, or give `unit: none` for a plain number";
+    "end the name with its unit (_kpa, _mm, _s, _hz, _kpa_per_s or _mm_per_s), or write `unit: none` for a "
+    "number without unit";
 
 const Node::Entry* entry_of(const Node& map, std::string_view key) {
   const auto found = std::find_if(map.entries.begin(), map.entries.end(),
@@ -90,10 +91,10 @@ Parameter read_parameter(const Document& document, const Node::Entry& entry, Pro
   parameter.default_value = map.number("default", {-largest, largest});
   parameter.value = parameter.default_value;
   if (map.good("range") && parameter.lower >= parameter.upper) {
-    map.report("range", "the range must go from a lower to a higher number");
+    map.report("range", "the first number of `range` must be below the second number");
   } else if (map.good("range") && map.good("default") &&
              (parameter.default_value < parameter.lower || parameter.default_value > parameter.upper)) {
-    map.report("default", "`default` is " + written(parameter.default_value) + ", the range is " +
+    map.report("default", "`default` is " + written(parameter.default_value) + ", outside its range of " +
                               written(parameter.lower) + " to " + written(parameter.upper));
   }
   map.finish();
@@ -117,7 +118,7 @@ class Binder {
       if (used_[i]) continue;
       problems_.add(document_.problem(
           parameters_[i].at, "no step uses the parameter " + document::in_backticks(parameters_[i].name),
-          "write $" + parameters_[i].name + " in place of a number in a step"));
+          "write $" + parameters_[i].name + " as the value of a key in a step"));
     }
   }
 
@@ -130,12 +131,12 @@ class Binder {
       refuse(node, "there is no parameter " + document::in_backticks(name),
              name.find_first_of(" +-*/()") == std::string::npos
                  ? hint_of(name, parameters_)
-                 : "a parameter must be the complete value: expressions are not supported");
+                 : "write the parameter alone as the value, because expressions are not supported");
       return;
     }
     used_[static_cast<std::size_t>(found - parameters_.begin())] = true;
     if (key.empty()) {
-      refuse(node, "a parameter can replace the number of a key, but not an item of a list", "");
+      refuse(node, "a parameter can replace the value of a key, but not an item of a list", "");
     } else if (const std::string_view unit = document::unit_at_end(key); unit != found->unit) {
       const auto in_words = [](std::string_view text) {
         return text.empty() ? "a plain number" : document::in_backticks(text);
@@ -169,8 +170,9 @@ std::vector<Parameter> read_parameters(const Document& document, Problems& probl
   const Node& map = declared->value;
   if (map.kind != Node::Kind::map) {
     if (!map.refused) {
-      problems.add(document.problem(map.at, "`parameters` must be a map of names",
-                                    "squeeze_kpa: {default: 5, range: [3, 10], about: what it is}"));
+      problems.add(
+          document.problem(map.at, "`parameters` must be a map of names",
+                           "squeeze_kpa: {default: 5, range: [3, 10], about: pressure above contact}"));
     }
     return parameters;
   }
@@ -203,7 +205,7 @@ void set_values(std::span<const Argument> arguments, const Document& document,
       problems.add(document.problem(
           found->at,
           document::in_backticks(argument.name) + " is set to " + written(argument.value) +
-              ", its range is " + written(found->lower) + " to " + written(found->upper),
+              ", outside its range of " + written(found->lower) + " to " + written(found->upper),
           document::hint_for_range(argument.name, argument.value, found->lower, found->upper)));
     } else {
       found->value = argument.value;

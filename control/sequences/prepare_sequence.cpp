@@ -67,16 +67,17 @@ class Fitting {
       problems_.warn(source_.problem(step.at,
                                      "step '" + step.name + "': the model of channel '" +
                                          settings_.channels[missed.channel].name +
-                                         "' cannot follow within the limits: it deviates by up to " +
+                                         "' cannot follow the reference within the pressure and slew limits: "
+                                         "the displacement deviates by up to " +
                                          significant(rounded(missed.worst_mm), 6) + " mm from the reference",
                                      "use a slower or smaller motion, or wider limits"));
     }
-    if (stop.stop_requested()) report(sequence_.steps.front(), "its planning was stopped");
+    if (stop.stop_requested()) report(sequence_.steps.front(), "the planning of this step was stopped");
     if (prepared.planned_s > most_planned_s) {
       report(sequence_.steps.front(),
              "more than " + significant(most_planned_s, 6) +
                  " s of motion would have to be planned before the start",
-             "split the sequence, or use another feedforward");
+             "split the sequence, or use a feedforward other than `planned`");
     }
   }
 
@@ -110,12 +111,13 @@ class Fitting {
     }
     check_times(step);
     if (step.on_contact == OnContact::grip && !is_before_a_grip(step)) {
-      report(step, "on_contact: grip, but no grip step follows", "on_contact: hold");
+      report(step, "`on_contact: grip` requires a grip step after this step", "on_contact: hold");
     }
     if (step.kind == StepKind::grip) {
       gripped_ |= channels;
     } else if (step.kind == StepKind::hold && (gripped_ & channels) == 0) {
-      report(step, "holds, but no earlier step grips", "put a grip step before it");
+      report(step, "a hold step requires an earlier grip step of at least one of its channels",
+             "put a grip step before the hold step");
     }
   }
 
@@ -155,20 +157,23 @@ class Fitting {
       check_pressure(step, channel, most_kpa, most_kpa);
       const double rest_kpa = resting_kpa(channel.limits);
       if (most_kpa < rest_kpa) {
-        report(step, "its pressure_max_kpa is below the rest pressure of channel '" + channel.name + "' (" +
-                         significant(rest_kpa, 6) + " kPa), to which a command may always return");
+        report(step, "pressure_max_kpa of the step is below the rest pressure of channel '" + channel.name +
+                         "' (" + significant(rest_kpa, 6) +
+                         " kPa), but every step must permit the rest pressure");
       }
       const bool by_pressure = step.target.quantity == Target::Quantity::pressure_kpa &&
                                (step.kind == StepKind::move || step.kind == StepKind::grip);
       if (by_pressure && step.target.value > most_kpa) {
-        report(step, "goes to " + significant(step.target.value, 6) + " kPa, above its pressure_max_kpa");
+        report(step, "goes to " + significant(step.target.value, 6) +
+                         " kPa, above the pressure_max_kpa of the step");
       }
     }
     if (!std::isfinite(step.bounds.squeeze_max_kpa)) return;
     if (!channel.displacement_used) {
       report(step,
-             "channel '" + channel.name + "' does not use its displacement: its gripping pressure is unknown",
-             "bound it by pressure_max_kpa");
+             "channel '" + channel.name +
+                 "' does not use its displacement sensor, so the gripping pressure is unknown",
+             "limit the step with pressure_max_kpa instead of squeeze_max_kpa");
     } else if (step.kind == StepKind::grip && step.verify.by == VerifyBy::detection) {
       check_squeeze(step, channel, index);
     }
@@ -189,7 +194,7 @@ class Fitting {
            "grips with " + significant(by_kpa, 6) + " kPa, but channel '" + channel.name +
                "' detects a part only from " + significant(needed_kpa, 6) + " kPa on",
            "a larger " + std::string(squeezes ? "squeeze_kpa" : "squeeze_max_kpa") +
-               ", or a smaller detection: margin_mm in the rig file");
+               ", or a smaller margin_mm under `detection` in the rig file");
   }
 
   void check_target(const Step& step, const ChannelSettings& channel) {
@@ -213,8 +218,8 @@ class Fitting {
              "give the target in pressure_kpa");
     } else if (channel.feedforward.kind == FeedforwardKind::none && channel.pid.kp_kpa_per_mm == 0 &&
                channel.pid.ki_kpa_per_mm_s == 0) {
-      report(step,
-             "channel '" + channel.name + "' has neither feedforward nor gains to follow a displacement");
+      report(step, "channel '" + channel.name +
+                       "' needs feedforward or PID gains to follow a displacement, and it has none");
     }
   }
 
@@ -237,7 +242,7 @@ class Fitting {
              "put a move to displacement_mm: " + significant(start, 6) + " before it");
     }
     if (sine.frequency_hz > settings_.rate_hz / 20) {
-      report(step, "frequency_hz is above a twentieth of the rig's rate_hz");
+      report(step, "frequency_hz is above 1/20 of the rig's rate_hz");
     }
     follows = start;
   }
@@ -269,7 +274,8 @@ class Fitting {
   void check_verify(const Step& step, const ChannelSettings& channel) {
     if (step.verify.by == VerifyBy::pressure) {
       if (!channel.pressure_measured) {
-        report(step, "verifies by pressure, but channel '" + channel.name + "' does not measure it");
+        report(step, "verifies the grip by pressure, but channel '" + channel.name +
+                         "' does not measure the pressure");
       }
       check_pressure_bound(step, channel);
     } else if (!channel.displacement_used) {
@@ -287,9 +293,10 @@ class Fitting {
         below ? rest_kpa <= bound_kpa : rest_kpa >= bound_kpa && channel.limits.pressure_min_kpa < rest_kpa;
     if (!rest_passes) return;
     report(step,
-           "verifies by a pressure that channel '" + channel.name + "' also has at rest (" +
-               significant(rest_kpa, 6) + " kPa)",
-           below ? "a lower pressure_max_kpa" : "pressure_max_kpa for a grip below the rest pressure");
+           "verifies the grip by a pressure that channel '" + channel.name +
+               "' has even at rest, without a grip (" + significant(rest_kpa, 6) + " kPa)",
+           below ? "a lower pressure_max_kpa"
+                 : "pressure_max_kpa, if the grip uses a pressure below the rest pressure");
   }
 
   /// Reports a step that uses detection, contact or squeeze at pressures below rest. These functions need a
@@ -323,15 +330,17 @@ class Fitting {
   void check_times(const Step& step) {
     const double period = 1 / settings_.rate_hz;
     if (step.kind == StepKind::grip && step.verify.window_s < 2 * period) {
-      report(step, "window_s is shorter than two periods of the loop");
+      report(step, "window_s is shorter than two periods of the control loop");
     }
     if (step.kind == StepKind::hold && step.reverify_every_s < 2 * period) {
-      report(step, "reverify_every_s is shorter than two periods of the loop");
+      report(step, "reverify_every_s is shorter than two periods of the control loop");
     }
     const double least = step.target.duration_s + step.settle_s + step.purge_s +
                          (step.kind == StepKind::grip ? step.verify.window_s : 0);
     if (step.timeout_s && *step.timeout_s <= least) {
-      report(step, "timeout_s is not longer than the step's own times, " + significant(least, 6) + " s");
+      report(step,
+             "timeout_s must exceed the sum of duration_s, settle_s, purge_s and window_s of the step, " +
+                 significant(least, 6) + " s");
     }
   }
 

@@ -82,7 +82,7 @@ class FileReader {
       }
     }
     if (list.empty()) {
-      map.report("channels", "name at least one channel", "leave the key out for all channels of the rig");
+      map.report("channels", "name at least one channel", "to use all channels of the rig, omit the key");
     }
     return list;
   }
@@ -168,7 +168,7 @@ class FileReader {
     target.quantity = displacement ? Target::Quantity::displacement_mm : Target::Quantity::pressure_kpa;
     if (displacement && pressure) {
       map.optional_number("pressure_kpa", pressure_kpa);
-      map.report("pressure_kpa", "a step goes to displacement_mm or to pressure_kpa, not to both");
+      map.report("pressure_kpa", "a step has a target in displacement_mm or in pressure_kpa, not in both");
     }
     target.value = displacement ? map.number("displacement_mm", displacement_mm)
                                 : map.number("pressure_kpa", pressure_kpa);
@@ -186,7 +186,7 @@ class FileReader {
     } else if (by_speed && by_duration) {
       map.report("duration_s", "a ramp has a speed or a duration, not both");
     } else if (displacement && !by_speed && !by_duration) {
-      map.report("displacement_mm", "a displacement needs speed_mm_per_s or duration_s");
+      map.report("displacement_mm", "a target in displacement_mm requires speed_mm_per_s or duration_s");
     }
     target.speed = by_speed.value_or(0);
     target.duration_s = by_duration.value_or(0);
@@ -245,7 +245,7 @@ class FileReader {
   static void how_long(MapReader& map, Step& step) {
     const bool until = map.optional_choice("until", {"release"}).has_value();
     if (until && map.optional_number("hold_s", long_time_s)) {
-      map.report("hold_s", "a hold lasts for hold_s or until: release, not both");
+      map.report("hold_s", "a hold step has `hold_s` or `until: release`, not both");
     }
     step.hold_s = until ? std::numeric_limits<double>::infinity() : map.number("hold_s", long_time_s);
   }
@@ -278,7 +278,7 @@ class FileReader {
     verify.pressure_max_kpa = *most;
     verify.pressure_min_kpa = -std::numeric_limits<double>::infinity();
     if (map.optional_number("pressure_min_kpa", pressure_kpa)) {
-      map.report("pressure_max_kpa", "pressure_min_kpa and pressure_max_kpa exclude each other");
+      map.report("pressure_max_kpa", "give either pressure_min_kpa or pressure_max_kpa, not both");
     }
   }
 
@@ -335,7 +335,7 @@ class FileReader {
     profile.cycles = static_cast<std::uint32_t>(map.optional_integer("cycles", 1, 10'000).value_or(1));
     if (profile.cycles > 1 && !profile.points.empty() &&
         profile.points.front().pressure_kpa != profile.points.back().pressure_kpa) {
-      map.report("cycles", "points that are repeated must end at the pressure at which they start");
+      map.report("cycles", "the last point of a repeated profile must have the pressure of the first point");
     }
   }
 
@@ -346,8 +346,9 @@ class FileReader {
       MapReader inner(document_, *item, problems_, "point");
       const Point point{inner.number("time_s", long_time_s), inner.number("pressure_kpa", pressure_kpa)};
       if (points.empty() ? point.time_s != 0 : point.time_s < points.back().time_s) {
-        inner.report("time_s", points.empty() ? "the first point must be at time_s: 0"
-                                              : "points must not go back in time");
+        inner.report("time_s", points.empty()
+                                   ? "the first point must be at time_s: 0"
+                                   : "time_s of a point must not be below time_s of the previous point");
       }
       points.push_back(point);
     }

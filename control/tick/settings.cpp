@@ -49,7 +49,7 @@ void check_plausibility(const PlausibilitySettings& plausibility, const std::str
   require(positive(plausibility.max_age_s), problems, who + ": max_age_s must be above 0");
   require(positive(plausibility.jump_mm) && plausibility.unsteady_jumps >= 2 &&
               plausibility.unsteady_jumps <= most_unsteady_jumps,
-          problems, who + ": jump_mm must be above 0, unsteady_jumps 2 to 32");
+          problems, who + ": jump_mm must be above 0, and unsteady_jumps must be from 2 to 32");
   require(positive(plausibility.max_speed_mm_per_s), problems, who + ": max_speed_mm_per_s must be above 0");
   require(positive(plausibility.frozen_after_s) && positive(plausibility.frozen_command_kpa), problems,
           who + ": frozen_after_s and frozen_command_kpa must be above 0");
@@ -60,7 +60,7 @@ void check_channel(const ChannelSettings& channel, Texts& problems) {
   require(!channel.name.empty(), problems, "a channel has no name");
   require(!channel.model.blocks.empty(), problems, who + ": its model has no blocks");
   require(channel.displacement_used || channel.pressure_measured, problems,
-          who + ": if its displacement is not used, it needs a measured pressure");
+          who + ": a channel that does not use its displacement must measure its pressure");
   check_limits(channel.limits, who, problems);
   check_pid(channel.pid, who, problems);
   check_plausibility(channel.plausibility, who, problems);
@@ -77,9 +77,9 @@ void check_faults(const FaultSettings& faults, Texts& problems) {
               faults.readback_cycles > 0,
           problems, "faults: every number of cycles must be at least 1");
   require(positive(faults.readback_tolerance_kpa) && not_negative(faults.readback_delay_s), problems,
-          "faults: readback_tolerance_kpa must be above 0, readback_delay_s not negative");
+          "faults: readback_tolerance_kpa must be above 0, and readback_delay_s must not be negative");
   require(positive(faults.pressure_tolerance_kpa) && not_negative(faults.pressure_delay_s), problems,
-          "faults: pressure_tolerance_kpa must be above 0, pressure_delay_s not negative");
+          "faults: pressure_tolerance_kpa must be above 0, and pressure_delay_s must not be negative");
 }
 
 }  // namespace
@@ -106,7 +106,7 @@ std::vector<std::string> settings_problems(const RigSettings& settings) {
   }
   require(positive(settings.rest_band_mm) && positive(settings.rest_time_s) &&
               settings.rest_timeout_s > settings.rest_time_s,
-          problems, "rest: band and time must be above 0, the timeout longer than the time");
+          problems, "rest: band_mm and time_s must be above 0, and timeout_s must be longer than time_s");
   check_detection(settings.detection, problems);
   check_faults(settings.faults, problems);
   return problems;

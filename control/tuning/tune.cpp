@@ -116,14 +116,15 @@ std::string limit_in_words(const TuneTask& task, const Tuned& tuned) {
   std::string text;
   if (tuned.sensitivity > 0.95 * task.most_sensitivity) {
     const auto lag = model::find_path(task.finger, "valve_lag.time_constant_s");
-    text = "the margin: Ms is " + significant(tuned.sensitivity, 3) + " of the " +
-           significant(task.most_sensitivity, 3) + " that are allowed; " +
+    text = "the stability margin: the sensitivity peak Ms is " + significant(tuned.sensitivity, 3) +
+           " of the " + significant(task.most_sensitivity, 3) + " that are permitted; " +
            significant(dead_time_s(task.finger), 3) + " s of dead time" +
            (lag ? " and " + significant(model::flat_values(task.finger)[*lag], 3) + " s of lag" : "") +
-           " do not permit more feedback";
+           " do not permit higher feedback gains";
   } else {
-    text = "no margin (Ms is " + significant(tuned.sensitivity, 3) + " of " +
-           significant(task.most_sensitivity, 3) + "): more feedback would not lower the error";
+    text = "no stability margin (the sensitivity peak Ms is " + significant(tuned.sensitivity, 3) + " of " +
+           significant(task.most_sensitivity, 3) +
+           "), because higher feedback gains would not lower the error";
   }
   const double floor = tuned.exact_mm;
   const double by_noise = tuned.noisy_mm - floor;
@@ -131,8 +132,8 @@ std::string limit_in_words(const TuneTask& task, const Tuned& tuned) {
   text += "; most of the error is ";
   if (floor >= by_noise && floor >= by_mismatch) {
     return text +
-           "also present without noise and mismatch: the reference moves faster than this feedforward and "
-           "feedback can follow";
+           "also present without noise and model error, because the reference moves faster than this "
+           "feedforward and feedback can follow";
   }
   return text + (by_mismatch >= by_noise ? "the model's mismatch" : "the sensor's noise");
 }

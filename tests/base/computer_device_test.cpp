@@ -91,8 +91,9 @@ TEST_F(ComputerDeviceTest, WithoutABusThereIsNoAddress) {
   const std::vector<ComputerDevice> devices = all();
   ASSERT_EQ(devices.size(), 2U);
   EXPECT_EQ(text_of(devices[0]), "iio:device0");
-  EXPECT_EQ(several_devices(devices, devices, "x", "converter").hint,
-            "write `iio:device0` or `iio:device1`; the numbers of the kernel may change at the next start");
+  EXPECT_EQ(
+      several_devices(devices, devices, "x", "converter").hint,
+      "write `iio:device0` or `iio:device1`; the kernel may assign other device numbers after a reboot");
   EXPECT_EQ(only_device(devices, "x", "converter").error().hint, "there are iio:device0 and iio:device1");
   EXPECT_EQ(only_device({}, "x", "converter").error().hint, "no converter is there");
 }

@@ -47,7 +47,7 @@ class Screen(bench.BenchTest):
         self.assertIn("faulted F202 of left", self.softgrip("watch", "--count", "1").stdout)
         self.assertIn("left: Fault F202 reading_out_of_range", self.softgrip("events").stdout)
         refused = self.softgrip("acknowledge", expect=5).stderr
-        self.assertIn("still present: F202 reading_out_of_range of left. Look at the sensor's own display", refused)
+        self.assertIn("still present: F202 reading_out_of_range of left. Read the display of the sensor", refused)
 
         self.emulated.ask("clear blind")
         bench.wait_for("the cause to go", lambda: self.softgripd.status()["fault"]["present"] is None)

@@ -44,7 +44,7 @@ class WithoutADaemon(bench.BenchTest):
             return self.softgrip("run", PICK, *options, "--virtual-time", "--record", "r", expect=expect).stderr
 
         self.assertIn("did you mean `squeeze_kpa`?", refused("squeze_kpa=4"))
-        self.assertRegex(refused("squeeze_kpa=11"), r"pick_stone\.yaml:\d+:3: `squeeze_kpa` is set to 11, its range is")
+        self.assertRegex(refused("squeeze_kpa=11"), r"pick_stone\.yaml:\d+:3: `squeeze_kpa` is set to 11, outside its range of")
         self.assertIn("the decimal mark is a point: 4.5", refused("squeeze_kpa=4,5", expect=2))
         self.assertIn("NAME=VALUE", refused("squeeze_kpa", expect=2))
         self.assertFalse((self.folder / "r").exists())
@@ -155,7 +155,7 @@ class WithADaemon(bench.BenchTest):
         self.assertIn("hand_over, pick_screw, pick_stone", unknown)
         self.assertIn("did you mean 'pick_stone'?", self.softgrip("start", "pick_stne", expect=3).stderr)
         wrong = self.softgrip("start", "pick_stone", "--set", "squeeze_kpa=40", expect=3).stderr
-        self.assertRegex(wrong, r"pick_stone\.yaml:9:3: `squeeze_kpa` is set to 40, its range is 3 to 10")
+        self.assertRegex(wrong, r"pick_stone\.yaml:9:3: `squeeze_kpa` is set to 40, outside its range of 3 to 10")
         self.assertIn("did you mean `hold_s`?", self.softgrip("start", "pick_stone", "--set", "hold=1",
                                                             expect=3).stderr)
         self.assertEqual(self.softgripd.status()["state"], "idle")

@@ -84,9 +84,8 @@ class Watch(bench.BenchTest):
         watched.wait_for("fault F202 of left")
         self.emulated.ask("clear blind")
         screen = watched.wait_for("The cause is gone")
-        # A text that is too long for its line continues in the next line. So the last word of the remedy must
-        # be visible, too.
-        self.assertIn("measure the signal.", " ".join(screen.split()))
+        # A text that is too long for its line continues in the next one, so the remedy's last word is visible, too.
+        self.assertIn("measure its electrical signal.", " ".join(screen.split()))
         self.assertIn("s stop  v vent  r release  a acknowledge  g start  q quit", screen)
 
     def test_it_follows_the_size_of_its_window(self):

@@ -119,17 +119,17 @@ INSTANTIATE_TEST_SUITE_P(
                "  - grip: {channels: [left], pressure_kpa: 40, settle_s: 0.1, verify: {by: pressure, "
                "window_s: 0.2, "
                "pressure_min_kpa: 30}, timeout_s: 3, on_fail: vent}\n",
-               "does not measure it"},
+               "does not measure the pressure"},
         Misfit{"hold_of_nothing", "  - hold: {hold_s: 1, reverify_every_s: 0.2, on_fail: vent}\n",
-               "no earlier step grips"},
+               "requires an earlier grip step"},
         Misfit{"impossible_timeout",
                "  - grip: {channels: [left], pressure_kpa: 40, duration_s: 2, settle_s: 1, verify: {by: "
                "detection, "
                "window_s: 0.5}, timeout_s: 3.5, on_fail: vent}\n",
-               "not longer than the step's own times, 3.5 s"},
+               "purge_s and window_s of the step, 3.5 s"},
         Misfit{"no_grip_to_go_to",
                "  - move: {channels: [left], displacement_mm: 5, duration_s: 1, on_contact: grip}\n",
-               "no grip step follows"},
+               "requires a grip step after this step"},
         Misfit{"unseen_squeeze",
                "  - grip: {channels: [left], displacement_mm: 15, duration_s: 2, squeeze_kpa: 1, "
                "squeeze_speed_kpa_per_s: 5, settle_s: 0.1, verify: {by: detection, window_s: 0.2}, "
@@ -138,13 +138,13 @@ INSTANTIATE_TEST_SUITE_P(
                "detects a part only from"},
         Misfit{"blind_squeeze",
                "  - move: {channels: [right], pressure_kpa: 10, duration_s: 1, squeeze_max_kpa: 5}\n",
-               "bound it by pressure_max_kpa"},
+               "limit the step with pressure_max_kpa instead of squeeze_max_kpa"},
         Misfit{"bound_beyond_the_rig",
                "  - move: {channels: [left], displacement_mm: 5, duration_s: 1, pressure_max_kpa: 61}\n",
                "allows 0 to 60 kPa"},
         Misfit{"target_beyond_its_bound",
                "  - move: {channels: [left], pressure_kpa: 30, duration_s: 1, pressure_max_kpa: 20}\n",
-               "above its pressure_max_kpa"},
+               "above the pressure_max_kpa of the step"},
         Misfit{"loud_signal", "  - pressure: {signal: tp1, scale: 2}\n", "kPa"},
         Misfit{"loud_points",
                "  - pressure: {points: [{time_s: 0, pressure_kpa: 0}, {time_s: 1, pressure_kpa: 70}]}\n",
@@ -226,7 +226,7 @@ TEST(Prepare, AFingerWithNothingToFollowADisplacementIsNotSentToOne) {
   settings.channels[0].pid.kp_kpa_per_mm = settings.channels[0].pid.ki_kpa_per_mm_s = 0;
   document::Problems problems;
   EXPECT_FALSE(prepared(move, settings, problems));
-  EXPECT_NE(problems.format().find("neither feedforward nor gains"), std::string::npos) << problems.format();
+  EXPECT_NE(problems.format().find("needs feedforward or PID gains"), std::string::npos) << problems.format();
   settings.channels[0].pid.ki_kpa_per_mm_s = 1;
   document::Problems none;
   EXPECT_TRUE(prepared(move, settings, none)) << none.format();
@@ -242,7 +242,8 @@ TEST(Prepare, AStoppedPlanningIsARefusalWithItsReason) {
   document::Problems problems;
   EXPECT_FALSE(
       prepared("  - move: {displacement_mm: 5, duration_s: 1}\n", settings, problems, stop.get_token()));
-  EXPECT_NE(problems.format().find("its planning was stopped"), std::string::npos) << problems.format();
+  EXPECT_NE(problems.format().find("the planning of this step was stopped"), std::string::npos)
+      << problems.format();
 }
 
 TEST(Prepare, ReleaseGoesForwardOnly) {

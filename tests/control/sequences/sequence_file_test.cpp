@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"unknown_key", with_step("hold: {hold_s: 1, reverify_every_s: 0.5, on_fail: vent, force: 3}"),
                3, "force"},
         Broken{"both_targets", with_step("move: {displacement_mm: 5, pressure_kpa: 5, duration_s: 1}"), 3,
-               "not to both"},
+               "not in both"},
         Broken{"no_target", with_step("move: {duration_s: 1}"), 3, "pressure_kpa"},
         Broken{"wrong_speed", with_step("move: {displacement_mm: 5, speed_kpa_per_s: 5}"), 3,
                "speed_mm_per_s"},
@@ -200,7 +200,7 @@ INSTANTIATE_TEST_SUITE_P(
             3, "on_contact"},
         Broken{"both_ramps", with_step("move: {displacement_mm: 5, speed_mm_per_s: 5, duration_s: 3}"), 3,
                "not both"},
-        Broken{"jump", with_step("move: {displacement_mm: 5}"), 3, "needs speed_mm_per_s"},
+        Broken{"jump", with_step("move: {displacement_mm: 5}"), 3, "requires speed_mm_per_s"},
         Broken{"not_finite", with_step("move: {displacement_mm: .nan, duration_s: 1}"), 3, "displacement_mm"},
         Broken{"far", with_step("move: {displacement_mm: 5000, duration_s: 1}"), 3, "displacement_mm"},
         Broken{
@@ -222,14 +222,14 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"backwards",
                with_step("pressure: {points: [{time_s: 0, pressure_kpa: 1}, {time_s: 2, pressure_kpa: 1}, "
                          "{time_s: 1, pressure_kpa: 1}]}"),
-               3, "back in time"},
+               3, "must not be below time_s of the previous point"},
         Broken{"late_start",
                with_step("pressure: {points: [{time_s: 1, pressure_kpa: 1}, {time_s: 2, pressure_kpa: 1}]}"),
                3, "time_s: 0"},
         Broken{"no_closed_cycle",
                with_step("pressure: {points: [{time_s: 0, pressure_kpa: 1}, {time_s: 2, pressure_kpa: 2}], "
                          "cycles: 2}"),
-               3, "must end"},
+               3, "the last point of a repeated profile"},
         Broken{"points_and_signal",
                with_step("pressure: {signal: tp1, points: [{time_s: 0, pressure_kpa: 1}, {time_s: 2, "
                          "pressure_kpa: 2}]}"),

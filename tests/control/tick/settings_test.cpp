@@ -37,7 +37,7 @@ TEST(Settings, EachThatControlCannotTakeIsNamed) {
       {[](RigSettings& s) { s.channels[0].pid.setpoint_weight = 2; }, "setpoint_weight"},
       {[](RigSettings& s) { s.channels[0].plausibility.max_age_s = 0; }, "max_age_s"},
       {[](RigSettings& s) { s.channels[0].displacement_used = s.channels[0].pressure_measured = false; },
-       "measured pressure"},
+       "must measure its pressure"},
       {[](RigSettings& s) { s.detection.margin_mm = 0; }, "margin_mm"},
       {[](RigSettings& s) { s.detection.model_rmse_mm = 0.4; }, "three times"},
       {[](RigSettings& s) { s.faults.bus_down_cycles = 0; }, "cycles"},

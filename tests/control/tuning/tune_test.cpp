@@ -77,10 +77,11 @@ TEST(Tune, SaysWhatLimitsItAndWhatTheErrorIs) {
     const char* error;
   };
   for (const Case& test :
-       {Case{"slow", FeedforwardKind::none, 0.01, 0.01, 1.5, "the margin",
+       {Case{"slow", FeedforwardKind::none, 0.01, 0.01, 1.5, "the stability margin",
              "moves faster than this feedforward"},
-        Case{"noisy", FeedforwardKind::full_model, 1, 0.001, 50, "no margin", "the sensor's noise"},
-        Case{"off", FeedforwardKind::full_model, 0.001, 0.15, 50, "no margin", "the model's mismatch"}}) {
+        Case{"noisy", FeedforwardKind::full_model, 1, 0.001, 50, "no stability margin", "the sensor's noise"},
+        Case{"off", FeedforwardKind::full_model, 0.001, 0.15, 50, "no stability margin",
+             "the model's mismatch"}}) {
     SCOPED_TRACE(test.name);
     TuneTask task = quick_task(test.kind);
     task.noise_mm = test.noise_mm;
