@@ -99,7 +99,7 @@ std::string hint_for(std::string_view text) {
   std::size_t number = text.size();
   while (number > 0 && !is_digit(text[number - 1]) && text[number - 1] != '.') --number;
   if (number > 0 && number < text.size() && split(text.substr(0, number))) {
-    return "write the number alone: the key says the unit";
+    return "write the number without a unit, because the key contains the unit";
   }
   return {};
 }
@@ -128,7 +128,8 @@ std::optional<Decimal> decimal_of(const Node& node, std::string_view wanted, Par
     return std::nullopt;
   }
   if (leading_zero(*decimal)) {
-    out = refused<T>(must + found(node), "a leading zero could mean octal: write it without");
+    out = refused<T>(must + found(node),
+                     "a number with a leading zero could be read as octal: remove the zero");
     return std::nullopt;
   }
   return decimal;
@@ -182,7 +183,7 @@ Parsed<std::int64_t> parse_integer(const Node& node) {
   if (!decimal) return out;
   if (decimal->fraction || decimal->exponent) {
     return refused<std::int64_t>("must be a whole number, found " + found(node),
-                                 "write it without point and exponent");
+                                 "write the number without decimal point and without exponent");
   }
   std::int64_t value = 0;
   const char* const end = decimal->digits.data() + decimal->digits.size();

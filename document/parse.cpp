@@ -34,7 +34,8 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (started_) {
-      refuse(location_of(mark), "a second document starts here", "one file holds one document: remove `---`");
+      refuse(location_of(mark), "a second document starts here",
+             "a file may contain only one document: remove `---`");
       throw Abandoned{};
     }
     started_ = true;
@@ -52,7 +53,7 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t /*anchor*/) override {
     const Location at = begin(mark, "", 0);
-    refuse(at, "an alias (`*name`) is not accepted here", "write the value out");
+    refuse(at, "an alias (`*name`) is not accepted here", "write the value itself instead of the alias");
     Node node;
     node.at = at;
     node.refused = true;
@@ -67,7 +68,7 @@ class TreeBuilder final : public YAML::EventHandler {
     node.scalar = value;
     node.quoted = tag == "!";
     if (!is_closed(mark)) {
-      refuse(node.at, "a quote is opened here but never closed", "");
+      refuse(node.at, "the quotation mark that opens here is never closed", "");
       throw Abandoned{};
     }
     place(std::move(node));
@@ -145,7 +146,8 @@ class TreeBuilder final : public YAML::EventHandler {
     const auto position = static_cast<std::size_t>(std::max(mark.pos, 0));
     const bool written = position < document_.text.size() && document_.text[position] == '!';
     if ((!tag.empty() && tag != "?" && tag != "!") || (tag == "!" && written)) {
-      refuse(at, "a tag (`!name`) is not accepted here", "remove it; the key decides the type");
+      refuse(at, "a tag (`!name`) is not accepted here",
+             "remove the tag, because the key determines the type");
     }
     return at;
   }
@@ -230,12 +232,12 @@ class TreeBuilder final : public YAML::EventHandler {
   bool accept_key(const Frame& frame, const Node& node) {
     if (node.refused) return false;
     if (node.kind != Node::Kind::scalar || node.scalar.empty()) {
-      refuse(node.at, "a key must be a plain word", "a text with special characters goes in quotes");
+      refuse(node.at, "a key must be a plain word", "put a key with special characters in quotes");
       return false;
     }
     if (node.scalar == "<<" && !node.quoted) {
       document_.complete = false;
-      refuse(node.at, "a merge key (`<<`) is not accepted here", "write the keys out");
+      refuse(node.at, "a merge key (`<<`) is not accepted here", "write the keys of the other map here");
       return false;
     }
     const auto first = frame.index.find(node.scalar);
@@ -244,7 +246,7 @@ class TreeBuilder final : public YAML::EventHandler {
     refuse(node.at,
            "the key `" + shown(node.scalar) + "` already appears at " + std::to_string(at.line) + ":" +
                std::to_string(at.column),
-           "remove one of them");
+           "remove one of the two keys");
     return false;
   }
 

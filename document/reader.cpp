@@ -165,7 +165,7 @@ std::string MapReader::checked_text(std::string_view key, const Node* value) {
   }
   if (has_control(value->scalar)) {
     refuse(*value, key, "must be one line without control characters, found " + found(*value),
-           "a folded text starts with `>-`");
+           "start a text of several lines with `>-`");
     return {};
   }
   return value->scalar;

@@ -29,7 +29,7 @@ bool has_glued_colon(std::string_view line) {
 SyntaxMessage misplaced(const Document& document, const Node* open, Location at, std::string_view what) {
   const std::string_view line = line_of(document.text, at.line);
   SyntaxMessage result;
-  result.message = "this does not belong to the " + std::string(what) + opened(open);
+  result.message = "this line does not belong to the " + std::string(what) + opened(open);
   if (has_glued_colon(line)) {
     result.hint = "a space is missing after the colon";
   } else if (line.find(':') == std::string_view::npos && what == "map") {
@@ -50,7 +50,8 @@ std::optional<SyntaxMessage> misaligned(const Document& document, const Node* op
   const std::size_t column = line_of(document.text, at.line).find_first_not_of(' ');
   if (column == std::string_view::npos || column == start) return std::nullopt;
   return SyntaxMessage{"this key starts in column " + std::to_string(column + 1) +
-                           ", the keys of its map start in column " + std::to_string(open->at.column),
+                           ", but the other keys of the same map start in column " +
+                           std::to_string(open->at.column),
                        "keys of one level start in the same column"};
 }
 
@@ -77,13 +78,14 @@ struct Translation {
 };
 
 constexpr std::array translations{
-    Translation{"illegal map value", "a second `: ` is in the place of the value",
-                "put the value in quotes if the colon belongs to it, or start a new line"},
-    Translation{"illegal map key", "a key is not permitted here", "the key goes on a line of its own"},
+    Translation{"illegal map value", "the value contains a second `: `",
+                "put the value in quotes if the colon belongs to the value, or start a new line"},
+    Translation{"illegal map key", "a key is not permitted here", "write the key on a separate line"},
     Translation{"illegal block entry", "a list item `- ` is not permitted here",
-                "an item of a list goes on a line of its own, below its key"},
-    Translation{"illegal EOF in scalar", "a quote is opened but never closed", ""},
-    Translation{"illegal document indicator in scalar", "a quote is not closed before the document ends", ""},
+                "write each item of a list on a separate line, below the key of the list"},
+    Translation{"illegal EOF in scalar", "a quotation mark is opened but never closed", ""},
+    Translation{"illegal document indicator in scalar",
+                "a quotation mark is not closed before the document ends", ""},
     Translation{"unknown escape character", "a text in double quotes contains an unknown escape",
                 "write a backslash as \\\\, or use single quotes"},
     Translation{"bad character found while scanning hex number",
@@ -92,9 +94,9 @@ constexpr std::array translations{
     Translation{"illegal tab when looking for indentation", "the indentation contains a tab",
                 "YAML indents with spaces only"},
     Translation{"unknown token", "this character cannot start a value",
-                "put the text in quotes if the character belongs to it"},
+                "put the text in quotes if the character is a part of the text"},
     Translation{"the referenced anchor is not defined", "an alias (`*name`) is not accepted here",
-                "write the value out, or put a text that starts with `*` in quotes"},
+                "write the value itself, or put a text that starts with `*` in quotes"},
     Translation{"alias not found after *", "an alias (`*name`) is not accepted here",
                 "put a text that starts with `*` in quotes"},
     Translation{"illegal character found while scanning alias", "an alias (`*name`) is not accepted here",
@@ -149,7 +151,7 @@ SyntaxMessage syntax_message(const Document& document, std::string_view said, co
   if (!result.hint.empty() || brackets.empty()) return result;
   if (result.message.find(" is not closed") != std::string::npos) return result;
   result.hint = std::string("the `") + brackets.back().character + "` at " + place(brackets.back().at) +
-                " is not closed before this";
+                " is not closed before this position";
   return result;
 }
 

@@ -86,7 +86,7 @@ bool check_size(const Document& document, const Bounds& bounds, Problems& proble
   Problem problem;
   problem.file = document.file;
   problem.message = "the file is larger than " + std::to_string(bounds.bytes) +
-                    " bytes, the most that a configuration may have";
+                    " bytes, the largest permitted size of a configuration file";
   problems.add(std::move(problem));
   return false;
 }
@@ -117,7 +117,7 @@ bool check_text(const Document& document, const Bounds& bounds, Problems& proble
          "save the file as UTF-8");
   const Trouble& control = troubles.control;
   refuse(control, "the text contains the control character " + control.what + more(control, "of them"),
-         "remove it; lines end with a line feed");
+         "remove this character; lines must end with a line feed");
   refuse(troubles.tab, "the indentation contains a tab" + more(troubles.tab, "lines"),
          "YAML indents with spaces only");
   if (const auto directive = find_directive(text)) {

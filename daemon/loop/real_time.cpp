@@ -56,7 +56,7 @@ long faults_of_a_heap_block(std::size_t bytes) {
 
 RealTimeStep prepare_heap(std::size_t bytes) {
   RealTimeStep step{"heap", Outcome::not_asked, "",
-                    "an allocation of the threads beside the loop may page-fault"};
+                    "a memory allocation in a thread other than the control loop may cause page faults"};
   if (bytes == 0) return step;
   // Keeps freed blocks in the process. Large blocks also come from the heap, and not from new mappings.
   const bool accepted = mallopt(M_TRIM_THRESHOLD, -1) == 1 && mallopt(M_MMAP_MAX, 0) == 1;
@@ -64,7 +64,7 @@ RealTimeStep prepare_heap(std::size_t bytes) {
   const long faults = faults_of_a_heap_block(bytes);
   if (accepted && faults == 0) {
     step.outcome = Outcome::verified;
-    step.detail = fmt::format("{} KiB touched and kept", bytes / 1024);
+    step.detail = fmt::format("{} KiB of heap touched once and kept in the process", bytes / 1024);
   } else {
     step.outcome = Outcome::failed;
     step.detail = accepted ? fmt::format("{} page faults in a block that was touched before", faults)
@@ -78,17 +78,18 @@ RealTimeStep prepare_heap(std::size_t bytes) {
 std::string doubt_of_a_new_mapping() {
   const auto bytes = static_cast<std::size_t>(page_bytes());
   void* page = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (page == MAP_FAILED) return fmt::format("no page can be mapped afterwards: {}", text_of_errno(errno));
+  if (page == MAP_FAILED)
+    return fmt::format("no new page can be mapped after the lock: {}", text_of_errno(errno));
   unsigned char resident = 0;
   const int error = mincore(page, bytes, &resident) == 0 ? 0 : errno;
   munmap(page, bytes);
   if (error != 0) {
     return fmt::format(
-        "it is unknown whether pages that are mapped afterwards are resident: {} (SystemCallFilter= must "
-        "permit mincore)",
+        "it is unknown if pages mapped after the lock are resident: {} (SystemCallFilter= must permit "
+        "mincore)",
         text_of_errno(error));
   }
-  return (resident & 1) != 0 ? "" : "a page mapped afterwards was not resident";
+  return (resident & 1) != 0 ? "" : "a page mapped after the lock was not resident";
 }
 
 /// Returns true if the limit on locked memory (RLIMIT_MEMLOCK) does not apply to this process.
@@ -103,9 +104,9 @@ bool may_lock_without_limit() {
 }
 
 RealTimeStep lock_memory(bool wanted) {
-  RealTimeStep step{
-      "memory lock", Outcome::not_asked, "",
-      "the first use of a page, or its return from swap, can stop the loop for several milliseconds"};
+  RealTimeStep step{"memory lock", Outcome::not_asked, "",
+                    "the first use of a memory page, or its return from swap, can stop the control loop for "
+                    "several milliseconds"};
   if (!wanted) return step;
   step.outcome = Outcome::failed;
   // If a limit applies, the lock might succeed now, but the kernel could refuse later mappings.
@@ -114,26 +115,30 @@ RealTimeStep lock_memory(bool wanted) {
     const int error = unlimited ? errno : EPERM;
     rlimit limit{};
     getrlimit(RLIMIT_MEMLOCK, &limit);
-    step.detail = fmt::format("{}; the limit is {} KiB (LimitMEMLOCK=infinity in the unit, or CAP_IPC_LOCK)",
-                              text_of_errno(error), limit.rlim_cur / 1024);
+    step.detail = fmt::format(
+        "{}; the process may lock at most {} KiB (set LimitMEMLOCK=infinity in the unit, or grant "
+        "CAP_IPC_LOCK)",
+        text_of_errno(error), limit.rlim_cur / 1024);
   } else if (const std::string doubt = doubt_of_a_new_mapping(); !doubt.empty()) {
-    step.detail = "the kernel accepted it, but " + doubt;
+    step.detail = "the kernel accepted the memory lock, but " + doubt;
   } else {
     step.outcome = Outcome::verified;
-    step.detail = "all pages resident, those mapped later too";
+    step.detail = "all memory pages are resident, including pages mapped after the lock";
   }
   return step;
 }
 
 RealTimeStep request_processor_latency(std::optional<int> latency_us, int& descriptor) {
   RealTimeStep step{"processor latency", Outcome::not_asked, "",
-                    "a processor that idles may need 10 to 200 us to wake the loop"};
+                    "an idle processor may need 10 to 200 us to wake the control loop"};
   if (!latency_us) return step;
   step.outcome = Outcome::failed;
   descriptor = open("/dev/cpu_dma_latency", O_RDWR | O_CLOEXEC);
   if (descriptor < 0) {
-    step.detail = fmt::format("/dev/cpu_dma_latency: {} (the udev rule gives it to the softgrip group)",
-                              text_of_errno(errno));
+    step.detail = fmt::format(
+        "/dev/cpu_dma_latency: {} (the udev rule of the package gives the group softgrip access to this "
+        "device)",
+        text_of_errno(errno));
     return step;
   }
   const std::int32_t wanted = *latency_us;
@@ -151,8 +156,9 @@ RealTimeStep request_processor_latency(std::optional<int> latency_us, int& descr
 }
 
 RealTimeStep set_processors(const std::vector<int>& cpus, std::string_view who) {
-  RealTimeStep step{fmt::format("processors of {}", who), Outcome::not_asked, "",
-                    "the thread is moved between processors and shares them with all work of the machine"};
+  RealTimeStep step{
+      fmt::format("processors of {}", who), Outcome::not_asked, "",
+      "the kernel may move the thread between processors, which also run all other programs of the computer"};
   if (cpus.empty()) return step;
   step.outcome = Outcome::failed;
   cpu_set_t wanted;
@@ -180,9 +186,9 @@ RealTimeStep set_processors(const std::vector<int>& cpus, std::string_view who) 
 
 RealTimeStep set_scheduling(int priority, std::string_view who) {
   RealTimeStep step{fmt::format("scheduling of {}", who), Outcome::not_asked, "",
-                    "the thread waits behind every other process: wake-ups may come milliseconds late"};
-  // The timer slack has an effect only without SCHED_FIFO. In that case, the kernel may delay each wake-up by
-  // 50 us to save power.
+                    "other processes may delay the thread, so it may wake up several milliseconds late"};
+  // The timer slack matters only without SCHED_FIFO: the kernel may then delay each wake-up by 50 us to save
+  // power.
   prctl(PR_SET_TIMERSLACK, 1UL);
   if (priority <= 0) return step;
   step.outcome = Outcome::failed;
@@ -193,8 +199,8 @@ RealTimeStep set_scheduling(int priority, std::string_view who) {
     rlimit limit{};
     getrlimit(RLIMIT_RTPRIO, &limit);
     step.detail = fmt::format(
-        "{}; the limit is {} (LimitRTPRIO= in the unit, or CAP_SYS_NICE; a cpu cgroup without real-time "
-        "budget denies it too)",
+        "{}; the highest permitted priority is {} (set LimitRTPRIO= in the unit, or grant CAP_SYS_NICE; a "
+        "cpu cgroup without real-time budget also denies the priority)",
         text_of_errno(error), limit.rlim_cur);
     return step;
   }
@@ -204,8 +210,8 @@ RealTimeStep set_scheduling(int priority, std::string_view who) {
     step.outcome = Outcome::verified;
     step.detail = fmt::format("SCHED_FIFO {}", in_force.sched_priority);
   } else {
-    step.detail =
-        fmt::format("accepted, but policy {} priority {} is in force", policy, in_force.sched_priority);
+    step.detail = fmt::format("the kernel accepted the request, but policy {} with priority {} is in force",
+                              policy, in_force.sched_priority);
   }
   return step;
 }
@@ -237,11 +243,12 @@ std::size_t stack_left() {
 
 RealTimeStep prepare_stack(std::size_t bytes, std::string_view who) {
   RealTimeStep step{fmt::format("stack of {}", who), Outcome::not_asked, "",
-                    "the first deep call of the thread page-faults"};
+                    "the first deep function call of the thread causes page faults"};
   if (bytes == 0) return step;
   if (const std::size_t left = stack_left(); bytes > left) {
     step.outcome = Outcome::failed;
-    step.detail = fmt::format("{} KiB requested, the thread has {} KiB left", bytes / 1024, left / 1024);
+    step.detail =
+        fmt::format("{} KiB of stack requested, but the thread has {} KiB left", bytes / 1024, left / 1024);
     return step;
   }
   touch_stack(bytes);
@@ -323,7 +330,9 @@ RealTimeStep kernel_step() {
                          access("/sys/kernel/realtime", F_OK) == 0;
   step.detail = fmt::format(
       "{}, {}", name.release,
-      real_time ? "PREEMPT_RT" : "no PREEMPT_RT: under load a wake-up may come milliseconds late");
+      real_time
+          ? "PREEMPT_RT"
+          : "the kernel has no PREEMPT_RT, so under load a thread may wake up several milliseconds late");
   return step;
 }
 

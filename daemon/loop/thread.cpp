@@ -24,7 +24,7 @@ void* run(void* argument) {
   } catch (const std::exception& error) {
     start->on_exception(error.what());
   } catch (...) {
-    start->on_exception("an exception that is no std::exception");
+    start->on_exception("an exception of a type other than std::exception");
   }
   return nullptr;
 }

@@ -210,7 +210,7 @@ void describe_release(const Event&, const Sequence*, EventEntry& entry) {
 }
 
 void describe_check(const Event&, const Sequence*, EventEntry& entry) {
-  entry.text = "A start was checked: it would be accepted now.";
+  entry.text = "Dry run of a start: the daemon would accept the start now.";
 }
 
 void describe_not_at_rest(const Event& event, const Sequence*, EventEntry& entry) {
@@ -292,8 +292,8 @@ EventEntry describe(const BusEvent& event) {
   const std::string_view detail(event.detail.data());
   if (event.kind == BusEvent::Kind::another_client) {
     entry.text = fmt::format(
-        "The board counts {} clients. Another client feeds the board's watchdog, too: if softgripd ends "
-        "without venting, the board does not vent while that client sends requests.",
+        "The board counts {} clients. The requests of another client reset the board's watchdog, too. If "
+        "softgripd ends without venting, the board does not vent while that client sends requests.",
         detail);
   }
   const bool failed = event.kind == BusEvent::Kind::failed;

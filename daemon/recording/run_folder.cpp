@@ -93,10 +93,9 @@ bool RunFolder::append(std::string_view lines) {
     return true;
   }
   fail(path_ + "/run.csv", error);
-  // On a full disk, the kernel may have written a part of the lines. The file is truncated to its last
-  // complete line, which needs no space. If this fails, the last line is incomplete, which readers of
-  // recordings accept.
-  if (ftruncate(descriptor_, whole_bytes_) != 0) error_ += "; its last line may be incomplete";
+  // A full disk may have written a part of the lines. Truncation needs no space. If it fails, the last line
+  // is incomplete, which readers of recordings accept.
+  if (ftruncate(descriptor_, whole_bytes_) != 0) error_ += "; the last line of the file may be incomplete";
   close();
   return false;
 }

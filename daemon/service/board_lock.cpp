@@ -153,8 +153,9 @@ std::optional<Peer> holder_of(const sockaddr_un& address, socklen_t length) {
 }
 
 std::string standing_still(const std::string& board, pid_t process) {
-  return fmt::format("{}: the softgrip program that holds its lock{} does not run", board,
-                     in_brackets(process));
+  return fmt::format(
+      "{}: the softgrip program that holds the lock of this board{} does not run: it is stopped or blocked",
+      board, in_brackets(process));
 }
 
 /// Returns the sentence that reports a holder of the lock that is ignored.
@@ -163,7 +164,7 @@ std::string without_right(const std::string& board, const std::optional<Peer>& h
   const std::string who =
       holder ? fmt::format("user {}{}", holder->user, in_brackets(holder->process)) : "an unknown program";
   return fmt::format(
-      "{}: {} uses the name of the board's lock but may not control the board; the lock is ignored", board,
+      "{}: {} holds the lock of this board but may not control the board; softgrip ignores this lock", board,
       who);
 }
 
@@ -252,8 +253,8 @@ tl::expected<BoardLock, std::string> BoardLock::take(const rig::RigFile& rig, Lo
   if (boards.empty()) return lock;
   auto folder = RuntimeFolder::open();
   if (!folder && purpose == LockPurpose::drive)
-    return tl::unexpected("the board cannot be locked: " + folder.error());
-  if (!folder) lock.remarks_.push_back("the board cannot be locked: " + folder.error());
+    return tl::unexpected("the lock of the board cannot be acquired: " + folder.error());
+  if (!folder) lock.remarks_.push_back("the lock of the board cannot be acquired: " + folder.error());
   const auto shared = folder ? std::make_shared<const RuntimeFolder>(std::move(*folder)) : nullptr;
   for (const std::string& board : boards) {
     if (shared) {

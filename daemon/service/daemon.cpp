@@ -225,14 +225,15 @@ tl::expected<std::unique_ptr<Daemon>, std::string> Daemon::create(rig::RigFile r
           std::string("virtual time needs a simulated board, because a real board runs in real time"));
     }
     if (rig.gpio) {
-      return tl::unexpected(std::string("virtual time has no digital lines: this rig file has `gpio`"));
+      return tl::unexpected(
+          std::string("virtual time does not support digital lines, but this rig file has `gpio`"));
     }
     if (!options.sequence && !options.duration_s) {
-      return tl::unexpected(std::string("virtual time needs an end: a sequence or a duration"));
+      return tl::unexpected(std::string("virtual time requires an end: give a sequence or a duration"));
     }
     if (options.sequence && !options.duration_s && waits_for_a_release(options.sequence->prepared)) {
-      return tl::unexpected(
-          std::string("no client can request a release in virtual time: this sequence would hold for ever"));
+      return tl::unexpected(std::string(
+          "this sequence would hold for ever, because in virtual time no client can request a release"));
     }
   }
   return std::unique_ptr<Daemon>(

@@ -251,7 +251,8 @@ void RealRun::start() {
   });
   if (parts_.rig.real_time.required && report_.degraded()) {
     outcome_.ending = Ending::real_time_refused;
-    outcome_.message = "real_time is required, but a setting could not be verified";
+    outcome_.message =
+        "the rig file sets `real_time: required`, but a real-time setting could not be verified";
   }
   // If the loop gets a shutdown request before its first tick, it still sends the safe outputs.
   if (outcome_.ending != Ending::asked) parts_.shared.shutdown_requested.store(true);
@@ -306,7 +307,7 @@ void RealRun::look_after() {
 /// Ends the process at once. This thread cannot wait for a blocked thread, so an orderly end is not possible.
 void RealRun::end_without(const char* hangs, ExitCode code) {
   parts_.tell("internal_error", Severity::error,
-              fmt::format("{}; the process ends without waiting for it.", hangs));
+              fmt::format("{}; the process ends without waiting for this thread.", hangs));
   parts_.deliver_events();
   std::_Exit(static_cast<int>(code));
 }
@@ -327,14 +328,16 @@ bool RealRun::stop_loop_and_bus() {
 void RealRun::stop() {
   parts_.tell("daemon_stopping", Severity::information, "Stopping: the safe outputs are written.");
   manager_.stopping();
-  if (!stop_loop_and_bus()) end_without("The loop or the bus thread hangs", ExitCode::failed);
+  if (!stop_loop_and_bus())
+    end_without("The thread of the control loop or of the bus hangs", ExitCode::failed);
   panel_.stop();
   stop_recorder_.set();
   stop_service_.set();
   const bool done = wait_for([this] { return recorder_done_.load() && service_done_.load(); }, longest_end);
   if (!done) {
-    end_without(recorder_done_.load() ? "The thread that serves clients hangs" : "The recorder hangs",
-                ExitCode::io);
+    end_without(
+        recorder_done_.load() ? "The thread that serves clients hangs" : "The thread of the recorder hangs",
+        ExitCode::io);
   }
   recorder_.join();
   service_.join();
@@ -358,10 +361,10 @@ void RealRun::note_and_keep(const BoardLock& lock) {
   for (const std::string& remark : lock.remarks()) parts_.tell("board_lock", Severity::warning, remark + ".");
   const auto kept = keep_rig(parts_.rig);
   if (kept) return;
-  parts_.tell(
-      "rig_not_kept", Severity::warning,
-      fmt::format("{}; after a crash, the safe outputs are taken from the rig file, even if it has changed.",
-                  kept.error()));
+  parts_.tell("rig_not_kept", Severity::warning,
+              fmt::format("{}. After a crash, the safe outputs are read from the rig file, even if the file "
+                          "has changed since the start.",
+                          kept.error()));
 }
 
 /// Removes the stored copy of the rig if all outputs are at rest. As long as a finger may be pressurised, the

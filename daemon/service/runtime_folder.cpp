@@ -51,8 +51,10 @@ tl::expected<RuntimeFolder, std::string> RuntimeFolder::open_one(const std::stri
   Descriptor folder(::open(place.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
   struct stat status {};
   if (!folder || ::fstat(folder.get(), &status) != 0) return failure(place, "cannot be opened");
-  if (!is_trusted(status.st_uid)) return Failure(fmt::format("{}: belongs to user {}", place, status.st_uid));
-  if ((status.st_mode & others_may_write) != 0) return Failure(place + ": other users may write there");
+  if (!is_trusted(status.st_uid))
+    return Failure(fmt::format("{}: this folder belongs to user {}", place, status.st_uid));
+  if ((status.st_mode & others_may_write) != 0)
+    return Failure(place + ": other users may write to this folder");
   if (::faccessat(folder.get(), ".", W_OK | X_OK, AT_EACCESS) != 0)
     return failure(place, "cannot be written");
   return RuntimeFolder(place, std::move(folder));
@@ -84,10 +86,10 @@ tl::expected<Descriptor, std::string> RuntimeFolder::open_file(const std::string
   struct stat folder {};
   if (!file || ::fstat(file.get(), &status) != 0 || ::fstat(folder_.get(), &folder) != 0)
     return failure(path, "cannot be opened");
-  if (!S_ISREG(status.st_mode)) return Failure(path + ": is no regular file");
+  if (!S_ISREG(status.st_mode)) return Failure(path + ": not a regular file");
   if (!is_trusted(status.st_uid) || (status.st_mode & others_may_do_anything) != 0 || status.st_nlink != 1)
-    return Failure(path + ": other users could open it");
-  // A file that root creates must also belong to the service user. Only root can change the owner of a file.
+    return Failure(path + ": other users could open this file");
+  // A file that root creates must also belong to the service user. Only root can change the owner.
   if (status.st_uid != folder.st_uid && (flags & O_CREAT) != 0) [[maybe_unused]]
     const int given = ::fchown(file.get(), folder.st_uid, folder.st_gid);
   return file;

@@ -62,7 +62,8 @@ SafeOutputsReport write_safe_outputs(const rig::RigFile& rig, drivers::Board& bo
     }
     if (status == BusStatus::watchdog_tripped) {
       return {SafeOutputsEnd::board_holds,
-              fmt::format("{}: its own watchdog holds its safe values", board.describe())};
+              fmt::format("{}: the watchdog of the board holds the outputs at their safe values",
+                          board.describe())};
     }
     if (status == BusStatus::ok) {
       if (++confirmed == exchanges_that_confirm) {

@@ -45,42 +45,45 @@ struct Arguments {
 void declare(CLI::App& program, Arguments& arguments) {
   program.add_option("--config", arguments.config, "the rig file")->required()->type_name("RIG");
   program.add_flag("--check", arguments.check,
-                   "report the problems of the rig file and the sequence; start nothing");
+                   "check the rig file and the sequence, report their problems, and exit");
   program.add_flag(
       "--safe-outputs", arguments.safe_outputs,
       "vent: connect to the board, write the rest pressure of every channel until the board confirms "
-      "it, and end. For ExecStopPost= of the unit: no action if $SERVICE_RESULT is success");
+      "these pressures, and exit. For ExecStopPost= of the unit: no action if $SERVICE_RESULT is success");
   program
       .add_option("--device", arguments.device,
-                  "for the udev rule: end with 0 if the rig file names this device of the computer, else "
-                  "with 6; if the device is a converter, print its attributes that the daemon writes")
+                  "for the udev rule: exit with code 0 if the rig file names this device of the computer, "
+                  "else with 6. For an analog converter, also print the attributes that the daemon writes")
       ->type_name("gpiochipN|iio:deviceN");
   program.add_flag("--virtual-time", arguments.virtual_time,
                    "run as fast as possible on a simulated board, with identical results in every run; "
                    "requires --sequence or --duration-s");
-  program.add_option("--seed", arguments.seed, "seed of a simulated board instead of the rig file's")
+  program.add_option("--seed", arguments.seed, "seed of a simulated board; overrides the rig file")
       ->type_name("N");
   program
-      .add_option("--sequence", arguments.sequence, "start this sequence when the rig is idle, end after it")
+      .add_option("--sequence", arguments.sequence,
+                  "start this sequence when the rig is idle, and exit after the sequence")
       ->type_name("FILE");
-  program.add_option("--duration-s", arguments.duration_s, "end after S seconds")
+  program.add_option("--duration-s", arguments.duration_s, "exit after S seconds")
       ->type_name("S")
       ->check(CLI::PositiveNumber);
-  program.add_option("--record", arguments.record, "record everything into this one folder")
+  program.add_option("--record", arguments.record, "write one recording of the whole run into this folder")
       ->type_name("DIR");
   program
       .add_option("--histograms", arguments.histograms,
-                  "write the histograms of loop and bus to this file at the end, in cyclictest's form")
+                  "at the end, write the timing histograms of the control loop and the bus to this file, in "
+                  "the format of cyclictest")
       ->type_name("FILE");
-  program.add_flag("--no-socket", arguments.no_socket, "do not listen on the rig file's socket");
+  program.add_flag("--no-socket", arguments.no_socket,
+                   "do not open the socket of the rig file, so that no client can connect");
   program.set_version_flag("--version", "softgripd " + std::string(software_version()));
   program.footer(
       "Exit codes: 0 done, 1 failed, 2 usage, 3 configuration or sequence refused, 4 I/O, 5 the rig's state "
       "does not\n"
       "allow the sequence, 6 the sequence was not completed. After SIGINT, SIGTERM or another ending\n"
       "signal, softgripd writes and confirms the safe outputs, closes the recording and ends with 0.\n"
-      "With --sequence or --duration-s it ends by the same signal instead.\n"
-      "The configuration is read once; restart to change it.");
+      "With --sequence or --duration-s, it ends by the received signal instead of with 0.\n"
+      "softgripd reads the configuration only at the start: restart it after a change.");
 }
 
 /// Writes a message to the standard error. If nothing can be written, the message is lost. fmt::print() is
@@ -138,7 +141,7 @@ ExitCode safe_outputs(const Arguments& arguments) {
   const auto rig = kept ? kept : rig::load_rig(arguments.config, problems);
   if (!rig || !problems.empty()) return refuse(problems);
   daemon::SafeOutputsReport report = daemon::vent_rig(*rig);
-  if (kept) report.text += "; the rig file was used as the last softgripd had read it";
+  if (kept) report.text += "; the contents of the rig file that the last softgripd had read were used";
   const bool safe = daemon::exit_code_of(report.end) == ExitCode::done;
   if (kept && safe) daemon::forget_rig(arguments.config);
   return end_of_safe_outputs(report);
@@ -162,7 +165,8 @@ tl::expected<void, std::string> write_histograms(const std::string& path, const 
 
 ExitCode run(const Arguments& arguments) {
   if (same_file(arguments.config, arguments.histograms)) {
-    complain(fmt::format("{} is the rig file: it is not overwritten", arguments.histograms));
+    complain(
+        fmt::format("{} is the rig file and is not overwritten: name another file", arguments.histograms));
     return ExitCode::usage;
   }
   document::Problems problems;

@@ -37,7 +37,8 @@ std::string watchdog_line(const rig::RigFile& rig, const drivers::Board& board, 
     if (rig.settings.safety.board_vents_when_silent &&
         std::find(actions.begin(), actions.end(), control::SafeAction::hold) != actions.end())
       text += fmt::format(
-          "hold: a part is held only while {} runs; {:g} s after its end, the watchdog vents the fingers\n",
+          "hold: a part is held only while {} runs; the watchdog vents the fingers {:g} s after the end of "
+          "this program\n",
           program, time_s);
     return text;
   }
@@ -65,7 +66,7 @@ std::string gpio_lines(const rig::RigFile& rig) {
   for (const drivers::GpioLineSettings& line : gpio.lines) {
     text += fmt::format("gpio: {} is {}", drivers::name_of(line.role), drivers::text_of(line));
     if (line.role == drivers::GpioRole::enable) {
-      text += gpio.enable_drops_on_fault ? ", drops on a fault" : ", kept on a fault";
+      text += gpio.enable_drops_on_fault ? ", switched off on a fault" : ", stays on during a fault";
     }
     text += "\n";
   }
@@ -74,7 +75,8 @@ std::string gpio_lines(const rig::RigFile& rig) {
   const double latched_s = gpio.debounce_s + period_s;
   return text + fmt::format(
                     "emergency stop: latched {:.3g} ms after the contact switches (debounce {:.3g} ms, one "
-                    "cycle), written to the board {:.3g} ms later; acknowledge before the first start\n",
+                    "cycle), and written to the board {:.3g} ms after that; acknowledge the emergency stop "
+                    "before the first start\n",
                     latched_s * ms_per_s, gpio.debounce_s * ms_per_s,
                     rig.loop.bus_offset_fraction * period_s * ms_per_s);
 }

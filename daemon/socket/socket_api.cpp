@@ -157,8 +157,9 @@ Json SocketApi::status() const {
 
 void SocketApi::greet(ClientId client, const ClientRequest& request) {
   if (request.api != api_version) {
-    fail(client, request.id,
-         error_json("wrong_api", "this daemon speaks version " + std::to_string(api_version)));
+    fail(
+        client, request.id,
+        error_json("wrong_api", "this daemon supports only protocol version " + std::to_string(api_version)));
     return;
   }
   Client& known = clients_[client];
@@ -306,7 +307,7 @@ void SocketApi::refuse_planned() {
   if (!planned_ || planned_->abandoned) return;
   abandon_planned();
   fail(planned_->client, planned_->id,
-       error_json("abandoned", "a stop or a vent came while the sequence was being loaded"));
+       error_json("abandoned", "a stop or vent request arrived while the sequence was being loaded"));
 }
 
 void SocketApi::take_planned(Nanoseconds now) {
@@ -347,13 +348,14 @@ void SocketApi::wait_for(std::optional<std::uint32_t> number, Asked asked) {
   if (number) {
     asked_.insert({*number, std::move(asked)});
   } else {
-    fail(asked.client, asked.id, error_json("busy", "the loop has not yet processed the previous requests"));
+    fail(asked.client, asked.id,
+         error_json("busy", "the control loop has not yet processed the previous requests"));
   }
 }
 
 void SocketApi::answer(const Asked& asked, std::uint32_t request, const Service::Answer& answer) {
   if (answer.kind == Service::Answer::Kind::pending) {
-    fail(asked.client, asked.id, error_json("no_answer", "the loop did not answer within a second"));
+    fail(asked.client, asked.id, error_json("no_answer", "the control loop did not respond within 1 s"));
     return;
   }
   if (answer.kind == Service::Answer::Kind::accepted) {

@@ -44,8 +44,10 @@ Json json_of_latched(const Snapshot& snapshot, const std::vector<std::string>& n
   json["present"] = fault_title_json(cause, names);
   json["next"] =
       gone ? "The cause is gone: `softgrip acknowledge` clears the fault; nothing moves until the next start."
-           : fmt::format("Still present: {}. `softgrip acknowledge` clears the fault once the cause is gone.",
-                         title_of(cause, names));
+           : fmt::format(
+                 "The cause is still present: {}. `softgrip acknowledge` clears the fault once the cause is "
+                 "gone.",
+                 title_of(cause, names));
   return json;
 }
 

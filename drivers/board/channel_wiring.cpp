@@ -48,7 +48,7 @@ class Checker {
     };
     for (std::size_t i = 0; i < modules_.size(); ++i) {
       if (!wired(outputs_, i) && !wired(inputs_, i)) {
-        problems_.push_back("nothing is wired to the module '" + modules_[i].name + "'");
+        problems_.push_back("no channel is wired to the module '" + modules_[i].name + "'");
       }
     }
   }
@@ -79,7 +79,7 @@ class Checker {
     const std::string& name = modules_[module].name;
     if (index >= terminals.size()) {
       problems_.push_back(where + name + " has no " + kind + " " + std::to_string(index) + "; it has " +
-                          std::to_string(terminals.size()) + ", counted from 0");
+                          std::to_string(terminals.size()) + ", numbered from 0");
       return;
     }
     if (!used.emplace(module, index).second) {
@@ -95,7 +95,7 @@ class Checker {
     const bool finite = std::isfinite(points.x0) && std::isfinite(points.y0) && std::isfinite(points.x1) &&
                         std::isfinite(points.y1);
     if (!finite || points.x0 == points.x1 || points.y0 == points.y1) {
-      problems_.push_back(where + "the two scaling points must differ in both their numbers");
+      problems_.push_back(where + "the two scaling points must differ in both coordinates");
     }
   }
 

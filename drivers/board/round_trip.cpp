@@ -46,7 +46,7 @@ Board::Budget tcp_cost(std::size_t transactions, const std::string& plan, const 
       known ? "median of " + std::to_string(measured.count()) + " measured when connecting, slowest " +
                   milliseconds(measured.slowest_s())
             : std::string("assumed for ") + (is_loopback(host) ? "loopback" : "a network") +
-                  ", not measured: not connected yet";
+                  ", not measured because the board has not been connected yet";
   Board::Budget cost;
   cost.exchange_s = static_cast<double>(transactions) * round_trip_s;
   cost.explanation = "Modbus TCP, " + std::to_string(transactions) +

@@ -40,8 +40,8 @@ Failure failed(const std::string& what, int error) {
   Failure failure{Failure::Kind::failed, 0, what + ": " + std::strerror(error), ""};
   if (error == EACCES || error == EPERM) {
     failure.hint =
-        "the package's udev rule gives the service the chips that its rig file names; after a change: "
-        "`udevadm trigger --action=add --subsystem-match=gpio`";
+        "the udev rule of the package gives the service access to the chips in its rig file; after a change "
+        "of the rig file, run `udevadm trigger --action=add --subsystem-match=gpio`";
   }
   return failure;
 }
@@ -121,7 +121,7 @@ tl::expected<LineFacts, Failure> find_line(gpiod_chip* chip, const GpioLineSetti
       return tl::unexpected(refused("the chip `" + settings.chip + "` has " + std::to_string(named.size()) +
                                         " lines named `" + settings.line +
                                         "`: " + enumerated(named, " and ", number),
-                                    "write `offset` in the place of `line`"));
+                                    "write `offset` instead of `line`"));
     }
     offset = named.front();
   }
@@ -129,7 +129,7 @@ tl::expected<LineFacts, Failure> find_line(gpiod_chip* chip, const GpioLineSetti
   if (!offset || *offset >= lines) {
     return tl::unexpected(
         refused("the chip `" + settings.chip + "` has no line " + std::to_string(offset.value_or(0)),
-                "its lines count from 0 to " + std::to_string(lines - 1)));
+                "the lines of this chip have the numbers 0 to " + std::to_string(lines - 1)));
   }
   auto facts = libgpiod::facts_of(chip, *offset);
   if (!facts) return tl::unexpected(failed("the state of the line cannot be read", errno));
@@ -137,13 +137,13 @@ tl::expected<LineFacts, Failure> find_line(gpiod_chip* chip, const GpioLineSetti
     return tl::unexpected(Failure{
         Failure::Kind::failed, 0,
         "the line is in use" + (facts->consumer.empty() ? std::string{} : " by `" + facts->consumer + "`"),
-        "another program or the kernel uses it: `gpioinfo` shows which"});
+        "another program or the kernel uses this line: `gpioinfo` shows its name"});
   }
   if (is_input(settings.role) && facts->output) {
     return tl::unexpected(refused(
         "the line is configured as an output, but `" + std::string(name_of(settings.role)) + "` is an input",
-        "the rig file names a wrong line, or a program changed it: `gpioget` with this chip and line "
-        "makes it an input"));
+        "the rig file names a wrong line, or a program changed the direction of the line: `gpioget` with "
+        "this chip and line makes the line an input"));
   }
   return *facts;
 }
@@ -160,8 +160,8 @@ Failure request_failure(const GpioLineSettings& settings, int error) {
   return refused("the chip cannot make this line an " +
                      std::string(is_input(settings.role) ? "input" : "output") + " as described",
                  settings.bias == GpioBias::as_is
-                     ? "the rig file names a wrong line, or its direction is fixed"
-                     : "its direction is fixed, or it has no such `bias`");
+                     ? "the rig file names a wrong line, or the chip cannot change the direction of this line"
+                     : "the chip cannot change the direction of this line, or does not support this `bias`");
 }
 
 class LibgpiodLines final : public GpioLines {

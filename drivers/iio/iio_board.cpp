@@ -20,7 +20,8 @@ namespace softgrip::drivers {
 namespace {
 
 constexpr int probes = 5;
-constexpr const char* stays_off_text = "it remains 1 after 0 was written: the output is switched off";
+constexpr const char* stays_off_text =
+    "this attribute stays 1 after 0 was written, so the output remains switched off";
 
 /// Returns the factor from the unit of the kernel to V, mA or kPa. The kernel gives voltages in mV, currents
 /// in mA and pressures in kPa.
@@ -151,8 +152,8 @@ BusStatus IioBoard::Parts::attach(const Devices& there, const IioTerminal& termi
   converter.identity = identity_behind(terminal.device, *device);
   if (!converter.first_identity.empty() && converter.identity != converter.first_identity) {
     return say(BusStatus::disconnected, converter.name,
-               ("it was " + converter.first_identity + ", now it is " + converter.identity +
-                ": restart if this is correct")
+               ("it was " + converter.first_identity + ", but now it is " + converter.identity +
+                ": restart softgripd if this is correct")
                    .c_str());
   }
   const std::filesystem::path folder = std::filesystem::path(settings.root) / device->node;
@@ -176,7 +177,7 @@ BusStatus IioBoard::Parts::open_number(const std::filesystem::path& folder, cons
   if (!(std::abs(converter.scale) > 0) || !std::isfinite(converter.scale) ||
       !std::isfinite(converter.offset)) {
     return say(BusStatus::disconnected, converter.name,
-               "it has no scale, so its numbers cannot be converted");
+               "the converter has no scale, so its raw values cannot be converted");
   }
   return BusStatus::ok;
 }
@@ -384,7 +385,7 @@ BusStatus IioBoard::exchange(std::span<const double> commands_kpa, std::span<Rea
     if (const BusStatus status = parts.read_channel(i, fresh[i]); status != BusStatus::ok) return status;
     ++fresh[i].sequence;
     if (monotonic_now() <= until) continue;
-    std::snprintf(parts.detail.data(), parts.detail.size(), "converting took longer than the deadline");
+    std::snprintf(parts.detail.data(), parts.detail.size(), "the conversions took longer than the deadline");
     return BusStatus::timed_out;
   }
   if (written != BusStatus::ok) return written;
@@ -432,7 +433,7 @@ Board::Budget IioBoard::budget() const {
   cost.explanation =
       "industrial I/O, " + std::to_string(writes) + " writes and " + std::to_string(reads) + " conversions" +
       (parts.reads.count() == 0
-           ? std::string(", not measured: not connected yet")
+           ? std::string(", not measured because the board has not been connected yet")
            : " of " + milliseconds(each_s) + " (median of " + std::to_string(parts.reads.count()) +
                  " conversions when connecting, slowest " + milliseconds(parts.reads.slowest_s()) + ")");
   return sum_of({&cost, 1});

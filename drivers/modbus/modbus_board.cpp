@@ -255,7 +255,7 @@ Board::Budget ModbusBoard::budget() const {
       if (parts_->modules.size() > 1) plan += module.settings().name + ": ";
       plan += drivers::describe(module.plan());
       if (module.drives_outputs() && module.settings().map.watchdog.feed_write.has_value()) {
-        plan += ", one write feeds the watchdog";
+        plan += ", one write resets the watchdog";
       }
     }
     costs.push_back(parts_->links[link]->cost(transactions, plan));

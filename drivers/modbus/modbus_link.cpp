@@ -79,7 +79,7 @@ BusStatus ModbusLink::open(Nanoseconds deadline) noexcept {
   if (status != BusStatus::ok) return status;
   opened_at_ = monotonic_now();
   if (put_where_select_finds_it()) return BusStatus::ok;
-  return fail(BusStatus::disconnected, "connecting", "every descriptor below 1024 is taken");
+  return fail(BusStatus::disconnected, "connecting", "all file descriptors below 1024 are in use");
 }
 
 BusStatus ModbusLink::settle(Nanoseconds deadline) noexcept {
@@ -105,11 +105,11 @@ BusStatus ModbusLink::drain(Nanoseconds until, Nanoseconds deadline, const char*
 /// this happens before the first response, the status is `closed_at_once`. It means that cable and address
 /// are right.
 BusStatus ModbusLink::ended(const char* what) noexcept {
-  if (!on_network_) return fail(BusStatus::disconnected, what, "the device is gone");
-  if (answered_) return fail(BusStatus::disconnected, what, "the other end is gone");
+  if (!on_network_) return fail(BusStatus::disconnected, what, "the serial device no longer exists");
+  if (answered_) return fail(BusStatus::disconnected, what, "the board or gateway closed the connection");
   return fail(BusStatus::closed_at_once, what,
-              "the other end accepted the connection and closed it before its first answer: it may accept no "
-              "further client");
+              "the board accepted the connection but closed it before the first response, so it may accept "
+              "no further client");
 }
 
 BusStatus ModbusLink::read_some(std::span<std::uint8_t> bytes, const char* what, std::size_t& got) noexcept {
@@ -276,7 +276,7 @@ BusStatus ModbusLink::conclude(const ModbusReply& reply, int error, std::uint8_t
                                const ModbusRequest& request) noexcept {
   if (reply.state == ModbusReply::State::defective && reply.defect == ReplyDefect::unit) {
     std::array<char, 64> who{};
-    std::snprintf(who.data(), who.size(), "%s: %u in place of %u", text_of(reply.defect),
+    std::snprintf(who.data(), who.size(), "%s: %u instead of %u", text_of(reply.defect),
                   static_cast<unsigned>(incoming_[unit_place()]), static_cast<unsigned>(unit));
     return fail(BusStatus::bad_reply, "receiving", who.data());
   }

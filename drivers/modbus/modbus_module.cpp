@@ -114,8 +114,9 @@ BusStatus ModbusModule::name_refusal(BusStatus status, Nanoseconds deadline) noe
   if (status != BusStatus::exception || !plan_.tripped.has_value()) return status;
   const char* const refusal = detail_;
   if (read_step(plan_.tripped->step, deadline) == BusStatus::ok && is_tripped()) {
-    return say(BusStatus::watchdog_tripped,
-               "the board's watchdog tripped: the board rejects writes while its outputs are safe");
+    return say(
+        BusStatus::watchdog_tripped,
+        "the board's watchdog tripped: the board rejects writes while its outputs are at their safe values");
   }
   return say(status, refusal);
 }

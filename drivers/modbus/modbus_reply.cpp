@@ -48,13 +48,13 @@ const char* text_of(ReplyDefect defect) noexcept {
     case ReplyDefect::byte_count:
       return "the reply's byte count does not match the request";
     case ReplyDefect::echo:
-      return "the reply confirms another address or value than the written one";
+      return "the reply confirms an address or value that differs from the written one";
     case ReplyDefect::trailing:
       return "bytes follow the reply";
     case ReplyDefect::checksum:
       return "the reply was damaged in transmission (checksum)";
     case ReplyDefect::own_echo:
-      return "the line returns what is sent (an adapter that echoes: `echo: true` in the rig file)";
+      return "the line returns the sent bytes (for such an adapter, set `echo: true` in the rig file)";
   }
   return "unknown";
 }

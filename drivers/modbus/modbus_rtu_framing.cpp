@@ -25,7 +25,7 @@ BusStatus ModbusRtuFraming::listen(Nanoseconds usual, Nanoseconds deadline) noex
                              monotonic_now() + (deadline - monotonic_now()) / 2);
   while (monotonic_now() < end) {
     if (monotonic_now() >= deadline)
-      return fail(BusStatus::bad_reply, "listening", "the line does not become silent");
+      return fail(BusStatus::bad_reply, "listening", "the line did not become idle before the deadline");
     const Waited waited = wait_for(descriptor(), POLLIN, std::min(end, deadline));
     if (waited == Waited::failed) return fail(BusStatus::disconnected, "listening", text_of_errno(errno));
     if (waited == Waited::timed_out) continue;

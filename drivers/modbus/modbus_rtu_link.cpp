@@ -65,7 +65,7 @@ BusStatus ModbusRtuLink::take_echo(std::span<const std::uint8_t> frame, Nanoseco
     if (status != BusStatus::ok) return status;
     if (!std::equal(echo.begin(), echo.begin() + static_cast<std::ptrdiff_t>(got), frame.begin())) {
       return fail(BusStatus::bad_reply, "sending",
-                  "the echo differs from the sent bytes: two clients (masters) on one line?");
+                  "the echo differs from the sent bytes: a second client (master) may be on the line");
     }
     frame = frame.subspan(got);
   }
@@ -95,7 +95,8 @@ Board::Budget ModbusRtuLink::cost(std::span<const TransactionSize> transactions,
              milliseconds(measured().slowest_s());
   } else {
     source = "turnaround " + milliseconds(line_.turnaround_s) + " and adapter " +
-             milliseconds(line_.adapter_latency_s) + ", not measured: not connected yet";
+             milliseconds(line_.adapter_latency_s) +
+             ", not measured because the board has not been connected yet";
   }
   const auto number = [](std::size_t value) { return std::to_string(value); };
   Board::Budget cost;

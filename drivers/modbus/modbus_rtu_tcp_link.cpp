@@ -40,7 +40,7 @@ Board::Budget ModbusRtuTcpLink::cost(std::span<const TransactionSize> transactio
   Board::Budget cost = tcp_cost(transactions.size(), plan, address_.host, measured());
   const double silences_s = static_cast<double>(transactions.size()) * address_.silence_s;
   cost.exchange_s += silences_s;
-  cost.explanation += ", RTU frames: silences of together " + milliseconds(silences_s);
+  cost.explanation += ", RTU frames: the silences between frames take " + milliseconds(silences_s);
   return cost;
 }
 

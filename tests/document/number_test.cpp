@@ -62,15 +62,15 @@ TEST(Number, RefusesEverythingElseWithWhatWasProbablyMeant) {
       {"infinity", "only finite numbers are allowed"},
       {"0x1F", "write the number in decimal"},
       {"0o17", "write the number in decimal"},
-      {"017", "a leading zero could mean octal: write it without"},
+      {"017", "a number with a leading zero could be read as octal: remove the zero"},
       {"1_000", "write 1000"},
       {"0,13", "the decimal mark is a point: 0.13"},
-      {"130 ms", "write the number alone: the key says the unit"},
-      {"60kPa", "write the number alone: the key says the unit"},
+      {"130 ms", "write the number without a unit, because the key contains the unit"},
+      {"60kPa", "write the number without a unit, because the key contains the unit"},
       {"yes", "a number is needed here, not a boolean"},
       {"Off", "a number is needed here, not a boolean"},
       {"fast", ""},
-      {"1e", "write the number alone: the key says the unit"},
+      {"1e", "write the number without a unit, because the key contains the unit"},
       {"--1", ""},
       {"+-1", ""},
       {"-+1", ""},
@@ -118,8 +118,8 @@ TEST(Integer, IsWholeAndFits) {
   EXPECT_EQ(parse_integer(plain("9223372036854775807")).value, std::numeric_limits<std::int64_t>::max());
   EXPECT_EQ(parse_integer(plain("9223372036854775808")).message,
             "is `9223372036854775808`, too large for a whole number");
-  EXPECT_EQ(parse_integer(plain("1.0")).hint, "write it without point and exponent");
-  EXPECT_EQ(parse_integer(plain("1e3")).hint, "write it without point and exponent");
+  EXPECT_EQ(parse_integer(plain("1.0")).hint, "write the number without decimal point and without exponent");
+  EXPECT_EQ(parse_integer(plain("1e3")).hint, "write the number without decimal point and without exponent");
   EXPECT_FALSE(parse_integer(plain("0x10")).value);
   EXPECT_FALSE(parse_integer(plain("010")).value);
   EXPECT_EQ(parse_integer(plain("1_000")).hint, "write 1000");

@@ -138,13 +138,15 @@ TEST(Parse, SyntaxErrorsSayWhatWasOpen) {
             (Lines{"2:2: the list `[...]` that starts at 1:4 is not closed here: expected `,` or `]`"}));
   EXPECT_EQ(problems_of("a: {b: 1\n"),
             (Lines{"2:1: the map `{...}` that starts at 1:4 is not closed here: expected `,` or `}`"}));
-  EXPECT_EQ(problems_of("a: b: c\n"), (Lines{"1:5: a second `: ` is in the place of the value"}));
-  EXPECT_EQ(problems_of("a: 1\n  b: 2\n"),
-            (Lines{"2:4: this key starts in column 3, the keys of its map start in column 1"}));
+  EXPECT_EQ(problems_of("a: b: c\n"), (Lines{"1:5: the value contains a second `: `"}));
+  EXPECT_EQ(
+      problems_of("a: 1\n  b: 2\n"),
+      (Lines{"2:4: this key starts in column 3, but the other keys of the same map start in column 1"}));
   EXPECT_EQ(problems_of("a:1\nb: 2\n"),
             (Lines{"2:2: this is not a key: the line above has no `: ` and continues here"}));
   EXPECT_EQ(problems_of("a: \"\\q\"\n"), (Lines{"1:7: a text in double quotes contains an unknown escape"}));
-  EXPECT_EQ(problems_of("a: 1\n- b\n"), (Lines{"2:1: this does not belong to the map that starts at 1:1"}));
+  EXPECT_EQ(problems_of("a: 1\n- b\n"),
+            (Lines{"2:1: this line does not belong to the map that starts at 1:1"}));
   EXPECT_EQ(problems_of("a: @b\n"), (Lines{"1:4: this character cannot start a value"}));
 }
 
@@ -152,9 +154,9 @@ TEST(Parse, AnOpenQuoteDoesNotSwallowTheRestOfTheFile) {
   // The YAML parser accepts a quoted text without a closing quote if the file ends with a line break. The
   // check of the project must refuse this text.
   for (const char* const text : {"a: 'open\n", "a: \"open\nb: 2\n\n", "a: \"open \\\"\n", "a: 'it''s\n"}) {
-    EXPECT_EQ(problems_of(text), (Lines{"1:4: a quote is opened here but never closed"})) << text;
+    EXPECT_EQ(problems_of(text), (Lines{"1:4: the quotation mark that opens here is never closed"})) << text;
   }
-  EXPECT_EQ(problems_of("a: 'open"), (Lines{"1:9: a quote is opened but never closed"}));
+  EXPECT_EQ(problems_of("a: 'open"), (Lines{"1:9: a quotation mark is opened but never closed"}));
   EXPECT_EQ(problems_of("a: 'it''s'\nb: \"a \\\" b\"\nc: \"\\\\\"\n\"d\": ''\n"), Lines{});
 }
 
@@ -170,8 +172,9 @@ TEST(Parse, BoundsAreExact) {
   Bounds bounds;
   bounds.bytes = 6;
   EXPECT_EQ(problems_of("a: 12\n", bounds), Lines{});
-  EXPECT_EQ(problems_of("a: 123\n", bounds),
-            (Lines{"1:1: the file is larger than 6 bytes, the most that a configuration may have"}));
+  EXPECT_EQ(
+      problems_of("a: 123\n", bounds),
+      (Lines{"1:1: the file is larger than 6 bytes, the largest permitted size of a configuration file"}));
   bounds = {};
   bounds.depth = 3;
   EXPECT_EQ(problems_of("a: [[1]]\n", bounds), Lines{});
@@ -259,8 +262,10 @@ TEST(ParseFile, StopsReadingAtTheBound) {
                                                                  // memory
   Problems problems;
   static_cast<void>(parse_file(path, problems));
-  EXPECT_EQ(lines_of(problems),
-            (Lines{"1:1: the file is larger than 262144 bytes, the most that a configuration may have"}));
+  EXPECT_EQ(
+      lines_of(problems),
+      (Lines{
+          "1:1: the file is larger than 262144 bytes, the largest permitted size of a configuration file"}));
 }
 
 TEST(ParseFile, RefusesADeviceAndAPipeWithoutWaiting) {

@@ -158,10 +158,9 @@ TEST(Reader, ListsHaveTheirLength) {
 }
 
 TEST(Reader, TextsAreOneLineAndPrintable) {
-  EXPECT_EQ(
-      reported("t: \"a\\nb\"\n", [](MapReader& r) { EXPECT_EQ(r.text("t"), ""); }),
-      (Lines{"1:4: `t` must be one line without control characters, found `a\\nb` | a folded text starts "
-             "with `>-`"}));
+  EXPECT_EQ(reported("t: \"a\\nb\"\n", [](MapReader& r) { EXPECT_EQ(r.text("t"), ""); }),
+            (Lines{"1:4: `t` must be one line without control characters, found `a\\nb` | start a text of "
+                   "several lines with `>-`"}));
   EXPECT_EQ(reported("t: >-\n  a\n  b\n", [](MapReader& r) { EXPECT_EQ(r.text("t"), "a b"); }), Lines{});
   EXPECT_EQ(reported("t: \"\\x9b31m\"\n", [](MapReader& r) { r.text("t"); }).size(), 1U);
 }

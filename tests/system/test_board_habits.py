@@ -46,14 +46,14 @@ class BoardHabits(bench.BenchTest):
         rig = self.rig(emulator.port)
         finding = next(f for f in json.loads(self.softgrip("doctor", "--rig", rig, "--json", expect=6).stdout)["findings"]
                        if f["name"] == "board")
-        self.assertIn("closed it before its first answer", finding["text"])
+        self.assertIn("closed it before the first response", finding["text"])
         self.assertIn("no further client", finding["advice"])
         daemon = self.daemon(rig)
         bench.wait_for("what happens", lambda: daemon.status()["bus"]["failure_kind"] == "closed_at_once")
         bench.wait_for("more attempts", lambda: daemon.status()["bus"]["attempts"] > 3)
         status = daemon.status()["bus"]
         self.assertFalse(status["connected"])
-        self.assertIn("closed it before its first answer", status["failure"])
+        self.assertIn("closed it before the first response", status["failure"])
         self.assertNotIn("bus_connected", self.kinds(daemon))
         self.assertIn("closed it before", " ".join(self.softgrip("status").stdout.split()))
         finding = next(f for f in json.loads(self.softgrip("doctor", "--json", expect=6).stdout)["findings"]

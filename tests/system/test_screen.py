@@ -43,7 +43,7 @@ class Screen(bench.BenchTest):
         self.assertEqual(fault["present"], {"code": "F202", "name": "reading_out_of_range", "channel": "left"})
         shown = self.softgrip("status").stdout
         self.assertIn("fault F202 of left  reading_out_of_range", shown)
-        self.assertIn("Still present: F202 reading_out_of_range of left.", shown)
+        self.assertIn("The cause is still present: F202 reading_out_of_range of left.", shown)
         self.assertIn("faulted F202 of left", self.softgrip("watch", "--count", "1").stdout)
         self.assertIn("left: Fault F202 reading_out_of_range", self.softgrip("events").stdout)
         refused = self.softgrip("acknowledge", expect=5).stderr

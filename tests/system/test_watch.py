@@ -69,7 +69,7 @@ class Watch(bench.BenchTest):
         watched = self.watch(rows=30)
         self.emulated.ask("fault blind")
         watched.wait_for("fault F202 of left")
-        watched.wait_for("Still present: F202 reading_out_of_range of left.")
+        watched.wait_for("The cause is still present: F202 reading_out_of_range of left.")
         watched.type("a")
         watched.wait_for("refused (R09)")
         self.emulated.ask("clear blind")

@@ -223,11 +223,12 @@ TEST_F(IioBoardTest, APowerdownThatStaysEndsTheSessionAndTheNextIsRefused) {
   IioBoard board(settings_);
   ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
   EXPECT_EQ(exchange(board, 0, 0), BusStatus::disconnected);
-  EXPECT_NE(std::string(board.detail()).find("out_voltage1_powerdown: it remains 1"), std::string::npos)
+  EXPECT_NE(std::string(board.detail()).find("out_voltage1_powerdown: this attribute stays 1"),
+            std::string::npos)
       << board.detail();
   EXPECT_EQ(readings_[0].sequence, 0U);
   EXPECT_EQ(board.connect(5s), BusStatus::disconnected);
-  EXPECT_NE(std::string(board.detail()).find("remains 1 after 0 was written"), std::string::npos)
+  EXPECT_NE(std::string(board.detail()).find("stays 1 after 0 was written"), std::string::npos)
       << board.detail();
   fs::remove(powerdown);
   put("iio:device1/out_voltage1_powerdown", "0");
@@ -362,7 +363,8 @@ TEST_F(IioBusTest, AnotherConverterOfTheSameNameDoesNotTakeThePlaceOfOneThatIsGo
   unplug(1, "1-0060");
   plug(1, "1-0061");
   EXPECT_EQ(board.connect(5s), BusStatus::disconnected);
-  EXPECT_NE(std::string(board.detail()).find("1-0061: restart if this is correct"), std::string::npos)
+  EXPECT_NE(std::string(board.detail()).find("1-0061: restart softgripd if this is correct"),
+            std::string::npos)
       << board.detail();
   EXPECT_EQ(exchange(board, 50, 25), BusStatus::disconnected);
   EXPECT_EQ(get("iio:device1/out_voltage0_raw"), "0");

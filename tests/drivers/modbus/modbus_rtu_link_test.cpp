@@ -202,7 +202,7 @@ TEST(ModbusRtuLink, WhatIsNotTheAnswer) {
              }),
              BusStatus::bad_reply, "bytes follow");
   expect_end(ask_once([](ScriptedLine& line, const Bytes& request) { line.send(request); }),
-             BusStatus::bad_reply, "returns what is sent");
+             BusStatus::bad_reply, "returns the sent bytes");
 }
 
 // Fewer additional bytes than the shortest response has cannot be another response. They must be ignored as
@@ -312,7 +312,7 @@ TEST(ModbusRtuLink, AnAdapterThatEchoesIsToldOf) {
                    line.send(collided);
                  },
                  settings),
-             BusStatus::bad_reply, "two clients (masters)");
+             BusStatus::bad_reply, "a second client (master)");
 }
 
 TEST(ModbusRtuLink, ExceptionsKeepTheSession) {
@@ -401,7 +401,7 @@ TEST(ModbusRtuLink, TheCostAddsUp) {
   EXPECT_EQ(
       cost.explanation,
       "115200 8N1, plan: 31 bytes 2.69 ms + 4 silences of 1.75 ms 7 ms + 2 answers of 21 ms (turnaround 5 "
-      "ms and adapter 16 ms, not measured: not connected yet)");
+      "ms and adapter 16 ms, not measured because the board has not been connected yet)");
 }
 
 TEST(SerialPort, CharactersAndFormats) {

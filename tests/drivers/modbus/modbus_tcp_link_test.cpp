@@ -236,7 +236,7 @@ TEST(ModbusTcpLink, NoReplyAtAll) {
 TEST(ModbusTcpLink, HungUpBeforeTheReply) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes&) { peer.hang_up(); });
   expect_poisoned(outcome, BusStatus::closed_at_once, slack);
-  EXPECT_NE(outcome.detail.find("closed it before its first answer"), std::string::npos) << outcome.detail;
+  EXPECT_NE(outcome.detail.find("closed it before the first response"), std::string::npos) << outcome.detail;
 }
 
 TEST(ModbusTcpLink, HungUpInTheMiddleOfTheReply) {
