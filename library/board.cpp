@@ -100,10 +100,10 @@ SimulatedBoard::SimulatedBoard(std::vector<SimulatedFinger> fingers, double tick
     library::require_between("pressure_min_kpa", finger.pressure_min_kpa, -sensor_range, sensor_range, "kPa");
     library::require_between("pressure_max_kpa", finger.pressure_max_kpa, -sensor_range, sensor_range, "kPa");
     if (!(finger.pressure_max_kpa > finger.pressure_min_kpa))
-      throw InvalidArgument("pressure_max_kpa", "it must be above pressure_min_kpa, in kPa");
+      throw InvalidArgument("pressure_max_kpa", "the value must be above pressure_min_kpa (both in kPa)");
     if (finger.object && !is_valid(*finger.object))
-      throw InvalidArgument("object",
-                            "the position must be finite, in " + unit + ", and yielding from 0 to 1");
+      throw InvalidArgument("object", "the position must be finite, in " + unit +
+                                          ", and the share by which the object yields must be from 0 to 1");
     simulation::SimulatedChannel channel;
     channel.name = "finger " + std::to_string(i);
     channel.plant.model = finger.model.parts().value;

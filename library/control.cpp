@@ -87,13 +87,14 @@ control::LimitSettings checked(const Limits& limits) {
   require_between("pressure_min_kpa", limits.pressure_min_kpa, -most_kpa, most_kpa, "kPa");
   require_between("pressure_max_kpa", limits.pressure_max_kpa, -most_kpa, most_kpa, "kPa");
   if (!(limits.pressure_max_kpa > limits.pressure_min_kpa))
-    throw InvalidArgument("pressure_max_kpa", "it must be above pressure_min_kpa, in kPa");
+    throw InvalidArgument("pressure_max_kpa", "the value must be above pressure_min_kpa (both in kPa)");
   require_positive("slew_up_kpa_per_s", limits.slew_up_kpa_per_s, "kPa/s");
   require_positive("slew_down_kpa_per_s", limits.slew_down_kpa_per_s, "kPa/s");
   require_between("rest_kpa", limits.rest_kpa, -most_kpa, most_kpa, "kPa");
   if (!(std::isfinite(limits.displacement_min) && std::isfinite(limits.displacement_max) &&
         limits.displacement_min < limits.displacement_max))
-    throw InvalidArgument("displacement_max", "it must be above displacement_min, in the unit of the model");
+    throw InvalidArgument("displacement_max",
+                          "the value must be above displacement_min (both in the unit of the model)");
   return settings_of(limits);
 }
 

@@ -52,7 +52,7 @@ void require_times(const std::string& argument, std::span<const double> time_s, 
   for (std::size_t i = 1; i < time_s.size(); ++i) {
     if (!(time_s[i] > time_s[i - 1]))
       throw InvalidArgument(argument, "value " + std::to_string(i) + " (" + shortest(time_s[i]) +
-                                          " s) is not above the value before it (" + shortest(time_s[i - 1]) +
+                                          " s) is not above the previous value (" + shortest(time_s[i - 1]) +
                                           " s). Times must increase");
   }
 }

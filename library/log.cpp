@@ -111,7 +111,7 @@ sysid::Role role_named(const std::string& argument, const std::string& word) {
   if (found != sysid::roles.end()) return found->role;
   std::string all;
   for (const sysid::RoleSpec& spec : sysid::roles) all += " " + std::string(spec.word);
-  throw InvalidArgument(argument, "'" + word + "' is no role; roles are" + all);
+  throw InvalidArgument(argument, "'" + word + "' is not a role of a column; the roles are" + all);
 }
 
 sysid::Mapping mapping_of(const ReadOptions& options) {
@@ -182,7 +182,9 @@ std::vector<sysid::Log> checked_logs(const std::string& argument, const std::vec
     result.push_back(accepted(argument, log, options));
     if (use.drive == Drive::measured && log.pressure_kpa.empty())
       throw InvalidArgument(
-          argument, result.back().name + ": no pressure_kpa in kPa, which the drive 'measured' needs");
+          argument,
+          result.back().name +
+              ": the drive 'measured' requires pressure_kpa (in kPa), which this log does not have");
   }
   if (use.drive == Drive::command) sysid::begin_before_first_command(result, measured_stay);
   return result;

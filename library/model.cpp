@@ -153,11 +153,13 @@ Inverse Model::inverse(std::span<const double> time_s, std::span<const double> d
   library::require_finite("displacement", displacement, unit);
   const double tick_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
   if (tick_s < shortest_step_s || tick_s > longest_step_s)
-    throw InvalidArgument("time_s", "steps of " + shortest(tick_s) + " s; an inverse needs steps of " +
+    throw InvalidArgument("time_s", "steps of " + shortest(tick_s) +
+                                        " s between samples; the inverse of a model requires steps of " +
                                         written(shortest_step_s) + " to " + written(longest_step_s) + " s");
   for (std::size_t i = 1; i < time_s.size(); ++i) {
     if (std::abs(time_s[i] - time_s[i - 1] - tick_s) > most_jitter * tick_s + 1e-12 * std::abs(time_s[i]))
-      throw InvalidArgument("time_s", "the steps differ; an inverse needs equal steps in s");
+      throw InvalidArgument(
+          "time_s", "the time steps differ, but the inverse of a model requires equal time steps (in s)");
   }
   Limits limits;
   limits.pressure_min_kpa = options.pressure_min_kpa;

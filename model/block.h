@@ -114,7 +114,7 @@ struct Repeatable {};
 consteval BlockInfo block_info(std::string_view id, Station station, Kind kind, Inverse inverse,
                                std::string_view title, std::string_view meaning, std::string_view equation) {
   if (id.empty() || title.empty() || !meaning.ends_with('.'))
-    throw "a block has an id, a title and a meaning";
+    throw "a block requires an id, a title and a meaning";
   return {id, station, kind, inverse, title, meaning, equation};
 }
 consteval BlockInfo block_info(std::string_view id, Station station, Kind kind, Inverse inverse,

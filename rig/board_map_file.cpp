@@ -61,7 +61,7 @@ class BoardReader {
     if (const Node* node = in.child("read_back", false)) read_back(*node);
     if (const Node* node = in.child("watchdog", true)) watchdog(*node);
     for (const Node* node : in.sequence("setup", false)) {
-      map_.setup.push_back(fixed_write(*node, "a write of setup"));
+      map_.setup.push_back(fixed_write(*node, "a write of the setup"));
     }
     check_directions(in);
     check_fc23(in);
@@ -83,7 +83,7 @@ class BoardReader {
     const std::int64_t base = map_.address_base;
     const std::int64_t number = in.integer("address", base, base + last_address);
     if (number - base + registers > last_address + 1) {
-      in.report("address", "the block ends beyond the last register");
+      in.report("address", "the block of registers ends beyond the last register of the board");
     }
     return static_cast<std::uint16_t>(number - base);
   }
@@ -113,8 +113,8 @@ class BoardReader {
     block.scaling = {raw[0], electrical[0], raw[1], electrical[1]};
     // If one of the values could not be read, the two scaling points cannot be compared.
     if (problems_.size() != before || !in.has("at_raw") || !in.has(key)) return;
-    if (raw[0] == raw[1]) in.report("at_raw", "the two scaling points must differ");
-    if (electrical[0] == electrical[1]) in.report(key, "the two scaling points must differ");
+    if (raw[0] == raw[1]) in.report("at_raw", "the values of the two scaling points must differ");
+    if (electrical[0] == electrical[1]) in.report(key, "the values of the two scaling points must differ");
   }
 
   void converter(MapReader& in, drivers::TerminalBlock& block) {
@@ -202,8 +202,8 @@ class BoardReader {
   drivers::FixedWrite fixed_write(const Node& node, const std::string& what, bool heartbeat = false) {
     MapReader in(document_, node, problems_, what);
     drivers::FixedWrite write;
-    write.function =
-        function(in, {fc_write_coil, fc_write_register, fc_write_registers}, "a write has one of");
+    write.function = function(in, {fc_write_coil, fc_write_register, fc_write_registers},
+                              "the function of a write must be one of");
     write.address = address(in, 1);
     const int largest = write.function == fc_write_coil ? 1 : 0xffff;
     write.value = value_of(in, largest);
@@ -211,7 +211,8 @@ class BoardReader {
     if (const auto alternate = in.optional_integer("alternate", 0, largest)) {
       write.alternate = static_cast<std::uint16_t>(*alternate);
       if (in.good("alternate") && in.good("value") && write.alternate == write.value)
-        in.report("alternate", "`alternate` must differ from `value`: the board waits for a change");
+        in.report("alternate",
+                  "`alternate` must differ from `value`, because the board waits for a change of the value");
     }
     return write;
   }
@@ -244,7 +245,7 @@ class BoardReader {
   drivers::BoardWatchdog::Tripped tripped(const Node& node) {
     MapReader in(document_, node, problems_, "the watchdog's tripped state");
     drivers::BoardWatchdog::Tripped state;
-    state.function = function(in, {1, 2, 3, 4}, "a read has one of");
+    state.function = function(in, {1, 2, 3, 4}, "the function of a read must be one of");
     state.count =
         static_cast<std::uint16_t>(in.optional_integer("count", 1, drivers::max_read_registers).value_or(1));
     state.address = address(in, state.count);
@@ -255,7 +256,7 @@ class BoardReader {
   drivers::BoardWatchdog::ClientCount client_count(const Node& node) {
     MapReader in(document_, node, problems_, "the count of clients");
     drivers::BoardWatchdog::ClientCount count;
-    count.function = function(in, {3, 4}, "a register is read by");
+    count.function = function(in, {3, 4}, "the function that reads a register must be one of");
     count.address = address(in, 1);
     return count;
   }
@@ -298,7 +299,7 @@ class BoardReader {
     if (used < fc_write_register) return;  // the error was already reported at the outputs
     if (std::find(functions.begin(), functions.end(), used) == functions.end()) {
       in.report("functions", "the outputs are written by function " + std::to_string(used) +
-                                 ", which does not feed the watchdog");
+                                 ", but this function does not reset the watchdog");
     }
   }
 
@@ -307,7 +308,7 @@ class BoardReader {
     const auto needs = [&](std::string_view key, const std::string& direction) {
       if (in.has(key) && !in.has(direction)) {
         in.report(key,
-                  "`" + std::string(key) + "` needs `" + direction + "`, which this board does not have");
+                  "`" + std::string(key) + "` needs `" + direction + "`, but this board has no such section");
       }
     };
     needs("input_status", "inputs");
@@ -326,7 +327,7 @@ class BoardReader {
                             std::to_string(map_.inputs.registers.function));
     }
     if (map_.outputs.registers.function != fc_write_registers) {
-      in.report("fc23", "function 23 writes several registers: the outputs' function must be 16");
+      in.report("fc23", "function 23 writes several registers, so `function` of the outputs must be 16");
     }
   }
 
@@ -341,7 +342,8 @@ class BoardReader {
     if (tripped && tripped->function >= fc_read_holding) least = std::max(least, tripped->count);
     if (map_.max_registers >= least) return;
     in.report("max_registers", "`max_registers` is " + std::to_string(map_.max_registers) + ", but " +
-                                   std::to_string(least) + " registers must be read in one request");
+                                   std::to_string(least) +
+                                   " registers of one block must be read in one request");
   }
 
   const document::Document& document_;

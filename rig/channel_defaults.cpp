@@ -66,7 +66,7 @@ ChannelDefaults::ChannelDefaults(Context& context, MapReader& top) : context_(co
     context.problems.add(context.document.problem(
         entry.key_at,
         name ? "channels cannot share a name"
-             : "`" + entry.key + "` for all channels belongs at the top of the file",
+             : "`" + entry.key + "` for all channels belongs to the top level of the file",
         name ? "give each channel its own name" : "move it out of `channel_defaults`"));
     spoiled_ = true;
     return true;

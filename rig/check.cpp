@@ -58,10 +58,10 @@ std::size_t score(const document::Document& document, const Signature& signature
 }
 
 void report_unknown(const document::Document& document, document::Problems& problems) {
-  problems.add(document.problem(
-      document.root.at, "this is neither a rig nor a board map nor a model nor a sequence",
-      "a rig has `board` and `channels`, a board map `inputs` and `outputs`, a model `actuator`, a sequence "
-      "`steps`"));
+  problems.add(document.problem(document.root.at,
+                                "this file is not a rig, a board map, a model or a sequence",
+                                "required keys: `board` and `channels` in a rig, `inputs` and `outputs` in a "
+                                "board map, `actuator` in a model, `steps` in a sequence"));
 }
 
 /// A rig, and the document that contains the locations of its keys in the file.
@@ -195,7 +195,7 @@ std::vector<Candidate> candidates_of(std::span<const std::string> paths, documen
     const std::vector<Candidate> found = files_below(path);
     if (found.empty()) {
       problems.add(
-          {path, {}, {}, "no file *.yaml or *.yml is in this folder or below it, or it cannot be read", {}});
+          {path, {}, {}, "this folder and its subfolders contain no readable *.yaml or *.yml file", {}});
     }
     for (const Candidate& one : found) add(one);
   }

@@ -69,12 +69,13 @@ void compare_reach(const document::Document& document, const control::ChannelSet
     if (allowed_mm == 0 || !(times > most_times_too_far)) continue;
     const double enough_kpa = control::FreeCurve(channel.model, limits).command_kpa(reach.limit_mm);
     const std::string pressure = reach.pressure;
-    problems.warn(document.problem(
-        place_of(document, index, "limits", pressure),
-        "at `" + pressure + "` the model of channel `" + channel.name + "` goes to " + about(reach.end_mm) +
-            " mm, " + about(times) + " times as far as `" + reach.displacement + "` (" +
-            significant(reach.limit_mm, 6) + " mm) allows",
-        pressure + ": " + about(enough_kpa) + " is where the model reaches this displacement"));
+    problems.warn(document.problem(place_of(document, index, "limits", pressure),
+                                   "at `" + pressure + "` the model of channel `" + channel.name +
+                                       "` goes to " + about(reach.end_mm) + " mm, " + about(times) +
+                                       " times as far as the limit `" + reach.displacement + "` (" +
+                                       significant(reach.limit_mm, 6) + " mm) allows",
+                                   pressure + ": " + about(enough_kpa) +
+                                       " is the pressure at which the model reaches this displacement"));
   }
 }
 
@@ -82,19 +83,21 @@ void compare_speed(const document::Document& document, const control::ChannelSet
                    std::size_t index, const control::FreeMotion& motion, document::Problems& problems) {
   const double allowed = channel.plausibility.max_speed_mm_per_s;
   if (!(motion.fastest_mm_per_s > 0) || allowed < most_times_too_fast * motion.fastest_mm_per_s) return;
-  problems.warn(document.problem(place_of(document, index, "plausibility", "max_speed_mm_per_s"),
-                                 "`max_speed_mm_per_s` is " + about(allowed / motion.fastest_mm_per_s) +
-                                     " times what the model of channel `" + channel.name +
-                                     "` can do within its slew limits (" + about(motion.fastest_mm_per_s) +
-                                     " mm/s): jumps of the sensor count as motion",
-                                 "max_speed_mm_per_s: " + about(3 * motion.fastest_mm_per_s) +
-                                     " still permits the jump of a finger that loses its part"));
+  problems.warn(document.problem(
+      place_of(document, index, "plausibility", "max_speed_mm_per_s"),
+      "`max_speed_mm_per_s` is " + about(allowed / motion.fastest_mm_per_s) +
+          " times the highest speed that the model of channel `" + channel.name +
+          "` can reach within its slew limits (" + about(motion.fastest_mm_per_s) +
+          " mm/s), so jumps of the sensor would count as motion",
+      "max_speed_mm_per_s: " + about(3 * motion.fastest_mm_per_s) +
+          " would reject jumps of the sensor and still permit the jump of a finger that loses its part"));
 }
 
 /// Returns which change of the rig file or of the wiring makes a burst pressure line detectable.
 std::string remedy(const RigFile& rig, std::size_t channel) {
   if (!rig.settings.channels[channel].pressure_measured) {
-    return "wire the valve's monitor output, or a pressure sensor, and give the channel a `pressure_monitor`";
+    return "connect the monitor output of the valve, or a pressure sensor, to an input of the board, and add "
+           "`pressure_monitor` to the channel";
   }
   return "under `faults`: pressure_cycles: 20, pressure_tolerance_kpa: 5, pressure_delay_s: 0.5";
 }
@@ -147,7 +150,7 @@ void compare_grips(const control::Sequence& sequence, const RigFile& rig, docume
       problems.warn(source.problem(step.at,
                                    "step '" + step.name +
                                        "' would also report HOLDING with a burst line: the rig `" + rig.name +
-                                       "` does not detect one on channel `" + name + "`",
+                                       "` does not detect a burst line on channel `" + name + "`",
                                    "in " + rig.path + ": " + remedy(rig, i)));
       return;
     }

@@ -111,7 +111,8 @@ void read_wiring(Context& context, MapReader& reader, const std::string& who,
   channel.pressure_measured = wiring.pressure.has_value();
   channel.displacement_used = reader.optional_boolean("displacement_used").value_or(true);
   if (!channel.displacement_used && !channel.pressure_measured) {
-    reader.report("displacement_used", who + " has neither a displacement nor a measured pressure",
+    reader.report("displacement_used",
+                  who + " must measure the displacement or the pressure, but measures none of them",
                   "add `pressure_monitor`");
   }
   context.wiring.push_back(std::move(wiring));
@@ -135,8 +136,9 @@ void read_own_or_shared(Context& context, MapReader& reader, const std::string& 
   } else if (shared.plausibility) {
     channel.plausibility = *shared.plausibility;
   } else if (judge) {
-    reader.report("plausibility", who + " has no `plausibility`, and neither has the rig",
-                  "put `plausibility` at the top of the file to share it");
+    reader.report("plausibility",
+                  who + " has no `plausibility`, and the top level of the rig file has none either",
+                  "to share one `plausibility` between all channels, put it at the top level of the file");
   }
   const Node* const health = reader.child("model_health", false);
   if (health != nullptr) {
@@ -144,8 +146,9 @@ void read_own_or_shared(Context& context, MapReader& reader, const std::string& 
   } else if (shared.health) {
     channel.health = *shared.health;
   } else if (judge) {
-    reader.report("model_health", who + " has no `model_health`, and neither has the rig",
-                  "put `model_health` at the top of the file to share it");
+    reader.report("model_health",
+                  who + " has no `model_health`, and the top level of the rig file has none either",
+                  "to share one `model_health` between all channels, put it at the top level of the file");
   }
 }
 
@@ -159,7 +162,9 @@ void check_feedforward_exists(Context& context, MapReader& reader, const control
   const bool plannable =
       control::check_feedforward(channel.model, planned, channel.limits, context.period_s()).has_value();
   reader.report("feedforward", exists.error().with_advice(),
-                plannable ? "`planned` needs no inverse: sequences are planned before they start" : "");
+                plannable ? "use feedforward `planned`, which needs no inverse, because each sequence is "
+                            "planned before its start"
+                          : "");
 }
 
 void read_channel(Context& context, const Node& node, const Shared& shared, ChannelDefaults& defaults) {

@@ -33,8 +33,9 @@ std::optional<std::string> stays_away(const Context& context, const drivers::Mod
     if (!safe_kpa) return "";
     const control::LimitSettings& limits = context.rig.settings.channels[i].limits;
     if (is_rest(limits, *safe_kpa)) continue;
-    return ": its watchdog puts channel `" + context.wiring[i].name + "` to " + written(*safe_kpa) +
-           " kPa, and the rest pressure of this channel is " + written(control::resting_kpa(limits)) + " kPa";
+    return ": the watchdog of the board sets channel `" + context.wiring[i].name + "` to " +
+           written(*safe_kpa) + " kPa, but the rest pressure of this channel is " +
+           written(control::resting_kpa(limits)) + " kPa";
   }
   return std::nullopt;
 }
@@ -54,16 +55,19 @@ void check_watchdog(Context& context, MapReader& top) {
   context.rig.settings.safety.board_vents_when_silent = board_vents_when_silent(context);
   const bool accepted = !context.rig.accept_no_watchdog.empty();
   if (context.rig.settings.safety.board_vents_when_silent) {
-    if (accepted) top.warn("safety", "`accept_no_watchdog` is not needed: this board vents by itself");
+    if (accepted)
+      top.warn("safety",
+               "`accept_no_watchdog` is not needed, because this board vents by itself when softgripd stops");
     return;
   }
   if (accepted) return;
   const auto* const modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board);
   top.report(
       "board",
-      "this board does not vent by itself when softgripd dies, and the rig does not accept that" +
+      "this board does not vent by itself when softgripd dies, and the rig file does not accept this risk" +
           (modbus != nullptr ? stays_away(context, *modbus).value_or("") : ""),
-      "to accept it, write under `safety`: accept_no_watchdog: \"" + std::string(no_watchdog_words) + "\"");
+      "to accept the risk, write under `safety`: accept_no_watchdog: \"" + std::string(no_watchdog_words) +
+          "\"");
 }
 
 /// Returns the shortest time without messages after which the board sets an output to its safe value [s]; 0
@@ -88,12 +92,15 @@ void check_watchdog_time(Context& context, MapReader& top) {
   const double patience_s = context.rig.settings.faults.bus_down_cycles * context.period_s();
   if (timeout_s > 0 && patience_s >= longest_s) {
     top.report("faults",
-               "`bus_down_cycles` end after " + written(patience_s) + " s, when the board's watchdog (" +
-                   written(timeout_s) + " s, minus the time of an exchange) has already vented",
+               "`bus_down_cycles` correspond to " + written(patience_s) +
+                   " s. By this time, the board's watchdog (" + written(timeout_s) +
+                   " s, minus the time of an exchange) has already vented",
                "at most " + written(std::ceil(longest_s / context.period_s()) - 1) + " cycles");
   }
   if (timeout_s > 0 && timeout_s < 3 * context.period_s()) {
-    top.warn("board", "the board's watchdog acts after " + written(timeout_s) + " s, less than three cycles",
+    top.warn("board",
+             "the board's watchdog sets the safe outputs after " + written(timeout_s) +
+                 " s, which is less than three cycles",
              "one late exchange would vent the fingers");
   }
 }
@@ -107,16 +114,17 @@ void check_budget(Context& context, MapReader& top) {
   const drivers::Board::Budget budget = drivers::ModbusBoard(*settings).budget();
   const bool serial = context.board_key == "modbus_rtu";
   if (serial && budget.exchange_s > context.rig.loop.exchange_deadline_s) {
-    top.report("board", "an exchange takes longer than `exchange_deadline_s` allows: " + budget.explanation,
+    top.report("board",
+               "an exchange with the board takes longer than `exchange_deadline_s`: " + budget.explanation,
                "set a longer deadline or a higher `baud`, or use fewer terminals");
   }
   if (context.rig.accept_over_budget || budget.exchange_s <= context.period_s()) return;
-  top.report(
-      "rate_hz",
-      "the bus is not fast enough for " + written(context.rig.settings.rate_hz) +
-          " exchanges a second: " + budget.explanation,
-      "lower the rate or, if you know that the bus is faster, write `accept_over_budget: true` under `" +
-          context.board_key + "`");
+  top.report("rate_hz",
+             "the bus is not fast enough for " + written(context.rig.settings.rate_hz) +
+                 " exchanges a second: " + budget.explanation,
+             "lower rate_hz or, if you know that the bus is faster than computed, write `accept_over_budget: "
+             "true` under `" +
+                 context.board_key + "`");
 }
 
 /// Returns true if the board can be created with this wiring.

@@ -20,7 +20,7 @@ constexpr std::size_t longest_name = 31;
 std::string read_line_name(MapReader& reader) {
   const auto text = reader.optional_text("line");
   if (text && text->size() > longest_name)
-    reader.report("line", "`line` is longer than 31 bytes, the limit for names of lines in the kernel");
+    reader.report("line", "`line` is longer than 31 bytes, the longest name of a GPIO line in the kernel");
   return text.value_or("");
 }
 
@@ -54,11 +54,11 @@ void check_broken_wire(MapReader& reader, const GpioLineSettings& line) {
   const bool open_is_active = (line.bias == GpioBias::pull_up) != line.active_low;
   const bool trips_when_active = line.role == GpioRole::emergency_stop;
   if (open_is_active == trips_when_active) return;
-  reader.warn(
-      "bias",
-      trips_when_active ? "a broken wire would read as a released emergency stop"
-                        : "a broken wire would read as a part in position",
-      "with this `active`, use the other pull resistor, and a contact that is closed in normal operation");
+  reader.warn("bias",
+              trips_when_active ? "a broken wire would read as a released emergency stop"
+                                : "a broken wire would read as a part in position",
+              "keep `active`, select the other pull resistor in `bias`, and use a contact that is closed in "
+              "normal operation");
 }
 
 /// Reads the line for a purpose, if the file contains it. `there` contains the chips of this computer.

@@ -49,7 +49,9 @@ class TerminalsReader {
     const auto raws = reader.numbers("raw", 2, {0, largest_raw});
     if (reader.good("raw") &&
         (raws[0] == raws[1] || std::floor(raws[0]) != raws[0] || std::floor(raws[1]) != raws[1]))
-      reader.report("raw", "`raw` must be two whole numbers that differ: the circuit waits for a change");
+      reader.report(
+          "raw",
+          "`raw` must be two different whole numbers, because the external circuit waits for a change");
     heartbeat.first = static_cast<long>(raws[0]);
     heartbeat.second = static_cast<long>(raws[1]);
     heartbeat.timeout_s = reader.number("timeout_s", {0.001, 3600});
@@ -92,10 +94,11 @@ class TerminalsReader {
     const auto [first, fresh] = known.try_emplace(
         (device ? device->node : terminal.device) + " " + terminal.channel, reader.where("device"));
     if (fresh) return;
-    reader.report("device",
-                  "`" + document::shown(terminal.channel) + "` of `" + document::shown(terminal.device) +
-                      "` is already listed at " + place(first->second),
-                  "a label, a serial number or an address distinguishes two converters of one name");
+    reader.report(
+        "device",
+        "`" + document::shown(terminal.channel) + "` of `" + document::shown(terminal.device) +
+            "` is already listed at " + place(first->second),
+        "if two converters have the same name, give the label, the serial number or the address of each");
   }
 
   Context& context_;

@@ -77,8 +77,9 @@ void check_waits(Context& context) {
         "`" + std::string(wait.key) + "` is not below `" + std::string(wait.deadline) + "` (" +
             written(longest_s) +
             " s): " + (connecting ? "no session could be opened" : "requests would never be repeated"),
-        connecting ? "raise `connect_deadline_s`: it spans connecting, settling and the first requests"
-                   : "the deadline spans all requests of an exchange"));
+        connecting ? "raise `connect_deadline_s`: this deadline includes the connection, `settle_s` and the "
+                     "first requests"
+                   : "`exchange_deadline_s` is the deadline for all requests of an exchange together"));
   }
 }
 
@@ -91,7 +92,7 @@ void read_numbering(MapReader& reader, drivers::TcpAddress& address) {
   if (!said) return;
   address.numbered = false;
   if (*said == words) return;
-  reader.report(key, "this does not say what is accepted",
+  reader.report(key, "the text does not state the risk that is accepted",
                 "write " + std::string(key) + ": \"" + std::string(words) + "\"");
 }
 
@@ -146,7 +147,7 @@ class ModulesReader {
       return other.link == module.link && other.unit == module.unit;
     };
     if (reader.good("unit") && std::any_of(settings_.modules.begin(), settings_.modules.end(), same)) {
-      reader.report("unit", "another module has this unit id at the same place");
+      reader.report("unit", "another module has the same unit id at the same address or serial line");
     }
     KnownModule known{module.name, std::nullopt};
     if (map) known.terminals = drivers::terminals_of(*map);
@@ -199,8 +200,10 @@ void read_format(MapReader& reader, drivers::SerialLine& line) {
 /// Warns of a device name that depends on the order in which adapters are connected.
 void advise_on_name(MapReader& reader, const std::string& device) {
   if (device.rfind("/dev/ttyUSB", 0) != 0 && device.rfind("/dev/ttyACM", 0) != 0) return;
-  reader.warn("device", document::in_backticks(device) + " may be another adapter after the next start",
-              "use the adapter's own name, see: ls -l /dev/serial/by-id");
+  reader.warn(
+      "device",
+      document::in_backticks(device) + " may name a different adapter after the next start of the computer",
+      "use the permanent name of the adapter, which this command lists: ls -l /dev/serial/by-id");
 }
 
 /// Reports a device name that several adapters have. The system would use the adapter that was connected
@@ -219,9 +222,9 @@ void read_adapter_latency(MapReader& reader, drivers::SerialLine& line) {
   line.adapter_latency_s = stated.value_or(found ? found->seconds : 0);
   if (!found || found->seconds <= usual_latency_s) return;
   reader.warn("device",
-              "the adapter holds every answer back for up to " + written(found->seconds * 1e3) +
+              "the adapter delays every response by up to " + written(found->seconds * 1e3) +
                   " ms (its latency timer)",
-              "echo 1 > " + found->path + " (for good: a udev rule, ATTR{device/latency_timer}=\"1\")");
+              "echo 1 > " + found->path + " (permanently: in a udev rule, ATTR{device/latency_timer}=\"1\")");
 }
 
 drivers::SerialLine read_line(Context& context, MapReader& reader) {
@@ -235,7 +238,7 @@ drivers::SerialLine read_line(Context& context, MapReader& reader) {
   if (context.stored == nullptr) check_device(reader, line.device);
   line.baud = static_cast<std::uint32_t>(reader.integer("baud", baud_rates.front(), baud_rates.back()));
   if (reader.good("baud") && std::find(baud_rates.begin(), baud_rates.end(), line.baud) == baud_rates.end()) {
-    reader.report("baud", "`baud` is none of the usual rates",
+    reader.report("baud", "`baud` must be one of the usual rates",
                   with_commas(baud_rates, [](std::uint32_t rate) { return std::to_string(rate); }));
   }
   read_format(reader, line);
@@ -246,10 +249,9 @@ drivers::SerialLine read_line(Context& context, MapReader& reader) {
   line.habits = read_habits(context, reader);
   const double usual_s = line.turnaround_s + line.adapter_latency_s;
   if (reader.good("repeat_after_s") && line.habits.repeat_after_s <= usual_s) {
-    reader.report(
-        "repeat_after_s",
-        "`repeat_after_s` is not above the " + written(usual_s) +
-            " s that a module and the adapter take: requests would collide with answers on the line");
+    reader.report("repeat_after_s", "`repeat_after_s` is not above the " + written(usual_s) +
+                                        " s that a response of a module through the adapter takes, so "
+                                        "repeated requests would collide with responses on the line");
   }
   advise_on_name(reader, line.device);
   return line;

@@ -89,12 +89,12 @@ void read_socket_mode(MapReader& reader, SocketFile& socket, bool moves) {
   const auto mode = letters ? letters : octal(text);
   if (!mode) {
     reader.report("mode", "`mode` must be permissions, found `" + document::shown(text) + "`",
-                  "rw-rw----, or \"0660\" in octal: the owner and the group may connect");
+                  "write rw-rw----, or \"0660\" in octal: then the owner and the group may connect");
     return;
   }
   socket.mode = *mode;
   if ((*mode & 0111U) != 0) {
-    reader.report("mode", "`mode` gives the right to execute, which a socket does not have",
+    reader.report("mode", "`mode` contains the right to execute, which does not exist for a socket",
                   "rw-rw----: the owner and the group may connect");
   }
   if (moves && (*mode & 0006U) != 0) {
@@ -107,7 +107,8 @@ void read_socket_file(Context& context, MapReader& reader, SocketFile& socket, b
   socket.path = resolved(context, reader.text("path"));
   // sockaddr_un has 108 bytes for the path, including the final NUL.
   if (socket.path.size() > 107) {
-    reader.report("path", "the path of the socket is longer than 107 bytes, the most that Linux allows");
+    reader.report("path",
+                  "the path of the socket is longer than 107 bytes, the longest path that Linux permits");
   }
   read_socket_mode(reader, socket, moves);
   socket.group = reader.optional_text("group").value_or("");
@@ -126,8 +127,10 @@ void read_safety(Context& context, MapReader& top) {
   const auto words = reader.optional_text("accept_no_watchdog");
   context.rig.accept_no_watchdog = words.value_or("");
   if (words && !words->empty() && *words != no_watchdog_words) {
-    reader.report("accept_no_watchdog", "`accept_no_watchdog` must say what is accepted, word by word",
-                  "accept_no_watchdog: \"" + std::string(no_watchdog_words) + "\"");
+    reader.report(
+        "accept_no_watchdog",
+        "`accept_no_watchdog` must contain the sentence that states the accepted risk, word by word",
+        "accept_no_watchdog: \"" + std::string(no_watchdog_words) + "\"");
   }
 }
 
@@ -142,12 +145,12 @@ void read_pressure_fault(Context& context, MapReader& reader) {
     faults.pressure_tolerance_kpa = *tolerance;
     faults.pressure_delay_s = *delay;
   } else if (wanted || tolerance || delay) {
-    reader.report(
-        wanted      ? "pressure_cycles"
-        : tolerance ? "pressure_tolerance_kpa"
-                    : "pressure_delay_s",
-        "`pressure_cycles`, `pressure_tolerance_kpa` and `pressure_delay_s` belong together",
-        "give all three, or give none if the measured pressure shall not be compared with the command");
+    reader.report(wanted      ? "pressure_cycles"
+                  : tolerance ? "pressure_tolerance_kpa"
+                              : "pressure_delay_s",
+                  "give `pressure_cycles`, `pressure_tolerance_kpa` and `pressure_delay_s` together",
+                  "give all three keys, or omit all three if the measured pressure shall not be compared "
+                  "with the command");
   }
 }
 
@@ -248,8 +251,9 @@ void read_socket(Context& context, MapReader& top) {
     MapReader look_reader(context.document, *look, context.problems, "socket: look");
     read_socket_file(context, look_reader, socket.look, false);
     if (!socket.look.path.empty() && socket.look.path == socket.path) {
-      look_reader.report("path", "this is the socket of the operators",
-                         "choose another path: the socket determines what a client may do");
+      look_reader.report(
+          "path", "this path is already the socket of the operators",
+          "choose a different path, because the socket determines the commands that a client may send");
     }
   }
   socket.sequence_directory = resolved(context, reader.text("sequence_directory"));
@@ -278,8 +282,9 @@ control::PlausibilitySettings read_plausibility(Context& context, const Node& no
   }
   if (context.rate_known && reader.good("max_age_s") && settings.max_age_s <= context.period_s()) {
     reader.report("max_age_s",
-                  "`max_age_s` must be longer than a cycle, which is " + written(context.period_s()) + " s",
-                  "every reading would be stale");
+                  "`max_age_s` must be longer than one cycle of the control loop, which is " +
+                      written(context.period_s()) + " s",
+                  "otherwise every reading would be too old");
   }
   return settings;
 }

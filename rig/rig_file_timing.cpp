@@ -28,8 +28,8 @@ void read_timing(Context& context, MapReader& reader) {
   if (context.rate_known && reader.good("exchange_deadline_s") &&
       rig.loop.exchange_deadline_s >= patience_s) {
     reader.warn("exchange_deadline_s",
-                "a single exchange that misses its deadline already causes the fault bus_down",
-                "`bus_down_cycles` end after " + written(patience_s) + " s");
+                "with these settings, a single exchange that misses its deadline causes the fault bus_down",
+                "`bus_down_cycles` correspond to " + written(patience_s) + " s");
   }
   rig.accept_over_budget = reader.optional_boolean("accept_over_budget").value_or(false);
 }

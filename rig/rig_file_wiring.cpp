@@ -51,8 +51,8 @@ drivers::TwoPoints read_scaling(MapReader& reader, const ElectricalKey& at_key, 
   const auto is = reader.numbers(is_key, 2, is_range);
   const auto distinct = [&](std::string_view key, const std::vector<double>& pair) {
     if (reader.good(key) && pair[0] == pair[1]) {
-      reader.report(key, "the two points of `" + std::string(key) + "` must differ",
-                    "a straight line goes through two points");
+      reader.report(key, "the two values of `" + std::string(key) + "` must differ",
+                    "the scaling is a straight line through two different points");
       return false;
     }
     return true;
@@ -108,13 +108,14 @@ std::size_t read_terminal(Context& context, MapReader& reader, std::string_view 
   const std::size_t count = key == "output" ? there.outputs.size() : there.inputs.size();
   const std::string who = context.modules.size() > 1 ? "the module `" + there.name + "`" : "the board";
   reader.report(key, who + " has no " + std::string(key) + " " + std::to_string(terminal),
-                count == 0 ? "it has none at all" : "they count from 0 to " + std::to_string(count - 1));
+                count == 0 ? "no such terminal exists there"
+                           : "these terminals have the numbers 0 to " + std::to_string(count - 1));
   return terminal;
 }
 
 void check_unit(MapReader& reader, const ElectricalKey& key, const drivers::Terminal* terminal) {
   if (terminal == nullptr || !reader.has(key.name) || terminal->unit == key.unit) return;
-  reader.report(key.name, "the board's terminals are in " + std::string(drivers::name_of(terminal->unit)) +
+  reader.report(key.name, "the terminal of the board is in " + std::string(drivers::name_of(terminal->unit)) +
                               " but `" + key.name + "` is in " + std::string(drivers::name_of(key.unit)));
 }
 
@@ -122,7 +123,7 @@ void check_unit(MapReader& reader, const ElectricalKey& key, const drivers::Term
 void read_validity(MapReader& reader, const std::string& valid_key, drivers::InputWiring& wiring) {
   const auto valid = reader.numbers(valid_key, 2, range_of(wiring.unit));
   if (reader.good(valid_key) && valid[0] >= valid[1]) {
-    reader.report(valid_key, "the first number of `" + valid_key + "` must be the smaller one");
+    reader.report(valid_key, "the first number of `" + valid_key + "` must be smaller than the second");
   }
   wiring.valid_min = valid[0];
   wiring.valid_max = valid[1];
@@ -164,7 +165,7 @@ void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
   const std::string used =
       written(limits.pressure_min_kpa) + " to " + written(limits.pressure_max_kpa) + " kPa";
   if (limits.pressure_min_kpa < facts.range_min_kpa || limits.pressure_max_kpa > facts.range_max_kpa) {
-    reader.report("range_kpa", "the limits allow " + used + ", the valve controls " + range,
+    reader.report("range_kpa", "the limits allow " + used + ", but the valve controls only " + range,
                   "narrow pressure_min_kpa and pressure_max_kpa");
     return;
   }
@@ -172,9 +173,9 @@ void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
       (limits.pressure_max_kpa - limits.pressure_min_kpa) / (facts.range_max_kpa - facts.range_min_kpa);
   if (share < 0.2) {
     reader.warn("range_kpa",
-                "the limits use less than a fifth of the valve's range (" + used + " of " + range +
-                    "): resolution and linearity suffer",
-                "a valve with a smaller range controls the finger more precisely");
+                "the pressure limits use less than 1/5 of the range of the valve (" + used + " of " + range +
+                    "), which reduces the resolution and the linearity of the pressure",
+                "a valve with a smaller range would control the pressure more precisely");
   }
   const drivers::Terminal* const terminal = terminal_of(context, "output", wiring.module, wiring.output);
   if (terminal == nullptr) return;
@@ -187,9 +188,9 @@ void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
     const std::string unit(drivers::name_of(terminal->unit));
     reader.report(at.name,
                   written(pressure) + " kPa needs " + written(needed) + " " + unit +
-                      ", the board's outputs go from " + written(terminal->lowest) + " to " +
-                      written(terminal->highest) + " " + unit,
-                  "check the two points, or narrow the limits");
+                      ", but the outputs of the board have a range from " + written(terminal->lowest) +
+                      " to " + written(terminal->highest) + " " + unit,
+                  "check the two points of the scaling, or narrow the pressure limits");
   }
 }
 
@@ -201,10 +202,10 @@ void check_power_loss(MapReader& reader, const std::string& who, const control::
   if (holds ? !rest_stated : is_rest(limits, facts.power_loss_kpa)) return;
   reader.warn(
       reader.has("on_power_loss_kpa") ? "on_power_loss_kpa" : "on_power_loss",
-      "without power the valve of " + who +
+      "if the power fails, the valve of " + who +
           (holds ? " holds its last pressure" : " goes to " + written(facts.power_loss_kpa) + " kPa") +
-          ", and the rest pressure is " + written(control::resting_kpa(limits)) + " kPa",
-      "choose a valve that goes to the rest pressure by itself, or change `rest_kpa`");
+          ", but the rest pressure is " + written(control::resting_kpa(limits)) + " kPa",
+      "choose a valve that goes to the rest pressure without power, or change `rest_kpa`");
 }
 
 void check_sensor(MapReader& reader, const drivers::InputWiring& wiring,
@@ -214,9 +215,9 @@ void check_sensor(MapReader& reader, const drivers::InputWiring& wiring,
   if (limits.displacement_min_mm >= std::min(a, b) && limits.displacement_max_mm <= std::max(a, b)) return;
   reader.warn("valid" + std::string(suffix_of(wiring.unit)),
               "the limits allow " + written(limits.displacement_min_mm) + " to " +
-                  written(limits.displacement_max_mm) + " mm, the valid range of the sensor is " +
+                  written(limits.displacement_max_mm) + " mm, but the valid range of the sensor is " +
                   written(std::min(a, b)) + " to " + written(std::max(a, b)) + " mm",
-              "a reading outside this range is invalid and becomes a fault");
+              "a reading outside the range of the sensor is invalid and causes a fault");
 }
 
 }  // namespace
@@ -248,13 +249,14 @@ drivers::OutputWiring read_valve(Context& context, const Node& node, const std::
   facts.range_min_kpa = range[0];
   facts.range_max_kpa = range[1];
   if (reader.good("range_kpa") && range[0] >= range[1]) {
-    reader.report("range_kpa", "the first number of `range_kpa` must be the smaller one");
+    reader.report("range_kpa", "the first number of `range_kpa` must be smaller than the second");
   }
   facts.on_power_loss = static_cast<PowerLoss>(reader.choice("on_power_loss", {"vents", "holds"}));
   const auto power_loss_kpa = reader.optional_number("on_power_loss_kpa", {-200, 10'000});
   facts.power_loss_kpa = power_loss_kpa.value_or(0);
   if (power_loss_kpa && reader.good("on_power_loss") && facts.on_power_loss == PowerLoss::holds) {
-    reader.report("on_power_loss_kpa", "`on_power_loss: holds` excludes another pressure on power loss",
+    reader.report("on_power_loss_kpa",
+                  "with `on_power_loss: holds`, no other pressure on power loss is possible",
                   "leave `on_power_loss_kpa` out, or write `on_power_loss: vents`");
   }
   reader.finish();

@@ -16,9 +16,9 @@ class ServiceManager {
   void status(const std::string& status);
   void stopping();
 
-  /// Feeds the unit's watchdog (WatchdogSec=) four times per period while all threads run. `alive` is the
-  /// result of Heartbeat. If it is false, the watchdog is not fed, and the service manager restarts the
-  /// daemon.
+  /// Feeds the unit's watchdog (WatchdogSec=) four times per period while all threads run (`alive`, see
+  /// Heartbeat). If a thread has stopped, it does not reset the watchdog, and the service manager restarts
+  /// the daemon.
   void feed(Nanoseconds now, bool alive);
 
  private:

@@ -95,7 +95,7 @@ class Checker {
     const bool finite = std::isfinite(points.x0) && std::isfinite(points.y0) && std::isfinite(points.x1) &&
                         std::isfinite(points.y1);
     if (!finite || points.x0 == points.x1 || points.y0 == points.y1) {
-      problems_.push_back(where + "the two scaling points must differ in both coordinates");
+      problems_.push_back(where + "the values of the two scaling points must differ in both coordinates");
     }
   }
 

@@ -13,7 +13,8 @@ class Ageing : public SurroundingsGain<Ageing<T>, T> {
  public:
   static constexpr BlockInfo info =
       block_info("ageing", Station::actuator, Kind::displacement, Inverse::implicit, "Ageing",
-                 "The gain drifts with the time of the campaign.", "z = y (1 + gain t), kept positive");
+                 "The gain of the finger drifts with the time since the start of the measurements.",
+                 "z = y (1 + gain t), kept positive");
   static constexpr std::array parameters{parameter("gain_per_h", "1/h",
                                                    "relative change of the gain per hour", Typical{0.1},
                                                    Within{-1000.0, 1000.0}, Scale{0.1}, Neutral{0.0})};

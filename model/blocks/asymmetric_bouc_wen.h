@@ -13,7 +13,8 @@ class AsymmetricBoucWen : public BoucWenPart<T> {
  public:
   static constexpr BlockInfo info = block_info(
       "asymmetric_bouc_wen", Station::actuator, Kind::element, Inverse::implicit, "Asymmetric Bouc-Wen",
-      "bouc_wen has separate parameters for loading and unloading, so that the loops differ in shape.",
+      "The hysteresis of bouc_wen differs between loading and unloading, so that its two branches differ in "
+      "shape.",
       "bouc_wen: h' += beta_share beta |p'| - delta |h| |p'| - epsilon h p'");
   static constexpr std::array parameters{
       parameter("delta_per_kpa", "1/kPa",

@@ -13,7 +13,7 @@ class AsymmetricValveLag {
  public:
   static constexpr BlockInfo info = block_info(
       "asymmetric_valve_lag", Station::valve, Kind::pressure, Inverse::lead, "Asymmetric valve lag",
-      "First-order lag of the regulator and the tube, different for filling and venting.",
+      "First-order lag of the regulator and the tube, with different time constants for filling and venting.",
       "tau p' = u - p, tau = filling where u > p, venting where u < p");
   static constexpr std::array parameters{
       parameter("filling_time_constant_s", "s", "time constant while the pressure rises", Typical{0.05},

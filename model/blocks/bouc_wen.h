@@ -95,7 +95,7 @@ class BoucWen {
       parameter("alpha_mm_per_kpa", "mm/kPa", "elastic gain", Typical{0.35}, Within{0.0, 10.0}, Scale{0.1},
                 Neutral{0.0}),
       parameter("beta_mm_per_kpa", "mm/kPa",
-                "initial gain of the hysteretic state; the model can be inverted if it is below the "
+                "initial gain of the hysteretic state; the model can be inverted if this gain is below the "
                 "instantaneous gain of the actuator",
                 Typical{0.2}, Within{0.0, 10.0}, Scale{0.1}, Neutral{0.0}),
       parameter(
@@ -116,8 +116,8 @@ class BoucWen {
         exponent_(static_cast<int>(std::lround(value_of(values[4])))) {}
 
   static std::string_view objection(std::span<const double> values) {
-    return values[2] + values[3] < 0 ? "gamma_per_kpa + eta_per_kpa must not be negative, because the "
-                                       "hysteretic state would grow without bound"
+    return values[2] + values[3] < 0 ? "gamma_per_kpa + eta_per_kpa must be at least 0: with a negative sum, "
+                                       "the hysteretic state would grow without bound"
                                      : std::string_view{};
   }
 

@@ -11,10 +11,11 @@ namespace softgrip::model {
 template <class T>
 class Characteristic {
  public:
-  static constexpr BlockInfo info = block_info(
-      "characteristic", Station::actuator, Kind::displacement, Inverse::implicit, "Characteristic",
-      "The displacement is a nonlinear function of the sum of the elements, equal for loading and unloading.",
-      "z = span (exp(a y/span) - 1) / (exp(a) - 1) from 0 to span, straight beyond");
+  static constexpr BlockInfo info =
+      block_info("characteristic", Station::actuator, Kind::displacement, Inverse::implicit, "Characteristic",
+                 "The displacement is a nonlinear function of the sum of the elements, and this function is "
+                 "equal for loading and unloading.",
+                 "z = span (exp(a y/span) - 1) / (exp(a) - 1) from 0 to span, straight beyond");
   static constexpr std::array parameters{
       parameter("curvature", "", "a: above 0, the finger is softer at larger displacements", Typical{0.5},
                 Within{-4.0, 4.0}, Scale{0.2}, Neutral{0.0}),

@@ -14,13 +14,13 @@ namespace softgrip::model {
 template <class T>
 class CrescentHysteresis {
  public:
-  static constexpr BlockInfo info =
-      block_info("crescent_hysteresis", Station::actuator, Kind::element, Inverse::implicit,
-                 "Crescent hysteresis", "A loop that is wide at medium pressure and closes at both ends.",
-                 "y += gain range (c - (x + l)/2); l = x/(1 + bend (1 - x)) <= c <= x = p/range");
+  static constexpr BlockInfo info = block_info(
+      "crescent_hysteresis", Station::actuator, Kind::element, Inverse::implicit, "Crescent hysteresis",
+      "A hysteresis loop that is wide at medium pressure and closes at both ends.",
+      "y += gain range (c - (x + l)/2); l = x/(1 + bend (1 - x)) <= c <= x = p/range");
   static constexpr std::array parameters{
-      parameter("gain_mm_per_kpa", "mm/kPa", "added displacement per pressure of the loop width",
-                Typical{0.02}, Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
+      parameter("gain_mm_per_kpa", "mm/kPa", "displacement per pressure of the loop width", Typical{0.02},
+                Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
       parameter("bend", "", "curvature of the lower envelope: its slope at full range is 1 + bend",
                 Typical{3.0}, Within{0.0, 1000.0}, Scale{1.0}),
       parameter("range_kpa", "kPa", "pressure at which the loop closes", Typical{60.0}, Within{0.01, 10000.0},

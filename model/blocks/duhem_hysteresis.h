@@ -14,17 +14,18 @@ namespace softgrip::model {
 template <class T>
 class DuhemHysteresis {
  public:
-  static constexpr BlockInfo info = block_info(
-      "duhem_hysteresis", Station::actuator, Kind::element, Inverse::implicit, "Duhem hysteresis",
-      "Loading and unloading loops differ in shape: the state builds up on unloading and fades on loading.",
-      "y += gain z; falling: z' = |p'| (1 - z/unloading); rising: z' = -|p'| z/loading");
+  static constexpr BlockInfo info =
+      block_info("duhem_hysteresis", Station::actuator, Kind::element, Inverse::implicit, "Duhem hysteresis",
+                 "Hysteresis with different shapes on loading and unloading: the state grows on unloading "
+                 "and decays on loading.",
+                 "y += gain z; falling: z' = |p'| (1 - z/unloading); rising: z' = -|p'| z/loading");
   static constexpr std::array parameters{
-      parameter("gain_mm_per_kpa", "mm/kPa", "added displacement per pressure at the start of unloading",
+      parameter("gain_mm_per_kpa", "mm/kPa", "displacement per pressure change at the start of unloading",
                 Typical{0.02}, Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
-      parameter("unloading_kpa", "kPa", "pressure decrease over which the state builds up", Typical{20.0},
-                Within{0.01, 10000.0}, Scale{5.0}),
-      parameter("loading_kpa", "kPa", "pressure increase over which the state fades", Typical{5.0},
-                Within{0.01, 10000.0}, Scale{5.0})};
+      parameter("unloading_kpa", "kPa", "pressure decrease over which the hysteretic state grows",
+                Typical{20.0}, Within{0.01, 10000.0}, Scale{5.0}),
+      parameter("loading_kpa", "kPa", "pressure increase over which the hysteretic state decays",
+                Typical{5.0}, Within{0.01, 10000.0}, Scale{5.0})};
 
   DuhemHysteresis(std::span<const T> values, const Preparation&)
       : gain_(values[0]), unloading_per_kpa_(1.0 / values[1]), loading_per_kpa_(1.0 / values[2]) {}

@@ -20,8 +20,8 @@ class Inertia {
   static constexpr std::array parameters{
       parameter("period_s", "s", "period of the undamped mode", Typical{0.1}, Within{0.0, 10.0}, Scale{0.05},
                 Neutral{0.0}),
-      parameter("damping_ratio", "", "d; no oscillation from 1 on", Typical{0.2}, Within{0.005, 0.95},
-                Scale{0.1})};
+      parameter("damping_ratio", "", "damping ratio d; a mode with d of 1 or more does not oscillate",
+                Typical{0.2}, Within{0.005, 0.95}, Scale{0.1})};
 
   Inertia(std::span<const T> values, const Preparation&)
       : passes_(!(value_of(values[0]) > 1e-6)),

@@ -15,9 +15,11 @@ class Leak {
       block_info("leak", Station::valve, Kind::pressure, Inverse::implicit, "Leak",
                  "A steady flow through a leak at the finger reduces the pressure along the line.",
                  "u = p (1 + share a / (p + a)), a = 101.325 kPa; u = p + share (p + a) / 4 above a");
-  static constexpr std::array parameters{parameter(
-      "share", "", "lost share of a small pressure: squared ratio of the conductances of leak and line",
-      Typical{0.03}, Within{0.0, 10.0}, Scale{0.02}, Neutral{0.0})};
+  static constexpr std::array parameters{parameter("share", "",
+                                                   "share of a small pressure that is lost: square of the "
+                                                   "conductance of the leak divided by that of the line",
+                                                   Typical{0.03}, Within{0.0, 10.0}, Scale{0.02},
+                                                   Neutral{0.0})};
 
   Leak(std::span<const T> values, const Preparation&) : loss_{values[0]} {}
 

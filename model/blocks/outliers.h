@@ -21,7 +21,8 @@ class Outliers {
   static constexpr std::array parameters{
       parameter("probability", "", "share of the readings that are wrong", Typical{0.01}, Within{0.0, 1.0},
                 Scale{0.01}, Neutral{0.0}),
-      parameter("size_mm", "mm", "error of these readings", Typical{2.0}, Within{0.0, 1000.0}, Scale{1.0})};
+      parameter("size_mm", "mm", "error of the wrong readings", Typical{2.0}, Within{0.0, 1000.0},
+                Scale{1.0})};
 
   Outliers(std::span<const T> values, const Preparation& preparation)
       : probability_(value_of(values[0])), size_mm_(values[1]), seed_(preparation.seed) {}

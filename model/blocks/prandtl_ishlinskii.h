@@ -22,25 +22,30 @@ namespace softgrip::model {
 template <class T>
 class PrandtlIshlinskii {
  public:
-  static constexpr BlockInfo info =
-      block_info("prandtl_ishlinskii", Station::actuator, Kind::element, Inverse::implicit,
-                 "Prandtl-Ishlinskii hysteresis", "Rate-independent hysteresis as a sum of play operators.",
-                 "y += w1 o1 + w2 o2 + ..., |b(p) - o| <= r in every operator, o moves only when it must; "
-                 "b(p) = p (1 - (1 - x)(bend - skew (1 - 2 x))), x = p / envelope_kpa, straight beyond");
+  static constexpr BlockInfo info = block_info(
+      "prandtl_ishlinskii", Station::actuator, Kind::element, Inverse::implicit,
+      "Prandtl-Ishlinskii hysteresis", "Rate-independent hysteresis as a sum of play operators.",
+      "y += w1 o1 + w2 o2 + ..., |b(p) - o| <= r in every operator; o moves only to keep this condition; "
+      "b(p) = p (1 - (1 - x)(bend - skew (1 - 2 x))), x = p / envelope_kpa, straight beyond");
   static constexpr std::array parameters{
-      parameter("trained_kpa", "kPa", "largest load before the start; 0: a finger that was never loaded",
+      parameter("trained_kpa", "kPa",
+                "largest pressure before the start of the log; 0: a finger that was never loaded",
                 Typical{15.0}, Within{0.0, 1e4}, Scale{10.0}, Placed{}, IfLeftOut{0.0}),
-      parameter("envelope_bend", "", "above 0 the envelopes are steeper at high pressures", Typical{0.0},
-                Within{-EnvelopeMap<double>::most_bend, EnvelopeMap<double>::most_bend}, Scale{0.1},
-                IfLeftOut{0.0}),
-      parameter("envelope_skew", "", "above 0 the envelopes are less steep in the middle", Typical{0.0},
-                Within{-EnvelopeMap<double>::most_skew, EnvelopeMap<double>::most_skew}, Scale{0.1},
-                IfLeftOut{0.0}),
-      parameter("envelope_kpa", "kPa", "end of the nonlinear range of the envelopes; 0: straight envelopes",
-                Typical{0.0}, Within{0.0, 1e4}, Scale{10.0}, Placed{}, IfLeftOut{0.0})};
+      parameter("envelope_bend", "", "above 0, the envelope curves are steeper at high pressures",
+                Typical{0.0}, Within{-EnvelopeMap<double>::most_bend, EnvelopeMap<double>::most_bend},
+                Scale{0.1}, IfLeftOut{0.0}),
+      parameter("envelope_skew", "", "above 0, the envelope curves are less steep at medium pressures",
+                Typical{0.0}, Within{-EnvelopeMap<double>::most_skew, EnvelopeMap<double>::most_skew},
+                Scale{0.1}, IfLeftOut{0.0}),
+      parameter(
+          "envelope_kpa", "kPa",
+          "pressure at which the nonlinear range of the envelope curves ends; 0: straight envelope curves",
+          Typical{0.0}, Within{0.0, 1e4}, Scale{10.0}, Placed{}, IfLeftOut{0.0})};
   static constexpr std::array repeated{
-      parameter("r#_kpa", "kPa", "threshold of operator #, above that of the previous one; 0: elastic",
-                Typical{2.0}, Within{0.0, 1e4}, Scale{2.0}, Placed{}),
+      parameter(
+          "r#_kpa", "kPa",
+          "threshold of play operator #, above the threshold of the previous operator; 0: elastic element",
+          Typical{2.0}, Within{0.0, 1e4}, Scale{2.0}, Placed{}),
       parameter("w#_mm_per_kpa", "mm/kPa", "weight of operator #", Typical{0.1}, Within{0.0, 1e4}, Scale{0.1},
                 Neutral{0.0})};
   static constexpr std::size_t max_parts = 24;

@@ -21,11 +21,12 @@ class PressureRegulator {
                 Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0}),
       parameter("venting_time_constant_s", "s", "time constant while the pressure falls, at 50 kPa",
                 Typical{0.05}, Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0}),
-      parameter("overlap_kpa", "kPa", "largest error at which no port opens", Typical{0.5},
-                Within{0.0, 100.0}, Scale{0.5}, Placed{}, Neutral{0.0}),
-      parameter("integral_time_s", "s", "integral time; 0: no integral", Typical{0.4}, Within{0.0, 1000.0},
-                Scale{0.5}, Placed{}, Neutral{0.0}),
-      parameter("full_open_kpa", "kPa", "error at which a port is fully open; 0: no limit", Typical{12.0},
+      parameter("overlap_kpa", "kPa", "largest pressure error at which no port of the valve opens",
+                Typical{0.5}, Within{0.0, 100.0}, Scale{0.5}, Placed{}, Neutral{0.0}),
+      parameter("integral_time_s", "s", "integral time of the regulator; 0: no integral action", Typical{0.4},
+                Within{0.0, 1000.0}, Scale{0.5}, Placed{}, Neutral{0.0}),
+      parameter("full_open_kpa", "kPa",
+                "pressure error at which a port of the valve is fully open; 0: no limit", Typical{12.0},
                 Within{0.0, 1000.0}, Scale{10.0}, Placed{}, Neutral{0.0})};
 
   static std::string_view objection(std::span<const double> values) {

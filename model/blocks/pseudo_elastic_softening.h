@@ -18,15 +18,17 @@ namespace softgrip::model {
 template <class T>
 class PseudoElasticSoftening {
  public:
-  static constexpr BlockInfo info =
-      block_info("pseudo_elastic_softening", Station::actuator, Kind::pressure, Inverse::implicit,
-                 "Pseudo-elastic softening",
-                 "The finger is softer the further the pressure is below the largest load (Mullins effect).",
-                 "q = p (1 + softening m tanh((m - q)/range)), m = largest pressure so far");
+  static constexpr BlockInfo info = block_info(
+      "pseudo_elastic_softening", Station::actuator, Kind::pressure, Inverse::implicit,
+      "Pseudo-elastic softening",
+      "The finger becomes softer as the pressure falls below the largest previous pressure (Mullins effect).",
+      "q = p (1 + softening m tanh((m - q)/range)), m = largest pressure so far");
   static constexpr std::array parameters{
-      parameter("softening_per_kpa", "1/kPa", "relative increase of the gain per kPa of the largest load",
-                Typical{0.002}, Within{0.0, 1.0}, Scale{0.001}, Neutral{0.0}),
-      parameter("range_kpa", "kPa", "pressure range below the largest load over which the softening sets in",
+      parameter("softening_per_kpa", "1/kPa",
+                "relative increase of the gain per kPa of the largest previous pressure", Typical{0.002},
+                Within{0.0, 1.0}, Scale{0.001}, Neutral{0.0}),
+      parameter("range_kpa", "kPa",
+                "pressure range below the largest previous pressure over which the softening begins",
                 Typical{15.0}, Within{0.01, 10000.0}, Scale{5.0})};
 
   PseudoElasticSoftening(std::span<const T> values, const Preparation&)

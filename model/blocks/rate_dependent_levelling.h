@@ -14,15 +14,16 @@ class RateDependentLevelling : public BoucWenPart<T> {
   static constexpr BlockInfo info = block_info(
       "rate_dependent_levelling", Station::actuator, Kind::element, Inverse::implicit,
       "Rate-dependent saturation",
-      "The loop width grows with rate beyond the viscous part: bouc_wen saturates sooner at high rates.",
+      "The width of the hysteresis loop depends on the rate of the pressure: bouc_wen saturates earlier at "
+      "high rates.",
       "bouc_wen: eta is replaced by eta (1 + levelling r/(r + rate)), settling r' = |p'| - r");  // words-ok
   static constexpr std::array parameters{
-      parameter("levelling", "", "share by which eta of bouc_wen is larger at high rates", Typical{0.2},
-                Within{-0.9, 100.0}, Scale{0.1}, Neutral{0.0}),
-      parameter("rate_kpa_per_s", "kPa/s", "rate at which half of this change is reached", Typical{20.0},
+      parameter("levelling", "", "largest relative increase of eta of bouc_wen, reached at high rates",
+                Typical{0.2}, Within{-0.9, 100.0}, Scale{0.1}, Neutral{0.0}),
+      parameter("rate_kpa_per_s", "kPa/s", "rate at which half of the increase is reached", Typical{20.0},
                 Within{0.01, 1e5}, Scale{10.0}, IfLeftOut{20.0}),
-      parameter("settling_s", "s", "time over which the rate is averaged", Typical{0.05}, Within{1e-3, 100.0},
-                Scale{0.05}, IfLeftOut{0.05})};
+      parameter("settling_s", "s", "time constant with which the rate is averaged", Typical{0.05},
+                Within{1e-3, 100.0}, Scale{0.05}, IfLeftOut{0.05})};
 
   RateDependentLevelling(std::span<const T> values, const Preparation&)
       : rate_{values[0], values[1], values[2]} {}

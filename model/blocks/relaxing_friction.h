@@ -13,16 +13,18 @@ namespace softgrip::model {
 template <class T>
 class RelaxingFriction {
  public:
-  static constexpr BlockInfo info = block_info(
-      "relaxing_friction", Station::actuator, Kind::element, Inverse::implicit, "Relaxing friction",
-      "Loop width grows with rate beyond the viscous part: a friction that relaxes.",
-      "y -= gain z, z' = p' - z (|p'|/width + 1/tau)");
+  static constexpr BlockInfo info = block_info("relaxing_friction", Station::actuator, Kind::element,
+                                               Inverse::implicit, "Relaxing friction",
+                                               "The width of the hysteresis loop depends on the rate of the "
+                                               "pressure, because a friction relaxes with time.",
+                                               "y -= gain z, z' = p' - z (|p'|/width + 1/tau)");
   static constexpr std::array parameters{
-      parameter("gain_mm_per_kpa", "mm/kPa", "displacement held back per pressure after a reversal",
-                Typical{0.03}, Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
+      parameter("gain_mm_per_kpa", "mm/kPa",
+                "displacement per pressure that the friction holds back after a reversal", Typical{0.03},
+                Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
       parameter("width_kpa", "kPa", "largest z, reached at high rates", Typical{10.0}, Within{0.01, 10000.0},
                 Scale{5.0}),
-      parameter("time_constant_s", "s", "time over which z relaxes", Typical{1.0}, Within{1e-3, 1e4},
+      parameter("time_constant_s", "s", "time constant with which z relaxes", Typical{1.0}, Within{1e-3, 1e4},
                 Scale{0.5})};
 
   RelaxingFriction(std::span<const T> values, const Preparation&)

@@ -14,10 +14,11 @@ class Sampling {
  public:
   static constexpr BlockInfo info =
       block_info("sampling", Station::sensor, Kind::reading, Inverse::ignored, "Sampling",
-                 "The reading is sampled more slowly than the log.", "z(t) = y(interval floor(t/interval))");
-  static constexpr std::array parameters{parameter("interval_s", "s", "time between new readings",
-                                                   Typical{0.1}, Within{0.0, 100.0}, Scale{0.05},
-                                                   Neutral{0.0})};
+                 "The sensor updates the reading less often than the log records a sample.",
+                 "z(t) = y(interval floor(t/interval))");
+  static constexpr std::array parameters{parameter("interval_s", "s",
+                                                   "time between two updates of the reading", Typical{0.1},
+                                                   Within{0.0, 100.0}, Scale{0.05}, Neutral{0.0})};
 
   Sampling(std::span<const T> values, const Preparation&) : interval_s_(value_of(values[0])) {}
 

@@ -12,16 +12,18 @@ namespace softgrip::model {
 template <class T>
 class SensorNonlinearity {
  public:
-  static constexpr BlockInfo info =
-      block_info("sensor_nonlinearity", Station::sensor, Kind::reading, Inverse::ignored,
-                 "Sensor nonlinearity", "The scale is nonlinear between its calibration points.",
-                 "z = y + 4 bow x (1 - x) + 6 sqrt(3) wave x (1 - x) (1 - 2 x), x = y/range");
+  static constexpr BlockInfo info = block_info(
+      "sensor_nonlinearity", Station::sensor, Kind::reading, Inverse::ignored, "Sensor nonlinearity",
+      "The scale of the sensor is nonlinear between its two calibration points.",
+      "z = y + 4 bow x (1 - x) + 6 sqrt(3) wave x (1 - x) (1 - 2 x), x = y/range");
   static constexpr std::array parameters{
-      parameter("bow_mm", "mm", "error in the middle of the range", Typical{0.2}, Within{-100.0, 100.0},
-                Scale{0.1}, Neutral{0.0}),
-      parameter("wave_mm", "mm", "largest error of opposite sign in the two halves", Typical{0.0},
+      parameter("bow_mm", "mm", "error of the reading in the middle of the range", Typical{0.2},
                 Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0}),
-      parameter("range_mm", "mm", "displacement of the upper calibration point, the lower one is 0",
+      parameter("wave_mm", "mm",
+                "largest error of the reading in each half of the range, with opposite signs", Typical{0.0},
+                Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0}),
+      parameter("range_mm", "mm",
+                "displacement of the upper calibration point; the lower calibration point is at 0",
                 Typical{30.0}, Within{0.1, 1000.0}, Scale{10.0})};
 
   SensorNonlinearity(std::span<const T> values, const Preparation&)

@@ -14,9 +14,10 @@ namespace softgrip::model {
 template <class T>
 class SensorWander {
  public:
-  static constexpr BlockInfo info = block_info(
-      "sensor_wander", Station::sensor, Kind::reading, Inverse::ignored, "Sinusoidal sensor drift",
-      "The zero drifts slowly along a sine.", "z = y + a sin(2 pi t/period) + b (cos(2 pi t/period) - 1)");
+  static constexpr BlockInfo info =
+      block_info("sensor_wander", Station::sensor, Kind::reading, Inverse::ignored, "Sinusoidal sensor drift",
+                 "The zero of the sensor drifts slowly along a sine.",
+                 "z = y + a sin(2 pi t/period) + b (cos(2 pi t/period) - 1)");
   static constexpr std::array parameters{
       parameter("wander_sin_mm", "mm", "amplitude a of the drift", Typical{0.1}, Within{-100.0, 100.0},
                 Scale{0.1}, Neutral{0.0}, IfLeftOut{0.0}),

@@ -15,7 +15,7 @@ class SlowCreep {
  public:
   static constexpr BlockInfo info =
       block_info("slow_creep", Station::actuator, Kind::element, Inverse::implicit, "Slow creep",
-                 "Creep slower than the model's slowest branch.", "tau x' = gain p - x");
+                 "Creep that is slower than the slowest creep branch of the model.", "tau x' = gain p - x");
   static constexpr std::array parameters{
       parameter("gain_mm_per_kpa", "mm/kPa", "final gain", Typical{0.05}, Within{-10.0, 10.0}, Scale{0.02},
                 Neutral{0.0}),

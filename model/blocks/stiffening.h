@@ -17,10 +17,10 @@ class Stiffening {
       block_info("stiffening", Station::actuator, Kind::displacement, Inverse::implicit, "Stiffening",
                  "The gain changes with the displacement, equally for loading and unloading.",
                  "z = y / (1 + s |y|), for negative s: y (1 - s |y|)");
-  static constexpr std::array parameters{
-      parameter("stiffening_per_mm", "1/mm",
-                "relative decrease of the secant gain per displacement; twice that for the tangent gain",
-                Typical{0.01}, Within{-1.0, 1.0}, Scale{0.005}, Neutral{0.0})};
+  static constexpr std::array parameters{parameter(
+      "stiffening_per_mm", "1/mm",
+      "relative decrease of the secant gain per displacement; the tangent gain decreases twice as much",
+      Typical{0.01}, Within{-1.0, 1.0}, Scale{0.005}, Neutral{0.0})};
 
   Stiffening(std::span<const T> values, const Preparation&) : stiffening_per_mm_(values[0]) {}
 

@@ -17,10 +17,11 @@ class SupplySag {
                  "The pressure decreases if the supply falls below its nominal value.",
                  "p = u (1 - coupling max(0, 1 - supply/nominal))");
   static constexpr std::array parameters{
-      parameter("coupling", "", "share of a relative loss of supply that reaches the pressure", Typical{0.2},
-                Within{0.0, 1.0}, Scale{0.1}, Neutral{0.0}),
-      parameter("nominal_kpa", "kPa", "supply pressure without a loss", Typical{500.0}, Within{1.0, 10000.0},
-                Scale{50.0})};
+      parameter("coupling", "",
+                "relative decrease of the pressure per relative decrease of the supply pressure",
+                Typical{0.2}, Within{0.0, 1.0}, Scale{0.1}, Neutral{0.0}),
+      parameter("nominal_kpa", "kPa", "nominal supply pressure, at which the pressure is not reduced",
+                Typical{500.0}, Within{1.0, 10000.0}, Scale{50.0})};
 
   SupplySag(std::span<const T> values, const Preparation&) : coupling_(values[0]), nominal_kpa_(values[1]) {}
 

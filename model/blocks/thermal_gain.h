@@ -15,8 +15,8 @@ class ThermalGain : public SurroundingsGain<ThermalGain<T>, T> {
       "thermal_gain", Station::actuator, Kind::displacement, Inverse::implicit, "Thermal gain",
       "The gain depends on the temperature.", "z = y (1 + gain (temperature - 20 degC)), kept positive");
   static constexpr std::array parameters{
-      parameter("gain_per_c", "1/degC", "relative change of the gain per degree above 20", Typical{0.005},
-                Within{-0.2, 0.2}, Scale{0.002}, Neutral{0.0})};
+      parameter("gain_per_c", "1/degC", "relative change of the gain per degree Celsius above 20 degC",
+                Typical{0.005}, Within{-0.2, 0.2}, Scale{0.002}, Neutral{0.0})};
 
   ThermalGain(std::span<const T> values, const Preparation&) : gain_per_c_(values[0]) {}
 

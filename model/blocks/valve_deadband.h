@@ -15,7 +15,7 @@ class ValveDeadband {
   static constexpr BlockInfo info =
       block_info("valve_deadband", Station::valve, Kind::pressure, Inverse::play, "Valve dead band",
                  "The valve ignores changes of the command smaller than a band.",
-                 "|u - p| <= band/2, p moves only when it must");
+                 "|u - p| <= band/2; p moves only to keep this condition");
   static constexpr std::array parameters{
       parameter("band_kpa", "kPa", "change of the command that is ignored after a reversal", Typical{1.0},
                 Within{0.0, 1000.0}, Scale{0.5}, Neutral{0.0})};

@@ -18,7 +18,8 @@ class ValveStiction {
  public:
   static constexpr BlockInfo info =
       block_info("valve_stiction", Station::valve, Kind::pressure, Inverse::ignored, "Valve stiction",
-                 "The valve sticks until the command differs by a band, then jumps to it.",
+                 "The valve sticks until the command differs from the pressure by more than a band. Then the "
+                 "pressure jumps to the command.",
                  "p stays until |u - p| > band, then p = u");
   static constexpr std::array parameters{
       parameter("band_kpa", "kPa", "change of the command at which the valve jumps", Typical{1.0},

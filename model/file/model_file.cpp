@@ -100,7 +100,7 @@ class ModelReader {
     top.finish();
     if (!has_element_ && document_.complete) {
       top_problem("the actuator has no element that turns pressure into displacement",
-                  "bouc_wen and kelvin_voigt are such elements");
+                  "for example bouc_wen or kelvin_voigt is such an element");
     }
     return model;
   }
@@ -112,7 +112,7 @@ class ModelReader {
 
   void read_block(const Node& item, Station station, Model& model) {
     if (item.kind != Node::Kind::map || item.entries.size() != 1) {
-      problems_.add(document_.problem(item.at, "a block is a map with one key, its id",
+      problems_.add(document_.problem(item.at, "a block must be a map with one key, the id of the block",
                                       "for example `- valve_lag: {time_constant_s: 0.05}`"));
       return;
     }
@@ -164,7 +164,8 @@ class ModelReader {
   }
 
   void report_several(const Node::Entry& entry, const std::vector<BlockSpec>& blocks) {
-    std::string hint = "together they do not have the effect of the earlier block; fit them again as";
+    std::string hint =
+        "the new blocks together do not have the same effect as the earlier block. Fit the model again with";
     for (const BlockSpec& block : blocks) {
       hint += " `- " + std::string(catalogue()[block.type].info.id) + ": {";
       for (std::size_t i = 0; i < block.values.size(); ++i)
@@ -172,7 +173,7 @@ class ModelReader {
       hint += "}`";
     }
     problems_.add(document_.problem(
-        entry.key_at, entry.key + " contains several mechanisms, which are separate blocks now", hint));
+        entry.key_at, entry.key + " contains several mechanisms, which now are separate blocks", hint));
   }
 
   void report_unknown(const Node::Entry& entry, std::optional<std::size_t> type, Station station) {
@@ -180,7 +181,7 @@ class ModelReader {
     if (type) {
       problems_.add(document_.problem(
           entry.key_at, entry.key + " does not belong to the station " + where,
-          "it belongs under `" + std::string(name_of(catalogue()[*type].info.station)) + ":`"));
+          "this block belongs under `" + std::string(name_of(catalogue()[*type].info.station)) + ":`"));
       return;
     }
     const std::string near = document::nearest(entry.key, ids_of(station));

@@ -97,7 +97,7 @@ void require_appended(bool appended, const Reference& reference) {
   if (!appended)
     throw InvalidArgument("segment",
                           "a value is not finite, a duration, frequency or number of cycles is not above 0, "
-                          "or there are 8 segments. The last one ends at " +
+                          "or the reference already has 8 segments. The last segment ends at " +
                               std::to_string(reference.end_s()) + " s");
 }
 
@@ -204,7 +204,9 @@ void add_control(py::module_& module) {
            [](SimulatedBoard& board, std::size_t channel, const std::optional<ObjectTuple>& object) {
              require_channel(board, channel);
              if (object && !(std::isfinite(object->first) && object->second >= 0 && object->second <= 1))
-               throw InvalidArgument("object", "the position must be finite, and yielding from 0 to 1");
+               throw InvalidArgument("object",
+                                     "the position must be finite, and the share by which the object yields "
+                                     "must be from 0 to 1");
              board.set_object(channel, object_of(object));
            })
       .def("displacement", [](const SimulatedBoard& board, std::size_t channel) {

@@ -68,8 +68,8 @@ class Reader {
     const std::vector<std::string> known = missing;
     for (const Node* const item : reader.sequence(key, true)) entry(*item, block, known, missing);
     if (!missing.empty() && reader.has(key)) {
-      reader.report(key, fmt::format("`{}` lacks the register '{}'", key, missing.front()),
-                    "every register needs an address, even if it is not used");
+      reader.report(key, fmt::format("`{}` must list the register '{}', but does not", key, missing.front()),
+                    "every register requires an address, even if the PLC does not use the register");
     }
   }
 
@@ -78,7 +78,8 @@ class Reader {
     const auto [taken, is_free] = claimed_.emplace(address, what);
     if (is_free && address <= last_address) return;
     problems_.add(document_.problem(
-        at, is_free ? fmt::format("'{}' is beyond address {}", what, last_address)
+        at, is_free ? fmt::format("the address of '{}' is above {}, the last possible address", what,
+                                  last_address)
                     : fmt::format("address {} belongs to both '{}' and '{}'", address, taken->second, what)));
   }
 
@@ -99,7 +100,7 @@ class Reader {
     if (!info->unit.empty()) {
       map_.resolution[index] = resolution_of(reader.text("unit"), info->unit);
       if (reader.good("unit") && map_.resolution[index] == 0) {
-        reader.report("unit", "this is not a resolution (the value of one count)",
+        reader.report("unit", "this is not a resolution (the physical value of one count of the register)",
                       fmt::format("write a number and the unit: \"0.01 {}\"", info->unit));
       }
     }

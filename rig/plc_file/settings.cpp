@@ -14,7 +14,7 @@ namespace {
 using document::MapReader;
 using document::Node;
 
-constexpr std::string_view numeric_hint = "an IPv4 or IPv6 address in numbers: 192.168.1.20";
+constexpr std::string_view numeric_hint = "write an IPv4 or IPv6 address in digits, for example 192.168.1.20";
 
 class SettingsReader {
  public:
@@ -72,7 +72,8 @@ class SettingsReader {
     recipe.displacement = parameter(reader, "displacement", "_mm");
     const bool twice = std::any_of(settings_.recipes.begin(), settings_.recipes.end(),
                                    [&](const Recipe& other) { return other.number == recipe.number; });
-    if (twice) reader.report("number", fmt::format("the recipe {} already exists", recipe.number));
+    if (twice)
+      reader.report("number", fmt::format("another recipe already has the number {}", recipe.number));
     settings_.recipes.push_back(std::move(recipe));
   }
 
@@ -81,7 +82,8 @@ class SettingsReader {
   static std::string parameter(MapReader& reader, std::string_view key, std::string_view ending) {
     std::string name = reader.optional_text(key).value_or("");
     if (!name.empty() && !name.ends_with(ending)) {
-      reader.report(key, fmt::format("the parameter that `{}` sets ends with `{}`", key, ending));
+      reader.report(key,
+                    fmt::format("the name of the parameter that `{}` sets must end with `{}`", key, ending));
     }
     return name;
   }

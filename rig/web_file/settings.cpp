@@ -23,7 +23,7 @@ void read_listen(const document::Document& document, const Node& node, document:
   settings.address = reader.text("address");
   if (reader.good("address") && !modbus::is_numeric(settings.address)) {
     reader.report("address", "this is not a numeric address",
-                  "an IPv4 or IPv6 address in numbers: 192.168.1.20");
+                  "write an IPv4 or IPv6 address in digits, for example 192.168.1.20");
   }
   settings.port = static_cast<std::uint16_t>(reader.integer("port", 0, 65535));
   settings.max_connections =

@@ -139,8 +139,8 @@ drivers::BusStatus SimulatedBoard::Parts::take_commands(std::span<const double> 
     if (!refuses_writes) {
       plants[i].command(output);
     } else if (plants[i].held_command_kpa() != output) {
-      std::snprintf(text.data(), text.size(), "channel '%s': the output did not follow",
-                    channel.name.c_str());
+      std::snprintf(text.data(), text.size(),
+                    "channel '%s': the output did not change to the written command", channel.name.c_str());
       status = say(drivers::BusStatus::write_refused, text.data());
     }
   }

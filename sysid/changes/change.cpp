@@ -480,7 +480,7 @@ void judge_readings(const Prepared& healthy, const Prepared& later, ChangeDiagno
   if (sampling.frozen_s > slower * healthy.sampling.frozen_s)
     add(causes::Sampling::id, {"the reading is frozen for", sampling.frozen_s, "s"}, {}, sampling.excess_mm);
   else if (sampling.interval_s > slower * healthy.sampling.interval_s)
-    add(causes::Sampling::id, {"time between new readings", sampling.interval_s, "s"}, {},
+    add(causes::Sampling::id, {"time between two updates of the reading", sampling.interval_s, "s"}, {},
         sampling.excess_mm);
 }
 

@@ -147,11 +147,11 @@ TEST_F(CheckFolder, WhatIsOfNoKindIsPassedOver) {
   ASSERT_EQ(report.files.size(), 2U);
   EXPECT_TRUE(report.files[0].passed_over);
   EXPECT_FALSE(report.files[1].passed_over);
-  EXPECT_FALSE(says(report, "neither a rig"));
+  EXPECT_FALSE(says(report, "not a rig, a board map"));
 }
 
 TEST_F(CheckFolder, WithNothingToReadIsAProblem) {
-  EXPECT_TRUE(says(check(), "no file *.yaml"));
+  EXPECT_TRUE(says(check(), "contain no readable *.yaml"));
 }
 
 TEST_F(CheckFolder, SequencesAreFittedToARigThatHasErrorsElsewhere) {
@@ -181,7 +181,7 @@ TEST_F(CheckFolder, WhatComparesSeveralPartsIsToldBesideOtherErrors) {
   write_rig({{"watchdog_timeout_s: 0.5", "watchdog_timeout_s: 0.02"}, {"mode: \"0660\"", "mode: \"9999\""}});
   const rig::CheckReport report = check();
   EXPECT_TRUE(says(report, "`mode` must be permissions, found `9999`")) << report.problems.format();
-  EXPECT_TRUE(says(report, "`bus_down_cycles` end after")) << report.problems.format();
+  EXPECT_TRUE(says(report, "`bus_down_cycles` correspond to")) << report.problems.format();
 }
 
 }  // namespace

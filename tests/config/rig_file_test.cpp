@@ -289,12 +289,14 @@ TEST(RestPressure, BeyondTheLimitsIsRefusedWithTheRange) {
 
 TEST(RestPressure, OfTheBoardsWatchdogIsThatOfTheChannel) {
   const std::string asked = "this board does not vent by itself when softgripd dies";
-  for (const auto& [old, now, said] : std::vector<std::array<std::string, 3>>{
-           // on this board an output of 0 V means full vacuum
-           {"map: board.yaml", "map: ../boards/softgrip-sim.yaml",
-            "its watchdog puts channel `left` to -100 kPa, and the rest pressure of this channel is 0 kPa"},
-           {"rest_kpa: 0", "rest_kpa: 10",
-            "its watchdog puts channel `left` to 0 kPa, and the rest pressure of this channel is 10 kPa"}}) {
+  for (const auto& [old, now, said] :
+       std::vector<std::array<std::string, 3>>{// on this board an output of 0 V means full vacuum
+                                               {"map: board.yaml", "map: ../boards/softgrip-sim.yaml",
+                                                "the watchdog of the board sets channel `left` to -100 kPa, "
+                                                "but the rest pressure of this channel is 0 kPa"},
+                                               {"rest_kpa: 0", "rest_kpa: 10",
+                                                "the watchdog of the board sets channel `left` to 0 kPa, but "
+                                                "the rest pressure of this channel is 10 kPa"}}) {
     Problems problems;
     EXPECT_FALSE(edited("vacuum/rig_tcp.yaml", {{old, now}}, problems).accepted);
     EXPECT_NE(problems.format().find(asked), std::string::npos) << problems.format();
@@ -322,7 +324,8 @@ TEST(RestPressure, OfTheBoardsWatchdogIsNotBeyondTheLimits) {
   for (const Edits& edits : {with(vacuum, inflates), with({{"rest_kpa: 0", "rest_kpa: 60"}}, inflates)}) {
     Problems problems;
     EXPECT_FALSE(edited("vacuum/rig_tcp.yaml", edits, problems).accepted);
-    EXPECT_NE(problems.format().find("its watchdog puts channel `left` to 100 kPa"), std::string::npos)
+    EXPECT_NE(problems.format().find("the watchdog of the board sets channel `left` to 100 kPa"),
+              std::string::npos)
         << problems.format();
   }
   for (const Edits& edits : {vacuum, with(with(vacuum, inflates), no_pressure)}) {
@@ -343,18 +346,18 @@ TEST(RestPressure, IsComparedWithTheValveThatHasNoPower) {
   };
   const std::pair<std::string, std::string> holds{"on_power_loss: vents", "on_power_loss: holds"};
   EXPECT_EQ(warning("vacuum/rig.yaml", {}), "");
-  EXPECT_NE(
-      warning("vacuum/rig.yaml", {{"rest_kpa: 0", "rest_kpa: -20"}})
-          .find("without power the valve of channel `left` goes to 0 kPa, and the rest pressure is -20 kPa"),
-      std::string::npos);
+  EXPECT_NE(warning("vacuum/rig.yaml", {{"rest_kpa: 0", "rest_kpa: -20"}})
+                .find("if the power fails, the valve of channel `left` goes to 0 kPa, but the rest pressure "
+                      "is -20 kPa"),
+            std::string::npos);
   EXPECT_NE(
       warning("vacuum/rig.yaml", {{"on_power_loss: vents", "on_power_loss: vents, on_power_loss_kpa: -80"}})
-          .find("goes to -80 kPa, and the rest pressure is 0 kPa"),
+          .find("goes to -80 kPa, but the rest pressure is 0 kPa"),
       std::string::npos);
   EXPECT_NE(
       warning("vacuum/rig.yaml", {{"rest_kpa: 0", "rest_kpa: -40"},
                                   {"on_power_loss: vents", "on_power_loss: vents, on_power_loss_kpa: -80"}})
-          .find("goes to -80 kPa, and the rest pressure is -40 kPa"),
+          .find("goes to -80 kPa, but the rest pressure is -40 kPa"),
       std::string::npos)
       << "the limits do not apply to a valve without power";
   EXPECT_NE(warning("vacuum/rig.yaml", {holds}).find("holds its last pressure"), std::string::npos);
@@ -363,8 +366,9 @@ TEST(RestPressure, IsComparedWithTheValveThatHasNoPower) {
   EXPECT_FALSE(
       edited("rig.yaml", {{"on_power_loss: vents", "on_power_loss: holds, on_power_loss_kpa: 5"}}, problems)
           .accepted);
-  EXPECT_NE(problems.format().find("`on_power_loss: holds` excludes another pressure on power loss"),
-            std::string::npos)
+  EXPECT_NE(
+      problems.format().find("with `on_power_loss: holds`, no other pressure on power loss is possible"),
+      std::string::npos)
       << problems.format();
 }
 

@@ -166,7 +166,7 @@ TEST(BoardMapFile, MistakesAreFoundWhereTheyStand) {
       {"timeout_s: 0.5", "timeout_s: 0", "allowed", "timeout_s: 0"},
       {"timeout_s: 0.5", "timeout_ms: 500", "timeout_ms", "timeout_ms: 500"},
       {"safe_ma: [4, 4]", "safe_ma: [4]", "2 numbers", "safe_ma: [4]"},
-      {"functions: [16]", "functions: [3, 4]", "does not feed the watchdog", "[3, 4]"},
+      {"functions: [16]", "functions: [3, 4]", "does not reset the watchdog", "[3, 4]"},
       {"value: 1}", "value: 2}", "allowed", "value: 2"},
       {"value: 5}", "value: 70000}", "allowed", "70000"},
       {"name: test", "name: test\ncolour: red", "unknown key", "colour: red"},

@@ -135,7 +135,7 @@ TEST_F(ChannelDefaultsTest, WhatCannotBeSharedThere) {
   text.replace(text.find("\n#"), 2, "\n  # ");
   EXPECT_FALSE(read());
   EXPECT_NE(problems.format().find("channels cannot share a name"), std::string::npos) << problems.format();
-  EXPECT_NE(problems.format().find("`model_health` for all channels belongs at the top of the file"),
+  EXPECT_NE(problems.format().find("`model_health` for all channels belongs to the top level of the file"),
             std::string::npos);
   EXPECT_EQ(problems.size(), 2U) << problems.format();
 }

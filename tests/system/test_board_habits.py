@@ -196,7 +196,7 @@ class BoardHabits(bench.BenchTest):
                 ("repeat_after_s: 0.15", "`repeat_after_s` is not below `exchange_deadline_s` (0.15 s)"),
                 ("framing: ascii", "`framing` must be `tcp` or `rtu`"),
                 ("silence_s: 0.01", "silence_s"),
-                ("accept_no_transaction_id: yes", "does not say what is accepted")):
+                ("accept_no_transaction_id: yes", "does not state the risk that is accepted")):
             with self.subTest(session):
                 told = self.check(f"\n    {session}")
                 self.assertRegex(told, r"test_rig.yaml:14:\d+: ")

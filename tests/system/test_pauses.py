@@ -115,7 +115,7 @@ class Pauses(bench.BenchTest):
         rig = self.rig(1502, ((r"bus_down_cycles: \d+", "bus_down_cycles: 90"),))
         done = subprocess.run([bench.SOFTGRIPD, "--check", "--config", rig], capture_output=True, text=True)
         self.assertEqual(done.returncode, 3)
-        self.assertIn("when the board's watchdog (0.5 s", done.stderr)
+        self.assertIn("the board's watchdog (0.5 s", done.stderr)
 
 
 if __name__ == "__main__":

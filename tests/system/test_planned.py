@@ -71,7 +71,7 @@ class Virtual(bench.BenchTest):
 
     def test_a_model_without_an_inverse_is_pointed_to_it(self):
         done = self.softgrip("check", self.rig_with((PLANNED, "feedforward: full_model")), expect=3)
-        self.assertIn("`planned` needs no inverse", done.stderr)
+        self.assertIn("use feedforward `planned`, which needs no inverse", done.stderr)
 
 
 class Served(bench.BenchTest):

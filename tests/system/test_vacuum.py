@@ -121,7 +121,7 @@ class Vacuum(bench.BenchTest):
     def test_a_board_that_goes_to_full_vacuum_is_refused(self):
         text = self.vacuum_rig(1502).read_text().replace("patient.yaml", "softgrip-sim.yaml")
         done = self.softgrip("check", self.write("config/full.yaml", text), expect=3)
-        self.assertIn("to -100 kPa, and the rest pressure of this channel is 0 kPa", done.stdout + done.stderr)
+        self.assertIn("to -100 kPa, but the rest pressure of this channel is 0 kPa", done.stdout + done.stderr)
 
 
 if __name__ == "__main__":

@@ -53,7 +53,8 @@ TEST(PlcSettings, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(said_of("first: 120", "first: 100").find("address 100"), std::string::npos);
   EXPECT_NE(said_of("name: recipe", "name: receipt").find("recipe"), std::string::npos);
   EXPECT_NE(said_of("name: heartbeat", "name: fingers").find("appears twice"), std::string::npos);
-  EXPECT_NE(said_of("unit: 0.01 kPa", "unit: 0.01 bar").find("not a resolution (the value of one count)"),
+  EXPECT_NE(said_of("unit: 0.01 kPa", "unit: 0.01 bar")
+                .find("not a resolution (the physical value of one count of the register)"),
             std::string::npos);
   EXPECT_NE(said_of("squeeze: squeeze_kpa", "squeeze: squeeze_mm").find("ends with `_kpa`"),
             std::string::npos);

@@ -310,7 +310,7 @@ TEST_F(DoctorTest, AnOutputThatCannotBeWritten) {
   refused.at_s = 1.5;
   at_once(refused);
   examine(true);
-  expect("motion left", Verdict::fail, "the output did not follow");
+  expect("motion left", Verdict::fail, "the output did not change to the written command");
 }
 
 TEST_F(DoctorTest, AModelOfAnotherFinger) {
