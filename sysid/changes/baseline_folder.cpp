@@ -36,7 +36,9 @@ tl::expected<Baseline, std::string> read_baseline(const std::string& folder) {
     const auto bytes = read_file(file, largest_log);
     if (!bytes) return Failure(bytes.error());
     if (sha256(*bytes) != entry["sha256"].get<std::string>())
-      return Failure(file + " was changed after the baseline was recorded: record the baseline again");
+      return Failure(file +
+                     " was changed after the baseline was recorded, so the baseline is invalid: record the "
+                     "baseline again");
     return file;
   };
   const auto all = [&](const char* key, std::vector<std::string>& files) -> tl::expected<void, std::string> {

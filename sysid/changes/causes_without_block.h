@@ -20,7 +20,7 @@ inline constexpr CauseWithoutBlock blocked_line{
     "Blocked line",
     {"the air flow of the line to the finger is reduced",
      {"Blow through the tube, and check it for kinks and water.",
-      "Replace the tube by a new one of the same length, then record the same log again."},
+      "Replace the tube by a new tube of equal length, then record the same log again."},
      {{{HealthNumber::lag, Moves::up}}},
      {SizedBy::Of::number, "additional filling time", "s", "filling_s"}},
     Appears::moving};
@@ -30,11 +30,12 @@ inline constexpr CauseWithoutBlock leak{
     "Leak",
     {"the pressure falls while it should be constant",
      {"Hold full pressure and listen or spray soapy water along tube, fittings and finger.",
-      "Close the tube at the valve, then at the finger, and note at which end the pressure still falls."},
+      "Close the tube first at the valve and then at the finger. Note in which of the two cases the pressure "
+      "still falls."},
      {{{HealthNumber::pressure_loss, Moves::up},
        {HealthNumber::leak, Moves::up},
        {HealthNumber::gain, Moves::down}}},
-     {SizedBy::Of::number, "pressure loss per second with a closed line", "kPa", "loss_kpa_per_s"}},
+     {SizedBy::Of::number, "pressure loss per second while the line is closed", "kPa", "loss_kpa_per_s"}},
     Appears::held};
 
 /// A weight or a preload changes gain and zero together. The readings cannot separate this cause from a

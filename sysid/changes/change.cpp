@@ -151,8 +151,8 @@ class RunSpread {
 
 std::string other_start(const std::string& record) {
   return "No healthy log begins like " + record +
-         " (with or without pressure): a slow change after its start is not evaluated. Record a healthy log "
-         "that begins in the same way";
+         " with respect to the pressure (pressurised or vented), so a slow change after the start of this "
+         "log is not evaluated. Record a healthy log that begins in the same way";
 }
 
 /// Evaluates the displacement or the pressure: fits the baseline model to the healthy records and finds the
@@ -164,7 +164,7 @@ class Judge {
 
   void judge(const std::vector<Record>& later, ChangeDiagnosis& diagnosis) {
     learn_temperature();
-    say("search in left-out healthy runs");
+    say("search for changes in each left-out healthy run");
     healthy_ = healthy_fits(base_, pressure_is_judged_, options_.threads);
     spread_ = RunSpread(healthy_, base_.units.runs());
     const Tolerance tolerance = tolerance_of(healthy_, base_.units.runs());
@@ -323,7 +323,7 @@ class Judge {
           compare(paired_losses(readings, without, each.fit.white),
                   each.tolerance + price_per_row(readings, each.fit.fitted.effect), options_.seed);
       if (is_better(against_none)) return false;
-      reject(each, "the improvement does not exceed that in healthy runs");
+      reject(each, "the improvement does not exceed the improvement in healthy runs");
       return true;
     });
     const Ties ties = ties_in(readings, options_.seed);
@@ -426,7 +426,7 @@ std::string objection_to(const std::vector<Log>& healthy, const std::vector<Log>
   constexpr std::size_t fewest = 400;
   if (samples(healthy) < fewest || samples(later) < fewest)
     return "The diagnosis of a change requires " + std::to_string(fewest) +
-           " samples of healthy logs and as many of later logs";
+           " samples of healthy logs and as many samples of later logs";
   return {};
 }
 
@@ -434,23 +434,24 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
           std::vector<std::string>& warnings) {
   const double now_kpa = largest_command_kpa(later), then_kpa = largest_command_kpa(healthy);
   if (now_kpa > 1.05 * then_kpa)
-    warnings.push_back("The later logs reach " + significant(now_kpa, 3) + " kPa, the healthy logs only " +
-                       significant(then_kpa, 3) +
-                       " kPa: at higher pressures the baseline model extrapolates");
+    warnings.push_back("The later logs reach " + significant(now_kpa, 3) +
+                       " kPa, but the healthy logs reach only " + significant(then_kpa, 3) +
+                       " kPa: at higher pressures, the baseline model extrapolates and may be wrong");
   if (healthy.size() == 1)
     warnings.emplace_back(
-        "One healthy log does not show how runs differ. A change is reported only if its error exceeds three "
-        "times the error between the halves of that log. Record three healthy logs or more");
+        "One healthy log does not show how much healthy runs differ from each other. A change is therefore "
+        "reported only if its error exceeds three times the error between the two halves of the healthy log. "
+        "Record three or more healthy logs");
   if (has_pressure(healthy) != has_pressure(later))
     warnings.emplace_back(
-        "pressure_kpa is recorded only in the healthy or only in the later logs: the valve and the finger "
-        "are evaluated together");
+        "pressure_kpa is recorded in only one of the two groups (healthy logs, later logs), so the valve and "
+        "the finger are evaluated together");
 }
 
 std::string unused_pressure(const DriveChoice& choice) {
   return "Left-out healthy runs are predicted better from the command than from the measured pressure (" +
          significant(choice.by_command_mm, 2) + " and " + significant(choice.by_pressure_mm, 2) +
-         " mm RMS): pressure_kpa is not used";
+         " mm RMS), so pressure_kpa is not used";
 }
 
 /// Adds the causes that are found in the readings without a fit: isolated wrong readings, and repeated

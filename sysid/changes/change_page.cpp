@@ -66,7 +66,8 @@ Figure residual_figure(const JudgedChange& judged, bool explained) {
     charts.push_back(std::move(chart));
   }
   return {std::string("residual ") + name_of(judged.judged),
-          "Residual of the baseline model on the later logs. RMS on left-out healthy logs: " +
+          "Residual of the baseline model on the later logs. For comparison, the RMS residual on left-out "
+          "healthy logs is " +
               significant(judged.healthy_mm, 2) + " " + unit_of(judged.judged, judged.output_unit) + ".",
           stacked(std::move(charts))};
 }
@@ -96,8 +97,8 @@ Figure tried_figure(const JudgedChange& judged) {
   }
   chart.series = {later, healthy, tolerance};
   return {std::string("tested causes ") + name_of(judged.judged),
-          "Improvement by each cause alone, in whitened squares per bin, for the later logs and for left-out "
-          "healthy runs. The improvement by a change must exceed its tolerance.",
+          "Reduction of the whitened squared error per bin by each cause alone, for the later logs and for "
+          "left-out healthy runs. A cause is reported only if its reduction exceeds the tolerance.",
           stacked({chart})};
 }
 
@@ -120,14 +121,14 @@ Figure runs_figure(const JudgedChange& judged, bool explained) {
   if (explained)
     chart.series.push_back(points_over_names("with the causes", Colour::model, std::move(after)));
   return {std::string("error by run ") + name_of(judged.judged),
-          "Error of the baseline model in each run, RMS about its mean. Each healthy run was left out of the "
-          "fit that predicts it.",
+          "RMS error of the baseline model in each run, about the mean error of the run. Each healthy run "
+          "was omitted from the fit that predicts this run.",
           stacked({chart})};
 }
 
 /// Returns the table of the causes that the logs cannot show, with a recording that would test each cause.
 Table not_tested_table(const JudgedChange& judged) {
-  Table table{"Not tested", {"cause", "recording that would test it"}, {false, false}, {}};
+  Table table{"Not tested", {"cause", "recording that would test the cause"}, {false, false}, {}};
   for (const auto& [id, recording] : judged.not_tested) table.rows.push_back({id, recording});
   return table;
 }
@@ -139,7 +140,7 @@ void add_reading(Page& page, const JudgedChange& judged, const ChangeDiagnosis& 
               {"noise of the readings", significant(judged.noise_mm, 2) + unit},
               {"healthy logs", std::to_string(judged.healthy_runs)},
               {"error of left-out healthy runs", significant(judged.healthy_mm, 3) + unit},
-              {"largest expected error of another healthy run", significant(judged.allowed_mm, 3) + unit},
+              {"largest error that another healthy run may have", significant(judged.allowed_mm, 3) + unit},
               {"error of the later logs", significant(judged.later_mm, 3) + unit},
               {"with the causes", significant(judged.explained_mm, 3) + unit},
               {"offset change", significant(judged.zero_mm, 2) + unit},
@@ -172,7 +173,7 @@ Page change_page(const ChangeDiagnosis& diagnosis, const std::vector<Log>& healt
 }
 
 Table tried_table(const JudgedChange& judged) {
-  Table table{"Tested causes, each alone; improvement in whitened squares per bin",
+  Table table{"Tested causes, each alone; improvement: reduction of the whitened squared error per bin",
               {"cause", "improvement", "in healthy runs", "tolerance", "reason of rejection"},
               {false, true, true, true, false},
               {}};
@@ -183,7 +184,7 @@ Table tried_table(const JudgedChange& judged) {
 }
 
 Table run_table(const JudgedChange& judged) {
-  Table table{std::string("Error of each run, RMS about its mean [") +
+  Table table{std::string("RMS error of each run, about the mean error of the run [") +
                   unit_of(judged.judged, judged.output_unit) + "]",
               {"run", "base", "with the causes"},
               {false, true, true},

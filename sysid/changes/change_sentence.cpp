@@ -34,7 +34,8 @@ std::string change_sentence(const ChangeDiagnosis& diagnosis) {
   std::string text = "Change since the healthy logs: ";
   for (std::size_t i = 0; i < diagnosis.causes.size(); ++i)
     text += (i == 0 ? "" : "; and ") + named(diagnosis.causes[i]);
-  if (diagnosis.verdict == ChangeVerdict::partly_explained) text += "; a part of the change is unexplained";
+  if (diagnosis.verdict == ChangeVerdict::partly_explained)
+    text += "; another part of the change remains unexplained";
   return text + ".";
 }
 

@@ -27,15 +27,15 @@ std::string_view reason_of(Veto veto) {
     case Veto::size_uncertain:
       return "the confidence interval for the size of the effect contains zero";
     case Veto::size_beyond_range:
-      return "its size exceeds the range of the signal";
+      return "the size of the effect exceeds the range of the signal";
     case Veto::error_not_reduced:
-      return "it does not reduce the error of the readings";
+      return "the effect does not reduce the error of the readings";
     case Veto::not_predictive:
-      return "it reduces the error where it was fitted but predicts other readings worse";
+      return "the effect reduces the error on the fitted readings but increases the error on other readings";
     case Veto::not_tested:
-      return "the data never meet the condition under which it acts";
+      return "the data never meet the condition under which the effect occurs";
     case Veto::absent_where_required:
-      return "its effect is absent where it must appear";
+      return "the effect is absent under conditions in which it must occur";
   }
   return {};
 }

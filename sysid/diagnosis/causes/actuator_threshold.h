@@ -10,7 +10,8 @@ struct ActuatorThreshold : FormOf<model::ActuatorThreshold> {
   static constexpr WhenChanged when_changed{
       "the finger does not move below a threshold pressure",
       {"Raise the pressure slowly from zero and note the pressure at which the finger starts to move.",
-       "Check whether the bladder sticks together or a fold is creased. Inflate it fully once and repeat."},
+       "Check whether the bladder sticks together or a fold is creased. Inflate the finger fully once and "
+       "repeat the test."},
       {},
       {SizedBy::Of::number, "threshold pressure", "kPa", "threshold_kpa"}};
   static Starts starts(const Scales& s) {

@@ -79,7 +79,8 @@ constexpr CauseForm form() {
   if constexpr (requires { C::found_by_fitting; }) {
     static_assert(!HasStarts<F>, "a cause that is not found by a fit has no start points");
   } else {
-    static_assert(HasStarts<F>, "this form of a cause lacks `static Starts starts(const Scales&)`");
+    static_assert(HasStarts<F>,
+                  "this block form of a cause lacks the function `static Starts starts(const Scales&)`");
     form.starts = &starts_as_blocks<F>;
   }
   if constexpr (requires { F::free_form; }) form.free_form = F::free_form;
@@ -108,7 +109,8 @@ constexpr Cause cause() {
   cause.forms = forms<C>;
   static_assert(
       requires { C::when_changed; },
-      "this cause lacks `static constexpr WhenChanged when_changed`: words and next steps for the operator");
+      "this cause lacks `static constexpr WhenChanged when_changed`, the words and the next steps for the "
+      "operator");
   cause.when_changed = C::when_changed;
   if constexpr (requires { C::id; }) cause.id = C::id;
   if constexpr (requires { C::title; }) cause.title = C::title;
@@ -155,9 +157,9 @@ template <class Block>
 constexpr bool has_its_place() {
   constexpr std::size_t places = causes_with<Block>(causes::All{}) + count_in<Block>(causes::NoCauses{});
   static_assert(places > 0,
-                "no cause has this block as a form: write sysid/diagnosis/causes/<id>.h and list it in "
-                "registry.h (docs/how-to/add-a-cause.md)");
-  static_assert(places < 2, "this block is in more than one place of sysid/diagnosis/causes/registry.h");
+                "no cause uses this block as its form: write sysid/diagnosis/causes/<id>.h and list the new "
+                "cause in registry.h (docs/how-to/add-a-cause.md)");
+  static_assert(places < 2, "sysid/diagnosis/causes/registry.h lists this block more than once");
   return places == 1;
 }
 template <class... Block>
@@ -187,7 +189,7 @@ static_assert(std::all_of(table.begin(), table.end(),
                             return std::all_of(c.counterparts.begin(), c.counterparts.end(), known) &&
                                    std::all_of(c.confounded_with.begin(), c.confounded_with.end(), known);
                           }),
-              "related ids of a cause are ids of causes");
+              "the related ids of a cause must be ids of existing causes");
 
 }  // namespace
 

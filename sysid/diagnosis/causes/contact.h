@@ -12,7 +12,7 @@ struct Contact : FormOf<model::Contact> {
   static constexpr bool is_stop = true;
   static constexpr WhenChanged when_changed{
       "something blocks the finger beyond a position",
-      {"Move the finger by hand through its range and check what it touches.",
+      {"Move the finger by hand through its range and check which objects it touches.",
        "Remove the object or the stop, then record the same log again."},
       {{{HealthNumber::contact, Moves::either_way}}}};
 

@@ -10,7 +10,7 @@ struct PeriodicDisturbance : FormOf<model::PeriodicDisturbance> {
   static constexpr WhenChanged when_changed{
       "the reading oscillates independently of the command",
       {"Switch off neighbouring machines and pumps one by one and watch the reading.",
-       "Check the sensor's shielding and ground; record with the finger vented."},
+       "Check the shielding and the ground of the sensor, and record a log while the finger is vented."},
       {},
       {SizedBy::Of::amplitude, "oscillation of", "mm"}};
   /// Returns one start point for each significant line in the spectrum of the residual.

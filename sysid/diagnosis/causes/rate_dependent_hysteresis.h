@@ -15,8 +15,8 @@ struct RateDependentHysteresis {
   static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{
       "fast motions need more pressure than slow ones",
-      {"Run the same stroke at three speeds and compare the loops.",
-       "Check for rubbing, dried lubricant or a swollen seal, then record again."},
+      {"Run one stroke at three speeds and compare the hysteresis loops.",
+       "Check the finger for rubbing, dried lubricant or a swollen seal, then record again."},
       {{{HealthNumber::loop_width, Moves::up}, {HealthNumber::lag, Moves::up}}}};
 
   /// Form of the cause: an additional hysteresis element whose output relaxes with time.

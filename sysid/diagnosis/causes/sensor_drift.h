@@ -21,7 +21,7 @@ struct SensorDrift {
   static constexpr WhenChanged when_changed{
       "the zero of the sensor drifts",
       {"Leave the finger vented for an hour and read the zero every ten minutes.",
-       "Check the sensor's clamp and cable, and let it warm up before recording."},
+       "Check the clamp and the cable of the sensor, and let the sensor warm up before the recording."},
       {{{HealthNumber::zero, Moves::either_way}, {HealthNumber::contact, Moves::either_way}}},
       {SizedBy::Of::largest, "largest drift of the zero", "mm"}};
 

@@ -13,7 +13,7 @@ struct SensorLag : FormOf<model::SensorLag> {
   static constexpr WhenChanged when_changed{
       "the reading responds more slowly",
       {"Check the filter setting of the sensor or its amplifier.",
-       "Move the target by hand quickly and compare with a second sensor."},
+       "Move the target quickly by hand and compare the reading with that of a second sensor."},
       {{{HealthNumber::lag, Moves::up}}},
       {SizedBy::Of::number, "lag of the sensor", "s", "time_constant_s"}};
 

@@ -15,9 +15,9 @@ struct SensorSaturation : FormOf<model::SensorSaturation> {
   static constexpr std::string_view sensor_shape = "a saturated end";
   static constexpr WhenChanged when_changed{
       "the reading saturates",
-      {"Check whether the sensor is too near or too far: its range must cover the whole stroke.",
-       "Move the target by hand beyond the position of saturation and note the reading."}};
-  /// The lower limit is not fitted. Its value is below all readings.
+      {"Check the distance between sensor and target: the range of the sensor must cover the whole stroke.",
+       "Move the target by hand beyond the position at which the reading saturates, and note the reading."}};
+  /// The lower limit is not fitted. Its value is one that the data do not reach.
   static constexpr std::array<Parameter, 1> fitted{"upper_mm"};
   static constexpr double no_floor_mm = -1e4;
 

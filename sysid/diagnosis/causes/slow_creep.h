@@ -14,7 +14,7 @@ struct SlowCreep : FormOf<model::SlowCreep> {
   static constexpr WhenChanged when_changed{
       "the finger creeps more within minutes",
       {"Hold full pressure for ten minutes and watch the reading.",
-       "Check for a loose mounting or a detached layer. Tighten it and record again."},
+       "Check for a loose mounting or a detached layer. Repair the defect and record again."},
       {{{HealthNumber::creep, Moves::up}}}};
 
   static Starts starts(const Scales& s) {

@@ -12,8 +12,9 @@ struct Stiffening : FormOf<model::Stiffening> {
   static constexpr std::array<std::string_view, 1> counterparts{"sensor_nonlinearity"};
   static constexpr WhenChanged when_changed{
       "the stiffness increases with displacement",
-      {"Bend the vented finger by hand and check whether something is in its way.",
-       "Compare the sensor with a gauge at five positions. If they agree, the finger has changed."}};
+      {"Bend the vented finger by hand and check if an object blocks its motion.",
+       "Compare the sensor with a gauge at five positions. If sensor and gauge agree, the finger has "
+       "changed."}};
 
   static Starts starts(const Scales& s) {
     return every({{"stiffening_per_mm", {-0.3 / s.span_mm, 0.1 / s.span_mm, 0.5 / s.span_mm}}});

@@ -12,8 +12,9 @@ struct StressSoftening {
   static constexpr Appears appears = Appears::displaced;
   static constexpr WhenChanged when_changed{
       "the finger has softened after a large load",
-      {"Check the events for a load above the usual one.",
-       "Leave it vented overnight and record again. If the stiffness recovers, it is not wear."},
+      {"Check the events for a load above the usual load.",
+       "Leave the finger vented overnight and record again. If the stiffness recovers, the cause is not "
+       "wear."},
       {{{HealthNumber::gain, Moves::up}, {HealthNumber::loop_width, Moves::up}}}};
 
   /// Form of the cause: the softening is proportional to the largest pressure so far.

@@ -13,8 +13,9 @@ struct SupplySag : FormOf<model::SupplySag> {
       {"Read the supply gauge while the compressor refills.",
        "Connect other consumers to another line, or set the supply regulator higher, and record again."},
       {{{HealthNumber::pressure_loss, Moves::up}}},
-      {SizedBy::Of::number, "share of a supply loss that reaches the finger", "%", "coupling", 100}};
-  /// The nominal supply pressure is not fitted, because the coupling refers to this pressure.
+      {SizedBy::Of::number, "relative pressure decrease at the finger per relative decrease of the supply",
+       "%", "coupling", 100}};
+  /// The nominal supply is not fitted, because the coupling is defined relative to it.
   static constexpr std::array<Parameter, 1> fitted{"coupling"};
 
   static Starts starts(const Scales& s) {

@@ -16,7 +16,7 @@ struct ValveLag : FormOf<model::ValveLag> {
        "Close the tube of the finger at the valve and step the command. If the pressure there is slow, the "
        "valve is the cause."},
       {{{HealthNumber::lag, Moves::up}}},
-      {SizedBy::Of::number, "more lag of the valve", "s", "time_constant_s"}};
+      {SizedBy::Of::number, "increase of the lag of the valve", "s", "time_constant_s"}};
   static Starts starts(const Scales&) { return every({{"time_constant_s", {0.02, 0.1, 0.3, 0.6}}}); }
 };
 

@@ -180,9 +180,9 @@ std::vector<Condition> conditions_of(const std::vector<Record>& records,
   h.reserve(records.size());
   for (const Record& record : records) h.push_back(history_of(record));
   std::vector<Condition> list;
-  list.push_back(
-      condition("branch", "direction of the pressure", "whether the pressure rises, falls or is constant",
-                samples, [&](std::size_t k, std::size_t i) { return static_cast<double>(h[k].branch[i]); }));
+  list.push_back(condition(
+      "branch", "direction of the pressure", "the direction of the pressure (rising, falling or constant)",
+      samples, [&](std::size_t k, std::size_t i) { return static_cast<double>(h[k].branch[i]); }));
   list.back().categories = {"rest", "loading", "hold", "unloading"};
   list.push_back(condition("cycle", "cycle of the log", "the cycle of the log", samples,
                            [&](std::size_t k, std::size_t i) {
@@ -190,7 +190,8 @@ std::vector<Condition> conditions_of(const std::vector<Record>& records,
                            }));
   for (std::size_t c = 1; c <= most_cycles; ++c)
     list.back().categories.push_back(std::to_string(c) + (c == most_cycles ? "+" : ""));
-  list.push_back(condition("amplitude", "peak of the excursion [kPa]", "the peak of the excursion", samples,
+  list.push_back(condition("amplitude", "peak pressure of the stroke [kPa]",
+                           "the peak pressure of the stroke", samples,
                            [&](std::size_t k, std::size_t i) { return h[k].amplitude_kpa[i]; }));
   list.push_back(condition("rate", "rate of the pressure [kPa/s]", "the rate of the pressure", samples,
                            [&](std::size_t k, std::size_t i) {
@@ -202,7 +203,8 @@ std::vector<Condition> conditions_of(const std::vector<Record>& records,
   list.back().logarithmic = true;
   group_by(list.back(), samples, {"at rest", "under load"},
            [&](std::size_t k, std::size_t i) { return h[k].branch[i] == Branch::hold; });
-  list.push_back(condition("history", "largest pressure so far [kPa]", "the largest load so far", samples,
+  list.push_back(condition("history", "largest pressure up to this time [kPa]",
+                           "the largest pressure up to this time", samples,
                            [&](std::size_t k, std::size_t i) { return h[k].largest_kpa[i]; }));
   const auto position = [&](std::size_t k, std::size_t i) { return prediction_mm[k][i]; };
   const std::string over_position = model::in_unit(
@@ -212,7 +214,8 @@ std::vector<Condition> conditions_of(const std::vector<Record>& records,
   group_by(list.back(), samples, {"loading", "unloading"},
            [&](std::size_t k, std::size_t i) { return h[k].falling[i]; });
   list.push_back(condition(
-      "campaign_time", "time in the campaign [s]", "the time in the campaign", samples,
+      "campaign_time", "time since the start of the logs [s]", "the time since the start of the logs",
+      samples,
       [&](std::size_t k, std::size_t i) { return records[k].campaign_time_s + records[k].time_s[i]; }));
   list.push_back(column("temperature",
                         "temperature [\xc2\xb0"

@@ -31,8 +31,8 @@ void add_branches(const model::Model& model, const std::vector<Record>& records,
     const double moved_mm = largest_kpa / block.values[1 + 2 * b];
     if (moved_mm > spans_of_a_branch * span_mm) {
       signs.push_back({"stiffness_near_zero",
-                       k + " is near zero: at rest, this branch alone would move the finger by " +
-                           significant(moved_mm, 3) + " " + unit + ", and the finger moves by " +
+                       k + " is near zero: in steady state, this branch alone would move the finger by " +
+                           significant(moved_mm, 3) + " " + unit + ", but the finger moves only by " +
                            significant(span_mm, 3) + " " + unit + ".",
                        moved_mm, spans_of_a_branch * span_mm});
     }
@@ -40,7 +40,7 @@ void add_branches(const model::Model& model, const std::vector<Record>& records,
       signs.push_back({"creep_beyond_data",
                        "the time constant " + c + "/" + k + " is " + significant(constants_s[b], 3) +
                            " s, longer than the longest log (" + significant(longest_s, 3) +
-                           " s): the branch represents a drift.",
+                           " s), so the branch represents a drift.",
                        constants_s[b], share_of_log * longest_s});
     }
   }

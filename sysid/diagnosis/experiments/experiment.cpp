@@ -58,8 +58,8 @@ std::string without_pairs(const Diagnosis& d) {
     open += (open.empty() ? "" : ", ") + std::string(named.cause.id);
     for (const Cause& alternative : named.alternatives) open += " or " + std::string(alternative.id);
   }
-  if (open.empty()) return "there are no two explanations to separate";
-  return "no experiment is designed for " + open +
+  if (open.empty()) return "an experiment requires two explanations that it can separate";
+  return "no experiment can be designed for " + open +
          ": these causes belong to a different model structure, and experiments are predicted only for the "
          "structure of the given model";
 }

@@ -15,8 +15,8 @@ bool has(const Cause& cause, Advice advice) {
 }
 
 constexpr const char* vary_temperature =
-    "add a temperature_c column and repeat the run at a different temperature: a gain that depends on it is "
-    "neither wear nor drift";
+    "add a temperature_c column and repeat the run at a different temperature: if the gain depends on the "
+    "temperature, the cause is not wear or drift";
 
 /// Returns advice on the separation of two causes that no waveform can separate.
 std::string instead_of_waveform(const Cause& one, const Cause& other, const std::string& names,
@@ -25,11 +25,12 @@ std::string instead_of_waveform(const Cause& one, const Cause& other, const std:
     return std::string(gauge_made ? "the gauge check was not conclusive: repeat it with more positions over "
                                     "a wider range, or change the load or move the object"
                                   : "change the load or move the object") +
-           ": a nonlinearity that stays at the same reading belongs to the sensor, one that moves with the "
-           "load does not";
+           ": if the nonlinearity stays at the same reading, the sensor causes it; if the nonlinearity moves "
+           "with the load, the sensor does not cause it";
   }
   if (has(one, Advice::leave_vented) && has(other, Advice::leave_vented)) {
-    return "leave the finger vented for an hour and read its zero: no waveform of the menu separates " +
+    return "leave the finger vented for an hour and record the zero of the sensor, because no waveform of "
+           "the menu separates " +
            names;
   }
   return {};
@@ -46,7 +47,8 @@ std::vector<std::string> advice_for(std::string_view one, std::string_view other
   const bool one_in_valve =
       known && (first.station == model::Station::valve) != (second.station == model::Station::valve);
   if (one_in_valve && !facts.pressure_recorded) {
-    advice.push_back("record pressure_kpa, the pressure at the valve: it separates " + names);
+    advice.push_back("record pressure_kpa, the pressure at the valve, because this signal separates " +
+                     names);
   }
   const bool may_be_warmth =
       has(first, Advice::record_temperature) && has(second, Advice::record_temperature);
@@ -58,7 +60,7 @@ std::vector<std::string> advice_for(std::string_view one, std::string_view other
   std::string instead = instead_of_waveform(first, second, names, facts.gauge_made);
   if (instead.empty() && advice.empty()) {
     instead = "no waveform of the menu separates " + names +
-              " within the rig's limits: less noise or a larger pressure is required";
+              " within the limits of the rig: a separation requires less noise or a higher pressure";
   }
   if (!instead.empty()) advice.push_back(std::move(instead));
   return advice;
@@ -73,7 +75,8 @@ std::string gauge_advice(const std::vector<double>& positions_mm, const std::vec
          " give equal readings at all pressures. Place the target at " + std::to_string(distinct.size()) +
          " known positions from " + significant(distinct.front(), 3) + " to " +
          significant(distinct.back(), 3) +
-         " mm, up, down and up again, write the reading of the sensor at each position to " +
+         " mm, in increasing, decreasing and again increasing order. Write the reading of the sensor at each "
+         "position to " +
          gauge_positions_file + ", and diagnose again with --gauge " + gauge_positions_file;
 }
 

@@ -15,7 +15,8 @@ std::string sequence_yaml(const NextExperiment& experiment, const std::string& c
   const JudgedWaveform& best = experiment.best.value();
   return "# Proposed by softgrip diagnose: separates " + enumerated(experiment.separates, " and ") + " by " +
          significant(experiment.predicted_separation_sigma, 3) + " standard deviations (predicted), in " +
-         significant(best.minutes, 3) + " minutes on the rig.\n" + sequence_yaml(best.waveform, channel);
+         significant(best.minutes, 3) + " minutes of motion on the rig.\n" +
+         sequence_yaml(best.waveform, channel);
 }
 
 std::string sequence_yaml(const Waveform& waveform, const std::string& channel) {

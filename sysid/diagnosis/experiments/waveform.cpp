@@ -61,19 +61,20 @@ Waveform rest_and_repeat(const RigLimits& limits) {
 }
 
 Waveform three_rates(const RigLimits& limits) {
-  Pen pen("triangles_three_rates", "one amplitude at three rates over two decades", limits);
+  Pen pen("triangles_three_rates", "strokes of one amplitude at three rates of pressure, over two decades",
+          limits);
   pen.triangles(0.9, 0.3, 6).hold(3).triangles(0.9, 3, 3).hold(3).triangles(0.9, 30, 1);
   return pen.done();
 }
 
 Waveform staircase(const RigLimits& limits) {
-  Pen pen("staircase_with_holds", "steps up and down with holds", limits);
+  Pen pen("staircase_with_holds", "pressure steps up and down with holds", limits);
   for (const double level : {0.2, 0.4, 0.6, 0.8, 1.0, 0.8, 0.6, 0.4, 0.2, 0.0}) pen.to(level, 0.3).hold(5);
   return pen.done();
 }
 
 Waveform minor_loops(const RigLimits& limits) {
-  Pen pen("minor_loops", "small loops inside large ones, loading and unloading", limits);
+  Pen pen("minor_loops", "small pressure loops inside large loops, for loading and unloading", limits);
   pen.to(1, 2);
   for (const double low : {0.7, 0.45, 0.2}) pen.to(low, 1).to(low + 0.25, 1).to(low, 1).to(1, 2);
   pen.to(0, 2);
@@ -89,7 +90,7 @@ Waveform amplitude_ladder(const RigLimits& limits) {
 }
 
 Waveform sharp_steps(const RigLimits& limits) {
-  Pen pen("sharp_steps", "large and small steps at the highest rate that the rig allows", limits);
+  Pen pen("sharp_steps", "large and small pressure steps at the highest rate that the rig permits", limits);
   pen.jump(0.5).hold(3).jump(1).hold(3).jump(0.4).hold(3).jump(0).hold(4);
   pen.jump(0.1).hold(1.5).jump(0.2).hold(1.5).jump(0.1).hold(1.5).jump(0).hold(3);
   pen.jump(1).hold(3).jump(0).hold(4);

@@ -100,9 +100,10 @@ class GaugeReader {
     std::vector<Cell> cells;
     const bool closed = split(line, cells);
     if (cells.size() != count_ || !closed) {
-      report_.add("row", {number, 1}, line,
-                  std::to_string(cells.size()) + " cells where the header has " + std::to_string(count_),
-                  cells.size() == 2 * count_ ? "numbers with a decimal comma?" : "");
+      report_.add(
+          "row", {number, 1}, line,
+          std::to_string(cells.size()) + " cells where the header has " + std::to_string(count_),
+          cells.size() == 2 * count_ ? "if the numbers have a decimal comma, use a decimal point" : "");
       return;
     }
     std::array<double, column_count> values{0, 0, 1};
@@ -143,7 +144,7 @@ class GaugeReader {
     report_.add("positions", {1, 1}, {},
                 std::to_string(distinct) + " different positions: at least " +
                     std::to_string(fewest_gauge_positions) + " are needed",
-                "two positions always fit a straight line");
+                "two positions always fit a straight line, so they cannot show a nonlinearity");
   }
 
   LogReporter report_;

@@ -195,7 +195,7 @@ class Weighing {
     if (brought_in) {
       alternatives.push_back(chosen.cause);
       warnings_.push_back("the logs name " + std::string(chosen.cause.id) +
-                          ", but the gauge contradicts it. The gauge indicates " +
+                          ", but the gauge contradicts this cause. The gauge indicates " +
                           std::string(standing[left.front()].cause.id) +
                           ", which explains these logs less well. Check that nothing was changed between the "
                           "logs and the gauge check");
@@ -227,8 +227,8 @@ class Weighing {
     evidence_.replaced = true;
     if (!left_too_much && leaves_too_much(selection_.left, selection_.base_unexplained, question_.noise_mm)) {
       warnings_.push_back(
-          "the gauge has located the nonlinearity, but its form in the catalogue leaves an unexplained error "
-          "of " +
+          "the gauge has located the nonlinearity, but the block of the catalogue for this nonlinearity "
+          "leaves an unexplained error of " +
           with_unit(selection_.left.excess_mm));
     }
   }
@@ -280,7 +280,7 @@ class Weighing {
              ": the finger or a contact causes the nonlinearity of these readings, not the sensor.";
     }
     return "The gauge check shows that the sensor is " + bend_in_words() +
-           ", as these logs require, within " + with_unit(best.rms_mm) +
+           ", as the nonlinearity in these logs requires, within " + with_unit(best.rms_mm) +
            ": the sensor is the cause, not the finger.";
   }
 
@@ -294,14 +294,16 @@ class Weighing {
     }
     const std::string besides = out.empty() ? "" : " It rules out: " + out + ".";
     if (check.outcome != GaugeOutcome::unexplained) {
-      return "The gauge check does not decide. Its readings fit equally well: " + left + " (" +
-             with_unit(check.noise_mm) +
+      return "The gauge check does not decide between the explanations. Its readings fit these explanations "
+             "equally well: " +
+             left + " (" + with_unit(check.noise_mm) +
              " of noise). Take readings up to the largest reading of the logs and beyond it, take more "
              "readings, or use a better gauge." +
              besides;
     }
     return "The gauge check contradicts all explanations of these logs" +
-           (bent ? ": the sensor is " + bend_in_words() + ", but not as these logs require."
+           (bent ? ": the sensor is " + bend_in_words() +
+                       ", but not in the form that the nonlinearity in these logs requires."
                  : std::string(".")) +
            besides;
   }
@@ -333,8 +335,9 @@ class Weighing {
     if (bent && check.fits[check.best].shape.blocks.empty()) tell_of_bend();
     if (asked_ && !settled && check.outcome == GaugeOutcome::unexplained) {
       warnings_.push_back("the gauge readings fit no explanation of these logs (" +
-                          with_unit(check.fits[check.best].rms_mm) + " remain at best, their noise is " +
-                          with_unit(check.noise_mm) + "): the verdict remains open");
+                          with_unit(check.fits[check.best].rms_mm) +
+                          " remain with the best explanation, but the noise of the gauge readings is " +
+                          with_unit(check.noise_mm) + "), so the verdict remains open");
     }
   }
 
@@ -348,11 +351,11 @@ class Weighing {
   }
 
   void tell_of_bend() {
-    warnings_.push_back(model::in_unit("the gauge check shows that the displacement sensor is " +
-                                           bend_in_words() +
-                                           ", but no named cause explains it. It affects every displacement "
-                                           "in these logs. Calibrate the sensor first",
-                                       question_.file.output_unit));
+    warnings_.push_back(
+        model::in_unit("the gauge check shows that the displacement sensor is " + bend_in_words() +
+                           ", but no named cause explains this nonlinearity. The nonlinearity affects every "
+                           "displacement in these logs. Calibrate the sensor first",
+                       question_.file.output_unit));
   }
 
   const GaugeQuestion& question_;

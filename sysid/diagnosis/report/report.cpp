@@ -60,11 +60,12 @@ void add_next(Page& page, const DiagnosisReport& report) {
   page.list(report.advice);
   if (!report.next_experiment) return;
   const ProposedExperiment& next = *report.next_experiment;
-  page.paragraph("Next experiment: " + (next.waveform.empty() ? "" : next.waveform + ". ") + "It separates " +
-                 with_commas(next.separates) + ": their responses differ by " +
-                 significant(next.predicted_separation_sigma, 3) +
-                 " standard deviations of the noise after each is refitted to the other. " +
-                 significant(next.rig_minutes, 2) + " minutes on the rig; sequence file: " + next.file + ".");
+  page.paragraph(
+      "Next experiment: " + (next.waveform.empty() ? "" : next.waveform + ". ") + "It separates " +
+      with_commas(next.separates) + ": their responses differ by " +
+      significant(next.predicted_separation_sigma, 3) +
+      " standard deviations of the noise, after each explanation is refitted to the response of the other. " +
+      significant(next.rig_minutes, 2) + " minutes of motion on the rig; sequence file: " + next.file + ".");
 }
 
 void add_found(Page& page, const DiagnosisReport& report) {

@@ -30,7 +30,7 @@ void add_other_logs(Page& page, const Diagnosis& d) {
   }
   if (order.size() > logs_shown)
     page.paragraph("The figures show the " + std::to_string(logs_shown) +
-                   " logs with the largest error reduction, of " + std::to_string(order.size()) + ".");
+                   " logs with the largest error reduction, out of " + std::to_string(order.size()) + ".");
 }
 
 void add_conditions(Page& page, const Diagnosis& d) {
@@ -41,9 +41,10 @@ void add_conditions(Page& page, const Diagnosis& d) {
   page.paragraph("The correlation time of the residual is " + significant(e.memory_s, 2) +
                  " s. The tests therefore apply random signs to whole blocks of " +
                  significant(e.block_s, 3) + " s (" + std::to_string(e.blocks) +
-                 " blocks) and count how often the means differ as much by chance. Shares are evaluated on "
-                 "blocks that are not used for the means. They overlap if conditions are correlated. "
-                 "Significant: p < 0.02 and at least 5 % of the residual variance beyond the noise.");
+                 " blocks) and count how often the means differ as much by chance. The share of each "
+                 "condition is evaluated on blocks that are not used for the means. If conditions are "
+                 "correlated, their shares overlap. A dependence is significant if p < 0.02 and the "
+                 "condition explains at least 5 % of the residual variance beyond the noise.");
   if (e.spectrum.why_not.empty() && !is_clear(e.spectrum.p_value, e.spectrum.share_percent))
     page.figure(spectrum_figure(d));
 }

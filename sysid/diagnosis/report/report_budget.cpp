@@ -93,9 +93,9 @@ std::vector<BudgetPart> budget_parts(const Diagnosis& d) {
   const double together = taken - scale * one_by_one;
   // A part below 0.1 % of the bar would not be visible.
   if (together > 1e-3 * budget.recalibrated)
-    parts.push_back({d.causes.empty()
-                         ? (d.base.empty() ? "Explained, but not by a reported cause" : "Another structure")
-                         : "Explained only by several causes together",
+    parts.push_back({d.causes.empty() ? (d.base.empty() ? "Explained, but by causes that are not reported"
+                                                        : "Another structure")
+                                      : "Explained only by the combination of several causes",
                      together, Colour::muted, ""});
   const double noise = std::min(budget.noise, budget.recalibrated - taken);
   parts.push_back({"Unexplained", budget.recalibrated - taken - noise, Colour::error, ""});
@@ -121,16 +121,17 @@ Figure budget_figure(const Diagnosis& d) {
   drawing.markup = canvas.markup();
   drawing.height = static_cast<int>(top + bar_px + 20 + line_px * static_cast<double>(parts.size()));
   drawing.header = {"part", model::in_unit("mean square [mm^2]", unit),
-                    "share of the recalibrated model's [%]", model::in_unit("95 % interval [mm^2]", unit)};
+                    "share of the recalibrated model's error [%]",
+                    model::in_unit("95 % interval [mm^2]", unit)};
   if (moved) drawing.rows.push_back({"given model", shortest(budget.as_given), "", ""});
   drawing.rows.push_back({"recalibrated model", shortest(budget.recalibrated), "100", ""});
   for (const BudgetPart& part : parts)
     drawing.rows.push_back(
         {part.name, shortest(part.mm2), fixed(100 * part.mm2 / budget.recalibrated, 2), part.interval});
   return {"error budget",
-          std::string("Error budget: mean squares of held-out readings.") +
+          std::string("Error budget: mean square errors on held-out readings.") +
               (d.causes.empty() ? ""
-                                : " The part of a cause is the increase of the error when the cause is "
+                                : " The share of a cause is the increase of the error when the cause is "
                                   "removed from the extended model."),
           {},
           std::move(drawing)};

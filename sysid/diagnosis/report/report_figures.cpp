@@ -256,9 +256,12 @@ Figure error_figure(const Diagnosis& d, std::size_t k) {
   charts.back().height = is_extended(d) ? 125 : 170;
   return {
       "error over time " + record.name,
-      record.name + ": measured and predicted displacement, and reading minus prediction. RMSE: " + numbers +
-          "." +
-          (given_far_off ? " The error of the given model is too large to be drawn with the others." : "") +
+      record.name +
+          ": measured and predicted displacement, and the difference between reading and prediction. RMSE: " +
+          numbers + "." +
+          (given_far_off ? " The error of the given model is not drawn, because it is too large for the "
+                           "scale of the figure."
+                         : "") +
           (d.outliers.present ? " Outliers are omitted." : ""),
       stacked(std::move(charts))};
 }
@@ -282,7 +285,8 @@ Figure runs_figure(const Diagnosis& d) {
   chart.marks.push_back({Mark::Direction::horizontal, d.noise_mm, "noise of the readings"});
   return {"error by run",
           std::string("RMSE of each ") + (d.records.size() > 1 ? "run" : "half of the run") +
-              ", predicted by a model that was fitted to the others. The given model is not fitted.",
+              ", predicted by a model that was fitted to the other logs or halves. The given model is not "
+              "fitted.",
           {{chart}}};
 }
 
@@ -300,7 +304,7 @@ Figure loops_figure(const Diagnosis& d, std::size_t k) {
   zoom.x.upper = window.upper_kpa;
   zoom.y.lower = window.lower_mm;
   zoom.y.upper = window.upper_mm;
-  zoom.title = "where they differ most";
+  zoom.title = "where the models differ most";
   const Series measured = curve("measured", Colour::measured, 2.2, record.drive_kpa, record.reading_mm);
   whole.series.push_back(measured);
   zoom.series.push_back(within(measured, window));
@@ -360,13 +364,14 @@ Figure closed_loop_figure(const ClosedLoopCurves& curves) {
 
 Figure conditions_figure(const Diagnosis& d) {
   constexpr std::size_t most = 4;
-  Figure figure{"error by condition",
-                "Mean error with its 95 % interval for each condition on which it significantly depends. "
-                "Positions are predicted, because a reading and its error share their noise." +
-                    std::string(is_extended(d) ? " Dashed: extended model. Where the dashed curve is flat, "
-                                                 "the extended model explains the dependence."
-                                               : ""),
-                {}};
+  Figure figure{
+      "error by condition",
+      "Mean error with its 95 % interval for each condition on which it significantly depends. "
+      "The position is that of the prediction, because a reading and its error contain the same noise." +
+          std::string(is_extended(d) ? " Dashed: extended model. Where the dashed curve is flat, "
+                                       "the extended model explains the dependence."
+                                     : ""),
+      {}};
   std::size_t charts = 0;
   for (const ConditionEvidence& e : d.evidence->recalibrated.conditions) {
     if (!e.condition.why_not.empty() || !e.clear || charts == most) continue;

@@ -85,7 +85,7 @@ Figure forest_figure(const Diagnosis& d) {
     canvas.words({x.px(tick.at), bottom + 14}, Anchor::middle, tick.text);
   }
   canvas.words({(plot_left + plot_right) / 2, bottom + 31}, Anchor::middle,
-               "reduction of the held-out error in per cent");
+               "reduction of the held-out error [%]");
   Drawing drawing;
   drawing.header = {"cause",          "alternative",    "error reduction [%]",
                     "lower 95 % [%]", "upper 95 % [%]", "inclusion"};
@@ -99,7 +99,7 @@ Figure forest_figure(const Diagnosis& d) {
       canvas.words({number_px, y + 4}, Anchor::start, percent_range(*row.gain),
                    row.alternative ? Colour::muted : Colour::text);
     } else {
-      canvas.words({number_px, y + 4}, Anchor::start, "equal for every command", Colour::muted);
+      canvas.words({number_px, y + 4}, Anchor::start, "equal response to every command", Colour::muted);
     }
     if (!row.alternative) canvas.words({inclusion_px, y + 4}, Anchor::end, fixed(row.inclusion, 2));
     std::vector<std::string> cells{
@@ -115,14 +115,14 @@ Figure forest_figure(const Diagnosis& d) {
   drawing.height = static_cast<int>(bottom) + 40;
   const bool alternatives =
       std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.alternative; });
-  return {
-      "error reduction by cause",
-      std::string("Reduction of the held-out error by each cause, with 95 % interval. ") +
-          "Inclusion frequency: share of bootstrap resamples in which the model with the cause is better." +
-          (alternatives ? " Hollow: an alternative that these logs cannot separate from the cause above."
-                        : ""),
-      {},
-      std::move(drawing)};
+  return {"error reduction by cause",
+          std::string("Reduction of the held-out error by each cause, with 95 % interval. ") +
+              "Inclusion frequency: share of bootstrap resamples in which the model with the cause predicts "
+              "better than the model without the cause." +
+              (alternatives ? " Hollow: an alternative that these logs cannot separate from the cause above."
+                            : ""),
+          {},
+          std::move(drawing)};
 }
 
 }  // namespace softgrip::sysid

@@ -11,7 +11,7 @@ namespace softgrip::sysid {
 namespace {
 
 std::string title_of(const GaugeFit& fit) {
-  return fit.shape.blocks.empty() ? "linear sensor" : fit.shape.id() + " as fitted to the logs";
+  return fit.shape.blocks.empty() ? "linear sensor" : fit.shape.id() + " nonlinearity as fitted to the logs";
 }
 
 Colour colour_of(std::size_t hypothesis) {
@@ -21,14 +21,14 @@ Colour colour_of(std::size_t hypothesis) {
 
 Table hypotheses_table(const GaugeCheck& check, model::OutputUnit unit) {
   Table table;
-  table.header = {"hypothesis", model::in_unit("residual [mm]", unit), "log likelihood ratio to the best",
-                  ""};
+  table.header = {"hypothesis", model::in_unit("residual [mm]", unit),
+                  "log likelihood ratio to the best hypothesis", ""};
   table.numeric = {false, true, true, false};
   for (const GaugeFit& fit : check.fits) {
     table.rows.push_back({title_of(fit), significant(fit.rms_mm, 3), significant(fit.behind, 3),
                           fit.ruled_out  ? "ruled out"
                           : fit.explains ? "explains the readings"
-                                         : "does not explain the readings"});
+                                         : "does not explain the gauge readings"});
   }
   return table;
 }
@@ -53,7 +53,7 @@ Chart gauge_chart(const GaugeEvidence& gauge) {
   };
   Chart chart;
   chart.x.label = model::in_unit("position by the gauge [mm]", gauge.file.output_unit);
-  chart.y.label = model::in_unit("reading minus straight line [mm]", gauge.file.output_unit);
+  chart.y.label = model::in_unit("reading minus best straight line [mm]", gauge.file.output_unit);
   for (std::size_t h = 0; h < check.fits.size(); ++h) {
     Series curve = beside(check.fits[h].predicted_mm);
     curve.label = title_of(check.fits[h]);
@@ -75,16 +75,16 @@ void add_gauge_section(Page& page, const GaugeEvidence& gauge) {
   page.paragraph(gauge.sentence);
   page.figure({"gauge check of the sensor",
                "Readings of the sensor at known positions (" + gauge.file.path +
-                   "), relative to the straight line that fits best. Dashed: ruled out. Readings are limited "
-                   "to slightly more than the range of the logs.",
+                   "), relative to the straight line that fits best. Dashed: hypotheses that are ruled out. "
+                   "Only readings in slightly more than the range of the logs are used.",
                {{gauge_chart(gauge)}}});
   page.table(hypotheses_table(check, gauge.file.output_unit));
   page.paragraph("Zero and scale of every hypothesis are fitted to the readings. Noise of a reading: " +
                  significant(check.noise_mm, 2) + " " + std::string(name_of(gauge.file.output_unit)) +
                  " (readings at one position differ by " + significant(check.repeat_noise_mm, 2) +
-                 "). In the comparison of two hypotheses, an error of 20 % of their difference is tolerated "
-                 "in addition to the noise. A hypothesis is ruled out if the most likely one explains the "
-                 "readings and is at least 1000 times as likely (" +
+                 "). In the comparison of two hypotheses, an error of 20 % of the difference between the "
+                 "hypotheses is tolerated in addition to the noise. A hypothesis is ruled out if the most "
+                 "likely hypothesis explains the readings and is at least 1000 times as likely (" +
                  significant(gauge_log_likelihood_needed, 2) + " in log likelihood).");
 }
 

@@ -31,21 +31,21 @@ std::string alternatives_text(const NamedCause& named, const model::Model& exten
   }
   std::string text;
   if (!alike.empty())
-    text = "These logs cannot separate it from " + alike +
+    text = "These logs cannot separate this cause from " + alike +
            ": each of them explains the error equally well within one standard error. ";
   if (!indistinguishable.empty())
-    text += "No command can separate it from " + indistinguishable +
-            ": both make the readings nonlinear in the displacement, one before the load and the other after "
-            "it. The fit of their catalogue forms does not show where the nonlinearity is.";
+    text += "No command can separate this cause from " + indistinguishable +
+            ": each of these causes makes the readings nonlinear in the displacement. A better fit of one of "
+            "them therefore does not show if the nonlinearity is in the finger or in the sensor.";
   return text;
 }
 
 /// Adds a paragraph that states how often the search finds a cause in simulated data that contain no cause.
 void add_null_calibration(Page& page, const NullCalibration& nulls) {
   page.paragraph("The same search was applied to " + std::to_string(nulls.campaigns) +
-                 " simulated campaigns that contain only the recalibrated model and correlated noise. It "
-                 "named a cause in " +
-                 std::to_string(nulls.named) + " of them, with an error reduction of at most " +
+                 " simulated data sets that contain only the recalibrated model and correlated noise. The "
+                 "search named a cause in " +
+                 std::to_string(nulls.named) + " of these data sets, with an error reduction of at most " +
                  fixed(nulls.largest_gain_percent, 1) + " %; p = " + significant(nulls.p_value, 2) +
                  " for the error reduction on the measured logs.");
 }
@@ -54,20 +54,22 @@ void add_errors(Page& page, const Diagnosis& d) {
   page.section("Method and evidence");
   page.paragraph(
       "The given model was evaluated first, then recalibrated (same structure, all parameters fitted), then "
-      "extended cause by cause. Each model was refitted without some blocks and simulated on them from the "
-      "start of the log. Intervals follow from a block bootstrap.");
+      "extended cause by cause. Each model was refitted without some blocks of the logs. Its error was "
+      "evaluated on these blocks, in a simulation from the start of the log. The intervals follow from a "
+      "block bootstrap.");
   page.table(rmse_table(d));
   page.figure(runs_figure(d));
   if (is_extended(d) && d.extended_rmse_mm < d.recalibrated_rmse_mm)
-    page.paragraph("The extended model's held-out error is smaller than the recalibrated one's by " +
-                   range(d.gain, 1) + ".");
+    page.paragraph(
+        "The held-out error of the extended model is smaller than that of the recalibrated model by " +
+        range(d.gain, 1) + ".");
   if (!d.recalibrated_other_logs_rmse_mm || !d.extended_other_logs_rmse_mm || !is_extended(d)) return;
   const double before = *d.recalibrated_other_logs_rmse_mm;
   const double after = *d.extended_other_logs_rmse_mm;
   if (after >= before)
     page.paragraph(
-        "The error reduction does not hold for other logs: with whole logs held out, the error changes "
-        "from " +
+        "The error reduction does not hold for logs that were not fitted: if whole logs are held out, the "
+        "error changes from " +
         significant(before, 3) + " to " + significant(after, 3) + " " +
         std::string(model::name_of(d.extended_model.output_unit)) + ".");
 }
@@ -84,13 +86,16 @@ void add_evidence(Page& page, const Diagnosis& d) {
   std::vector<std::string> signs;
   for (const UnphysicalSign& sign : d.evidence->unphysical) signs.push_back(sign.sentence);
   if (signs.empty()) return;
-  page.paragraph("The refit absorbed part of the effect and made the model unphysical:");
+  page.paragraph(
+      "The recalibration absorbed a part of the effect and made parameters of the model unphysical:");
   page.list(signs);
 }
 
 void add_named(Page& page, const Diagnosis& d) {
   if (!d.partial.empty())
-    page.paragraph("These causes explain part of the error, but too little to be reported as its cause.");
+    page.paragraph(
+        "These causes explain a part of the error, but too small a part to be reported as the cause of the "
+        "error.");
   for (const auto* list : {&d.causes, &d.partial}) {
     for (const NamedCause& named : *list) {
       std::string meaning(model::catalogue()[named.block_type].info.meaning);
@@ -101,9 +106,9 @@ void add_named(Page& page, const Diagnosis& d) {
   }
   if (d.null_calibration) add_null_calibration(page, *d.null_calibration);
   if (d.causes.empty() && d.partial.empty() && d.rejected.empty())
-    page.paragraph("The recalibrated model leaves no unexplained error, so no cause was searched for.");
+    page.paragraph("The recalibrated model explains the logs completely, so no search for a cause was made.");
   if (d.unexplained_error.present)
-    page.paragraph("Unexplained share of the error: " + fixed(d.unexplained_percent, 1) + " %." +
+    page.paragraph("Share of the error that remains unexplained: " + fixed(d.unexplained_percent, 1) + " %." +
                    (d.evidence && is_extended(d)
                         ? " After the extension: " + dependence_sentence(d.evidence->extended)
                         : std::string()));

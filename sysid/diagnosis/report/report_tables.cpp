@@ -34,7 +34,7 @@ std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double
   if (!c.why_not.empty()) return c.why_not;
   if (std::isnan(c.heldout_rmse_mm)) return "worse fit";
   if (c.gain_percent.lower <= 0) return "not significant";
-  if (chosen == nullptr) return "error reduction too small";
+  if (chosen == nullptr) return "the error reduction is too small";
   return "larger error: " + significant(c.heldout_rmse_mm, 3) + " instead of " +
          significant(chosen_rmse_mm, 3) + " " + std::string(model::name_of(unit));
 }
@@ -138,17 +138,18 @@ std::vector<Table> candidate_tables(const Diagnosis& d) {
     }
   }
   if (!d.rejected.empty())
-    tables.push_back(candidate_table(d.rejected, nullptr, d.extended_rmse_mm, d.extended_model.output_unit,
-                                     d.causes.empty() && d.partial.empty()
-                                         ? "Tested causes: none reduced the held-out error sufficiently"
-                                         : "Further causes: none reduced the held-out error sufficiently"));
+    tables.push_back(
+        candidate_table(d.rejected, nullptr, d.extended_rmse_mm, d.extended_model.output_unit,
+                        d.causes.empty() && d.partial.empty()
+                            ? "Tested causes: no cause reduced the held-out error sufficiently"
+                            : "Further causes: no further cause reduced the held-out error sufficiently"));
   return tables;
 }
 
 Table run_table(const Diagnosis& d) {
   Table table;
   table.caption = model::in_unit(
-      "Error of each run, RMSE [mm]; the recalibrated and the extended model are fitted to the others",
+      "RMSE of each run [mm]; the recalibrated and the extended model are fitted to the other runs",
       d.extended_model.output_unit);
   table.header = {"run", "given", "recalibrated", "extended"};
   table.numeric = {false, true, true, true};
@@ -189,7 +190,7 @@ Table cause_parameter_table(const Diagnosis& d, std::size_t most) {
     if (shown < size)
       table.rows.push_back({std::string(named->cause.title),
                             (shown > 0 ? "and " : "none determined: ") + std::to_string(size - shown) +
-                                (shown > 0 ? " more, in the appendix" : " in the appendix")});
+                                (shown > 0 ? " more, listed in the appendix" : " in the appendix")});
   }
   return table;
 }

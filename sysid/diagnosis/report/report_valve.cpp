@@ -43,7 +43,7 @@ void add_valve_section(Page& page, const ValveFindings& in_valve) {
                  " kPa on held-out blocks. The noise of the pressure is " +
                  significant(in_valve.noise_kpa, 2) + " kPa." +
                  (stage.is_far_off() ? " The error exceeds 5 % of the pressure range. The valve does not "
-                                       "match this structure, so no cause is named in it."
+                                       "match this structure, so no cause in the valve is named."
                                      : ""));
   if (!in_valve.named.empty()) page.table(parts_table(in_valve));
 }

@@ -91,9 +91,9 @@ std::optional<std::string> inconsistent_among(const std::vector<Record>& records
   if (!(apart_mm * apart_mm < apart_share * together_mm2)) return std::nullopt;
   const std::string unit(model::name_of(records.front().output_unit));
   return "after recalibration on each log separately, the error of the model is " + significant(apart_mm, 2) +
-         " " + unit + ", and after recalibration on all logs together " +
+         " " + unit + ", but after recalibration on all logs together " +
          significant(std::sqrt(together_mm2), 2) + " " + unit +
-         ". Check that all logs come from one rig and that nothing was changed between them";
+         ". Check that all logs come from one rig and that the rig was not changed between the logs";
 }
 
 std::optional<std::string> why_not_about(const std::vector<Record>& records,
@@ -104,7 +104,8 @@ std::optional<std::string> why_not_about(const std::vector<Record>& records,
     return inconsistent;
   return "the readings do not follow the command: the fitted model explains only " +
          fixed(100 * std::max(0.0, share), 0) +
-         " % of their variance. Check the sensor, its sign, the channel and the units";
+         " % of the variance of the readings. Check the sensor, the sign of its readings, the channel and "
+         "the units";
 }
 
 }  // namespace softgrip::sysid

@@ -114,7 +114,8 @@ class CandidateFitter {
     look_at_the_best();
     if (is_hopeless()) {
       for (Candidate& candidate : candidates_) {
-        if (candidate.why_not.empty()) candidate.why_not = "much larger error than another explanation";
+        if (candidate.why_not.empty())
+          candidate.why_not = "its error is much larger than that of another explanation";
       }
       return std::move(candidates_);
     }
@@ -141,7 +142,7 @@ class CandidateFitter {
       Candidate& candidate = candidates_[i];
       if (candidate.why_not.empty()) {
         fits_[i] = coarse_fits(data_, current_, scans, candidate.cause);
-        if (fits_[i].empty()) candidate.why_not = "no start point led to a fit";
+        if (fits_[i].empty()) candidate.why_not = "the fit failed from every start point";
       }
       if (search_.progress) search_.progress(++tried, candidates_.size());
     });

@@ -69,7 +69,7 @@ class Selector {
         const std::string number = "cause number " + std::to_string(current.causes.size() + 1);
         options_.progress(tried < of
                               ? number + ": tried " + std::to_string(tried) + " of " + std::to_string(of)
-                              : number + ": fits the most promising ones");
+                              : number + ": fits of the most promising candidates");
       };
     }
     std::vector<Candidate> candidates = fit_candidates(data_, current, search);

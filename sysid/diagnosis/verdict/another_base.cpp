@@ -59,7 +59,7 @@ std::optional<std::string> AnotherBase::ask(const Selection& selection, const St
   asked_ = true;
   if (auto inconsistent = inconsistent_among(data_.records, recalibrated, selection.extended.mean_square_mm2))
     return inconsistent;
-  if (question_.progress) question_.progress("search for another base");
+  if (question_.progress) question_.progress("search for another model structure");
   found_ = find_base({data_, selection, question_});
   return std::nullopt;
 }

@@ -41,8 +41,8 @@ void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vecto
       std::any_of(logs.begin(), logs.end(), [](const Log& log) { return !log.pressure_kpa.empty(); });
   if (!measured) {
     warnings.emplace_back(
-        "the logs contain only the commanded pressure: only their nonlinearity separates the effects of the "
-        "valve from those of the actuator");
+        "the logs contain the commanded pressure but no measured pressure, so only their nonlinearity "
+        "separates the effects of the valve from the effects of the actuator");
   }
   for (const Excitation missing : missing_excitation(logs)) warnings.push_back(without(missing));
 }

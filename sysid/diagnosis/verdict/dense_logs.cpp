@@ -16,10 +16,11 @@ bool average_dense(std::vector<Record>& records, std::vector<std::string>& warni
   for (Record& record : records) {
     Record averaged = averaged_to(record, averaged_interval_s);
     if (averaged.size() == record.size()) continue;
-    warnings.push_back(
-        record.name + ": " + significant(1 / record.mean_interval_s(), 3) +
-        " samples per second exceed the bandwidth of a finger: the diagnosis uses means over " +
-        significant(1e3 * averaged.mean_interval_s(), 2) + " ms. Noise and errors refer to these means");
+    warnings.push_back(record.name + ": " + significant(1 / record.mean_interval_s(), 3) +
+                       " samples per second are more than the bandwidth of a finger requires, so the "
+                       "diagnosis uses means over " +
+                       significant(1e3 * averaged.mean_interval_s(), 2) +
+                       " ms. The reported noise and errors are those of these means");
     record = std::move(averaged);
     any = true;
   }

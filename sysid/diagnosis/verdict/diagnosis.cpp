@@ -184,7 +184,7 @@ class Diagnostician {
     for (Record& record : records) record.offset_free = zero_free || record.start_unknown;
     d_.sampling = hide_repeated(records);
     d_.noise_mm = measured_noise_mm(records);
-    if (d_.noise_mm <= 0) return Failure("the readings have no noise: they are not measured data");
+    if (d_.noise_mm <= 0) return Failure("the readings have no noise, so they cannot be measured data");
     d_.outliers = hide_outliers(records, d_.noise_mm);
     if (average_dense(records, d_.warnings)) d_.noise_mm = measured_noise_mm(records);
     use(std::move(records));
@@ -238,8 +238,8 @@ class Diagnostician {
     use(std::move(open));
     d_.recalibrated = std::move(fit);
     d_.warnings.emplace_back(
-        "The logs begin without pressure, but the finger is not settled. The state at their start is "
-        "therefore estimated. The estimate may hide a slow change at the beginning");
+        "The logs begin without pressure, but the finger is still moving. The initial state of each log is "
+        "therefore estimated. This estimate may hide a slow change at the beginning of the log");
     return true;
   }
 

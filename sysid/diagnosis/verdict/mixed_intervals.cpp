@@ -42,7 +42,7 @@ std::vector<std::string> mix_intervals(std::vector<NamedCause>& named, const std
     }
     if (!beside.empty()) {
       sentences.push_back("these logs do not determine whether " + std::string(other.cause.id) +
-                          " is present in addition to " + beside + ": the intervals cover both cases");
+                          " is present in addition to " + beside + ", so the intervals cover both cases");
     }
   }
   return sentences;

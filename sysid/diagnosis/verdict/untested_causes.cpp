@@ -51,10 +51,11 @@ void correct_by_logs(Diagnosis& d, const std::vector<Log>& logs) {
   };
   if (!std::all_of(logs.begin(), logs.end(), is_closed)) return;
   d.warnings.emplace_back(
-      "The command depends on the readings (closed loop) and contains their noise, so a simulation with this "
-      "command is uncertain");
+      "The command depends on the readings (closed loop), so the command contains the noise of the readings. "
+      "A simulation with this command is therefore uncertain");
   if (!std::all_of(logs.begin(), logs.end(), sticks)) return;
-  d.warnings.emplace_back("The phase between command and reading indicates a sticking valve (Horch 1999)");
+  d.warnings.emplace_back(
+      "The phase shift between command and reading indicates a sticking valve (Horch 1999)");
   std::erase_if(d.causes,
                 [](const NamedCause& named) { return named.cause.id == causes::ValveDeadband::id; });
   std::move(d.causes.begin(), d.causes.end(), std::back_inserter(d.partial));

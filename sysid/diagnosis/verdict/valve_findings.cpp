@@ -249,7 +249,7 @@ class Search {
         "at " + significant(lost->highest_kpa, 3) + " kPa " + significant(lost->missing_kpa, 2) +
         " kPa of the command are missing in the measured pressure, for rising and falling commands. Hold "
         "full pressure and close the line after the valve. If the pressure of the finger falls, the finger "
-        "leaks. If it does not, the scale of the valve or of the pressure sensor is wrong";
+        "leaks. If this pressure does not fall, the scale of the valve or of the pressure sensor is wrong";
   }
 
   [[nodiscard]] bool moves_the_finger(const PartEvidence& of) const {

@@ -42,7 +42,7 @@ std::string readings_sentence(const Diagnosis& d) {
   }
   if (d.lead)
     wrong += (wrong.empty() ? "" : ". ") + std::string("The readings are ") + significant(d.lead->lead_s, 3) +
-             " s ahead of their command: the clocks differ";
+             " s ahead of their command, because the clocks differ";
   const std::string those =
       d.outliers.present || d.sampling.present ? "without these readings " : "without that offset ";
   return wrong + "; " + those + "the recalibrated model's error is " + reading(d, d.extended_rmse_mm) + ".";
@@ -54,7 +54,7 @@ std::string stick_slip_sentence(const Diagnosis& d, const std::string& before, c
   return "The model lacks " + listed(d.causes) +
          ": the valve sticks and jumps. The command alone does not determine the times of the jumps, so the "
          "held-out error only falls from " +
-         before + " to " + after + ". With the jump times from the readings, it falls to " +
+         before + " to " + after + ". With the jump times from the readings, the held-out error falls to " +
          reading(d, d.stick_slip->heldout_rmse_mm) + ".";
 }
 
@@ -77,7 +77,7 @@ std::string unexplained_sentence(const Diagnosis& d, const std::string& before, 
   if (d.null_calibration && d.null_calibration->reach_the_gain()) {
     return "The model has an error whose cause cannot be named: " + listed(d.partial) +
            " would lower the held-out error from " + before + " to " + after +
-           ", but the search reaches this reduction in simulated data without a cause, too (p = " +
+           ", but in simulated data without any cause the search reaches this reduction, too (p = " +
            significant(d.null_calibration->p_value, 2) + ").";
   }
   return "The model has an error that no known cause explains completely: with " + listed(d.partial) +
@@ -113,8 +113,8 @@ std::string sentence_of_logs(const Diagnosis& d) {
              " to the noise (" + reading(d, d.noise_mm) + ")" +
              (valve_lacks(d) ? "." : ": nothing to change.");
     case Verdict::recalibrate:
-      return "The structure of the model is right, but its parameters are not: after recalibration, the "
-             "error falls from " +
+      return "The structure of the model is right, but its parameters are wrong: by recalibration, the error "
+             "falls from " +
              significant(d.as_given_rmse_mm, 2) + " to " + before + ".";
     case Verdict::cause_found:
       if (!is_extended(d)) return readings_sentence(d);

@@ -69,7 +69,7 @@ TEST(GaugeFile, SaysWhereItIsWrongAndWhatWasMeant) {
       {header + "0,0\n1,inf\n2,2\n", "gauge.csv:3:3"},
       {header + "0,0\n1,one\n2,2\n", "'one' in column 'displacement_mm' is not a number"},
       {header + "0,0\n1,\n2,2\n", "omit the row if the sensor gave no reading"},
-      {header + "0,0,0,0\n", "numbers with a decimal comma?"},
+      {header + "0,0,0,0\n", "if the numbers have a decimal comma, use a decimal point"},
       {header + "0,0\n1\n2,2\n", "gauge.csv:3:1"},
       {"gauge_mm,displacement_mm,samples\n0,0,1\n1,1,0\n2,2,1\n", "samples must be at least 1"},
   };

@@ -123,7 +123,7 @@ TEST_F(ReportTest, WhatCausesTakeTogetherOnlyIsAPartOfTheBudget) {
   diagnosis.causes = {named("valve_lag", 0.02), named("transport_delay", 0.01)};
   const std::vector<BudgetPart> parts = budget_parts(diagnosis);
   ASSERT_EQ(parts.size(), 5U);
-  EXPECT_EQ(parts[2].name, "Explained only by several causes together");
+  EXPECT_EQ(parts[2].name, "Explained only by the combination of several causes");
   EXPECT_NEAR(parts[2].mm2, 0.02, 1e-12);
 }
 
@@ -257,7 +257,7 @@ TEST_F(ReportTest, OfACauseWithManyParametersThoseThatWereMeasuredAreShown) {
   ASSERT_EQ(table.rows.size(), 3U);
   EXPECT_EQ(table.rows[0][1], "c");
   EXPECT_EQ(table.rows[1][1], "d");
-  EXPECT_EQ(table.rows[2][1], "and 5 more, in the appendix");
+  EXPECT_EQ(table.rows[2][1], "and 5 more, listed in the appendix");
 }
 
 TEST_F(ReportTest, TheClosedLoopIsDrawnOverTime) {

@@ -56,7 +56,7 @@ TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   ASSERT_EQ(diagnosis->causes.size(), 1U);
   EXPECT_EQ(diagnosis->causes.front().cause.id, "transport_delay");
   for (const std::string& text : said) {
-    EXPECT_NE(text, "search for another base");
+    EXPECT_NE(text, "search for another model structure");
     EXPECT_NE(text, "search for stick-slip");
   }
 }

@@ -52,9 +52,8 @@ TEST(MixedIntervals, HoldTheDelayWhereALagIsInQuestion) {
   EXPECT_GT(mixed.upper, true_delay_s);
   ASSERT_EQ(named.sentences.size(), 1U);
   EXPECT_EQ(named.sentences.front(),
-            "these logs do not determine whether valve_lag is present in addition to transport_delay: the "
-            "intervals cover both "
-            "cases");
+            "these logs do not determine whether valve_lag is present in addition to transport_delay, so the "
+            "intervals cover both cases");
 }
 
 }  // namespace
