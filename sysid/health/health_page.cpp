@@ -119,7 +119,7 @@ std::optional<sysid::Chart> chart_of(const FingerHealth& health, std::size_t num
 std::optional<sysid::Chart> chart_beside(const FingerHealth& health, std::size_t number) {
   const sysid::HealthNumberInfo& info = sysid::health_number_infos[number];
   sysid::Series series;
-  series.label = "deviation from the usual difference";
+  series.label = "deviation from the reference difference";
   series.style = sysid::Series::Style::points;
   series.width = 2;
   for (std::size_t p = 0; p < health.points.size(); ++p) {
@@ -148,7 +148,8 @@ std::string slope_text(const FingerHealth& health, std::size_t number) {
   const auto& now_c = health.points.back().temperature_c;
   if (now_c && (*now_c < slope.lowest_c || *now_c > slope.highest_c))
     text += "; the temperature of the last point, " + fixed(*now_c, 1) +
-            " °C, is outside, so half of the extrapolated correction counts as its uncertainty";
+            " °C, is outside this range, so half of the extrapolated correction counts as uncertainty of the "
+            "correction";
   return text;
 }
 
@@ -170,13 +171,14 @@ void add_allowances(sysid::Page& page, const FingerHealth& health, const std::ve
   if (!warm)
     lines.emplace_back("The temperature is not recorded, so its effect is unknown.");
   else if (lines.empty())
-    lines.emplace_back("The temperature is recorded. No indicator is known to depend on it.");
+    lines.emplace_back(
+        "The temperature is recorded, but no indicator is known to depend on the temperature.");
   lines.emplace_back(
       has_peers(health)
-          ? "A change that the other fingers show in the same recordings is not a change of this finger."
-          : "The same recordings contain no healthy finger for a comparison, so a change of the weather that "
-            "is not "
-            "recorded may look like a change of the finger.");
+          ? "If the other fingers show a change in the same recordings, too, this change is not attributed "
+            "to this finger."
+          : "The same recordings contain no other healthy finger for a comparison. An unrecorded change of "
+            "the environment, such as temperature, may therefore look like a change of this finger.");
   page.list(lines);
   for (const SharedChange& change : shared) {
     if (change.stands) page.paragraph(shared_sentence(change));
@@ -191,7 +193,7 @@ void add_suspicion(sysid::Page& page, const Suspicion& suspicion, const std::str
     page.list(suspect.next_steps);
   }
   if (!suspicion.advice.empty()) page.list(suspicion.advice);
-  page.paragraph("Record the commissioning experiment again and diagnose the change:");
+  page.paragraph("Record the commissioning experiment again, and diagnose the change with this command:");
   page.code(settling_command(baseline));
 }
 
@@ -241,16 +243,17 @@ sysid::Page health_page(const FingerHealth& health, const Suspicion& suspicion, 
                    : health.state == FingerState::learning ? sysid::Tone::doubtful
                                                            : sysid::Tone::good);
   const ChartLimits limits = source.options.limits();
-  page.provenance({{"software", sysid::software_and_version()},
-                   {"baseline", source.baseline},
-                   {"full pressure", significant(source.base.full_kpa, 4) + " kPa; the baseline reaches " +
-                                         significant(source.base.full_mm, 4) + " " +
-                                         std::string(name_of(health.output_unit))},
-                   {"false alarms", "one in " + significant(source.options.false_alarm_points, 4) +
-                                        " points of a healthy finger, over all its indicators"},
-                   {"limits", "CUSUM " + significant(limits.cusum, 3) + " with allowance " +
-                                  significant(limits.allowance, 2) + ", single value " +
-                                  significant(limits.single, 3) + " standard deviations"}});
+  page.provenance(
+      {{"software", sysid::software_and_version()},
+       {"baseline", source.baseline},
+       {"full pressure", significant(source.base.full_kpa, 4) + " kPa, but the baseline reaches only " +
+                             significant(source.base.full_mm, 4) + " " +
+                             std::string(name_of(health.output_unit))},
+       {"false alarms", "one in " + significant(source.options.false_alarm_points, 4) +
+                            " points between two false alarms of a healthy finger, over all indicators"},
+       {"limits", "CUSUM " + significant(limits.cusum, 3) + " with allowance " +
+                      significant(limits.allowance, 2) + ", single value " + significant(limits.single, 3) +
+                      " standard deviations"}});
   if (!suspicion.suspects.empty()) add_suspicion(page, suspicion, source.baseline);
   page.section("Indicators");
   add_alarms(page, health);
@@ -262,11 +265,14 @@ sysid::Page health_page(const FingerHealth& health, const Suspicion& suspicion, 
     if (!chart) continue;
     const sysid::HealthNumberInfo& info = sysid::health_number_infos[i];
     std::vector<sysid::Chart> charts{std::move(*chart)};
-    std::string caption = std::string(info.title) + (has_days(health) ? ": median of each day, by recipe."
-                                                                      : ": value of each grip, by recipe.");
+    std::string caption =
+        std::string(info.title) + (has_days(health) ? ": median of all grips of each day, by recipe."
+                                                    : ": value of each grip, by recipe.");
     if (auto beside = chart_beside(health, i)) {
       charts.push_back(std::move(*beside));
-      caption += " Below: difference to the other fingers in the same recordings, minus its usual value.";
+      caption +=
+          " Below: difference from the other fingers in the same recordings, minus the reference value of "
+          "this difference.";
     }
     page.figure({std::string(info.id), caption, sysid::stacked(std::move(charts))});
   }

@@ -39,7 +39,7 @@ std::optional<std::vector<Note>> read_notes(const std::string& path, std::string
     Note note{reader.text("date"), reader.optional_text("finger").value_or(""), action_of(reader)};
     if (reader.good("date") && !looks_like(note.date, "0000-00-00") &&
         !looks_like(note.date, "0000-00-00T00:00:00Z"))
-      reader.report("date", "this is no date in UTC", "2026-11-03, or 2026-11-03T14:30:00Z");
+      reader.report("date", "this is not a date in UTC", "2026-11-03, or 2026-11-03T14:30:00Z");
     notes.push_back(std::move(note));
   }
   top.finish();

@@ -64,7 +64,8 @@ class Baselines {
     if (!problems.empty()) return refuse({{}, problems, campaign.unreadable});
     begin_before_first_command(campaign.logs, false);
     const double full_kpa = largest_command_kpa(campaign.logs);
-    if (!(full_kpa > 0)) return refuse({folder + ": its logs contain no pressure above 0", {}});
+    if (!(full_kpa > 0))
+      return refuse({folder + ": the logs of this baseline contain no pressure above 0", {}});
     return FingerBase{score_base(*model, full_kpa), scoring + sha256(*bytes).substr(0, id_letters)};
   }
   std::nullopt_t refuse(RefusedBaseline refused) {

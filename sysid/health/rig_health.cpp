@@ -56,15 +56,16 @@ std::string change_text(sysid::HealthNumber number, double change, model::Output
 std::string unclear_sentence(const FingerHealth& health, const HealthAlarm& unclear) {
   return "Since " + health.points[unclear.since].label + " " + health.finger + " differs from " +
          with_commas(unclear.beside) +
-         " in another way than before: " + change_text(unclear.number, unclear.change, health.output_unit) +
+         " in a new way: " + change_text(unclear.number, unclear.change, health.output_unit) +
          ". The indicators of the fingers do not yet show which finger has changed.";
 }
 
 std::string shared_sentence(const SharedChange& shared) {
   return "Since " + shared.since + " all fingers of the rig show the same change: " +
-         change_text(shared.number, shared.change, shared.output_unit) + ". Check first what they share: " +
+         change_text(shared.number, shared.change, shared.output_unit) +
+         ". Check first the parts that all fingers share: " +
          (shared.temperature_recorded ? "" : "the temperature (it is not recorded), ") +
-         "the supply, the line before the fingers, and the parts.";
+         "the supply, the common air line and the gripped parts.";
 }
 
 }  // namespace softgrip::sysid::health

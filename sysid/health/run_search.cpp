@@ -46,15 +46,15 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
     return;
   }
   if (recording->unfinished) {
-    scores.skipped.push_back({name, "it is not finished"});
+    scores.skipped.push_back({name, "the recording is not finished"});
     return;
   }
   // A recording of a fault or of a whole day belongs to no sequence, so there are no recordings with which it
   // can be compared.
   if (recording->recipe.empty() && !recording->software_version.empty()) {
     scores.skipped.push_back({name,
-                              "it does not belong to a sequence (with `mode: sequences`, the recorder writes "
-                              "one recording per sequence)"});
+                              "the recording does not belong to a single sequence (with `mode: sequences`, "
+                              "the recorder writes one recording per sequence)"});
     return;
   }
   for (std::size_t c = 0; c < recording->channels.size(); ++c) {
@@ -66,8 +66,8 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
     }
     const model::OutputUnit unit = recording->channels[c].output_unit;
     if (unit != base->base.model.output_unit) {
-      scores.skipped.push_back({name, "its readings are in " + std::string(name_of(unit)) +
-                                          ", and the baseline of `" + finger + "` is in " +
+      scores.skipped.push_back({name, "the readings of the recording are in " + std::string(name_of(unit)) +
+                                          ", but the baseline of `" + finger + "` is in " +
                                           std::string(name_of(base->base.model.output_unit))});
       continue;
     }

@@ -122,7 +122,7 @@ std::string health_sentence(const FingerHealth& health, const Suspicion& suspici
       health.finger + " has changed since " + health.points[alarms.front().since].label + ": ";
   for (std::size_t i = 0; i < alarms.size(); ++i)
     sentence += (i > 0 ? ", " : "") + change_text(alarms[i].number, alarms[i].change, health.output_unit);
-  if (suspicion.suspects.empty()) return sentence + ". No known cause has these signs.";
+  if (suspicion.suspects.empty()) return sentence + ". No known cause has this combination of changes.";
   sentence += ". Possible cause: " + suspicion.suspects.front().words;
   for (std::size_t i = 1; i < suspicion.suspects.size(); ++i)
     sentence += ", or " + suspicion.suspects[i].words;

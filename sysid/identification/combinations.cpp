@@ -56,12 +56,13 @@ std::vector<Combination> combinations_of(const Model& model) {
     list.push_back({"instantaneous_gain_mm_per_kpa", "mm/kPa", "alpha + 1/k0", 0, instantaneous});
     list.push_back({"beta_over_instantaneous_gain", "", "beta / (alpha + 1/k0)", 0,
                     [](const Model& m) { return values_of<model::BoucWen>(m)[1] / instantaneous(m); }});
-    list.push_back({"creep_gain_mm_per_kpa", "mm/kPa", "sum of 1/k of the branches", 0, [](const Model& m) {
-                      const auto& kv = values_of<model::KelvinVoigt>(m);
-                      double sum = 0;
-                      for (std::size_t i = 1; i < kv.size(); i += 2) sum += 1 / kv[i];
-                      return sum;
-                    }});
+    list.push_back(
+        {"creep_gain_mm_per_kpa", "mm/kPa", "sum of 1/k over all creep branches", 0, [](const Model& m) {
+           const auto& kv = values_of<model::KelvinVoigt>(m);
+           double sum = 0;
+           for (std::size_t i = 1; i < kv.size(); i += 2) sum += 1 / kv[i];
+           return sum;
+         }});
   }
   if (hysteresis && values_of<model::BoucWen>(model)[4] == 1) add_hysteresis(list);
   if (creep) add_creep(model, list);

@@ -23,11 +23,11 @@ Estimate estimate_of(const FittedPoint& fit, std::size_t index) {
   e.free = true;
   e.value = std::clamp(p.to_value(fit.z[index]), p.lower, p.upper);
   if (u.without_effect[index]) {
-    e.note = "no effect on these logs";
+    e.note = "the parameter has no effect on these logs";
     return e;
   }
   if (u.at_bound[index]) {
-    e.note = "at the bound of its range";
+    e.note = "the value is at the bound of its range";
     return e;
   }
   const auto i = static_cast<Eigen::Index>(index);
@@ -59,7 +59,7 @@ std::vector<Estimate> parameter_estimates(const FittedPoint& fit) {
     kept.name = model::parameter_path(model, flat);
     kept.unit = model::in_unit(model::parameter_spec(model, flat).unit, model.output_unit);
     kept.value = values[flat];
-    kept.note = "fixed at the start value";
+    kept.note = "the value was fixed at its start value";
     estimates.push_back(std::move(kept));
   }
   return estimates;
@@ -72,8 +72,9 @@ void name_the_sum(std::vector<Estimate>& parameters) {
     e.ci95.reset();
     e.profile95.reset();
     e.identifiable = false;
-    e.note = alpha ? "only alpha + 1/k0 is identifiable; valid for the fixed k0"
-                   : "fixed at the start value: only alpha + 1/k0 is identifiable";
+    e.note =
+        alpha ? "only the sum alpha + 1/k0 is identifiable; this value of alpha is valid for the fixed k0"
+              : "the value was fixed at its start value, because only the sum alpha + 1/k0 is identifiable";
   }
 }
 
@@ -124,7 +125,7 @@ std::vector<Estimate> combination_estimates(const FittedPoint& fit) {
       e.identifiable = (e.ci95->upper - e.ci95->lower) / 2 <=
                        narrow_share * std::max(std::abs(e.value), combination.scale);
     } else {
-      e.note = "depends only on parameters that are fixed or at a bound";
+      e.note = "this quantity depends only on parameters that are fixed or at a bound";
     }
     estimates.push_back(std::move(e));
   }

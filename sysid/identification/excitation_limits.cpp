@@ -43,8 +43,9 @@ std::vector<std::string> excitation_limits(const std::vector<Log>& logs,
       if (estimate.free && std::ranges::any_of(that_need(missing), begins))
         names += (names.empty() ? "" : ", ") + estimate.name;
     }
-    sentences.push_back(without(missing) +
-                        (names.empty() ? "" : "; these parameters need this excitation: " + names));
+    sentences.push_back(
+        without(missing) +
+        (names.empty() ? "" : "; the following parameters require the missing excitation: " + names));
   }
   return sentences;
 }

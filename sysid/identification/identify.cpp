@@ -184,22 +184,23 @@ void add_warnings(Identification& result) {
     result.warnings.push_back(wrong_way_sentence(ratio) + ". Run softgrip diagnose");
   for (const Record& record : result.records) {
     if (record.start_unknown) {
-      result.warnings.push_back(record.name + " does not start from rest: its start state was estimated");
-    } else if (record.offset_free) {
       result.warnings.push_back(record.name +
-                                " does not read 0 at its start: an offset of the sensor was estimated");
+                                " does not start from rest, so the initial state of this log was estimated");
+    } else if (record.offset_free) {
+      result.warnings.push_back(
+          record.name + " does not begin with a reading of 0, so an offset of the sensor was estimated");
     }
   }
   if (result.noise.lag1_correlation > 0.5) {
     result.warnings.push_back("the residuals are correlated (" +
                               significant(result.noise.lag1_correlation, 3) +
-                              " from sample to sample): the readings are equivalent to " +
+                              " from one sample to the next), so the readings are equivalent to " +
                               fixed(result.noise.effective_samples, 0) + " independent samples");
   }
   if (result.multistart.starts >= 5 && result.multistart.share_at_best < 0.2) {
     result.warnings.push_back(
         "only " + fixed(100 * result.multistart.share_at_best, 0) +
-        " % of the starts reached the best fit: a better fit may exist, increase --starts");
+        " % of the start points led to the best fit, so a better fit may exist: increase --starts");
   }
 }
 

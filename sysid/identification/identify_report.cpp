@@ -125,7 +125,7 @@ void add_limits(Page& page, const Identification& r) {
   for (const Estimate& e : r.parameters) {
     const bool kept = !e.free && e.note.find("alpha") == std::string::npos;
     if (!e.identifiable && !kept)
-      items.push_back(e.name + (e.note.empty() ? ": its interval is wide" : ": " + e.note));
+      items.push_back(e.name + (e.note.empty() ? ": the confidence interval is wide" : ": " + e.note));
   }
   for (const LooseDirection& loose : r.loose) {
     std::string text = "Together, ";
@@ -133,8 +133,8 @@ void add_limits(Page& page, const Identification& r) {
       text += (i == 0 ? "" : ", ") + loose.names[i] + " (" + significant(loose.weights[i], 2) + ")";
     }
     items.push_back(text + " may change by " + significant(loose.deviation, 2) +
-                    " in the scale of the fit (logarithms of stiffnesses and dampings), and the error does "
-                    "not increase.");
+                    " in the scale of the fit (logarithms of stiffnesses and dampings) without an increase "
+                    "of the error.");
   }
   if (items.empty()) {
     page.paragraph("Every free parameter is identified by these logs.");
@@ -153,13 +153,13 @@ void add_residuals(Page& page, const Identification& r) {
       fixed(r.noise.effective_samples, 0) + " independent samples (autoregressive model of order " +
       std::to_string(r.noise.coefficients.size()) + ").");
   if (r.huber_mm > 0) {
-    page.paragraph("Robust fit: errors beyond " + significant(r.huber_mm, 3) + " " + unit +
+    page.paragraph("Robust fit: errors larger than " + significant(r.huber_mm, 3) + " " + unit +
                    " count linearly.");
   }
   page.figure({"errors and search",
-               "Autocorrelation of the errors, and the error at the end of each search: " +
+               "Autocorrelation of the errors, and the final error of the search from each start point: " +
                    fixed(100 * r.multistart.share_at_best, 0) + " % of " +
-                   std::to_string(r.multistart.starts) + " starts reached the best fit.",
+                   std::to_string(r.multistart.starts) + " start points led to the best fit.",
                {{correlation_chart(r), multistart_chart(r)}}});
   if (r.exponent_rmse_mm.size() > 1) {
     Table table{"Tested exponents of the hysteresis", {"exponent", "RMSE [" + unit + "]"}, {true, true}, {}};
@@ -174,22 +174,28 @@ void add_residuals(Page& page, const Identification& r) {
 /// structure.
 void add_structure(Page& page, const StructureEvidence& s, model::OutputUnit unit) {
   const std::string fitted = model::in_unit("RMSE fitted [mm]", unit);
-  const std::string held_out = model::in_unit("RMSE held-out blocks [mm]", unit);
+  const std::string held_out = model::in_unit("RMSE on held-out blocks [mm]", unit);
   page.section("Structure");
-  page.paragraph("Every structure was fitted to all readings, and again without each fifth of " +
-                 std::to_string(s.blocks) +
-                 " interleaved blocks. Its errors on the omitted blocks were compared. The simplest "
-                 "structure within one standard error of the best was chosen.");
-  Table tried{
-      "Structures, the simplest first", {"structure", "", fitted, held_out}, {false, false, true, true}, {}};
+  page.paragraph(
+      "Every structure was fitted to all readings, and in addition five times with a different fifth omitted "
+      "of " +
+      std::to_string(s.blocks) +
+      " interleaved blocks. The structures were compared by their errors on the omitted blocks. The simplest "
+      "structure with an error within one standard error of the smallest error was chosen.");
+  Table tried{"Tested structures, the simplest structure first",
+              {"structure", "", fitted, held_out},
+              {false, false, true, true},
+              {}};
   for (const StructureEvidence::Candidate& c : s.candidates) {
     tried.rows.push_back({c.description, c.chosen ? "chosen" : "", significant(c.rmse_mm, 4),
                           significant(c.heldout_rmse_mm, 4)});
   }
   page.table(tried);
   if (!s.ablation.empty()) {
-    Table without{
-        "The chosen structure without one component", {"without", fitted, held_out}, {false, true, true}, {}};
+    Table without{"Error of the chosen structure if one component is removed",
+                  {"without", fitted, held_out},
+                  {false, true, true},
+                  {}};
     for (const StructureEvidence::Ablation& a : s.ablation)
       without.rows.push_back({a.without, significant(a.rmse_mm, 4), significant(a.heldout_rmse_mm, 4)});
     page.table(without);
@@ -224,16 +230,15 @@ std::string verdict_of(const Identification& r) {
   const std::string logs = logs_in_words(r);
   const std::string size =
       "RMSE of " + significant(r.rmse_mm, 3) + " " + std::string(model::name_of(r.model.output_unit)) + ", " +
-      (r.scores.size() == 1 ? significant(largest_percent(r), 2) + " % of its span"
+      (r.scores.size() == 1 ? significant(largest_percent(r), 2) + " % of the span of the log"
                             : "at most " + significant(largest_percent(r), 2) + " % of a log's span");
   if (largest_percent(r) > bad_percent) {
     return "The model does not explain " + logs + ": " + size + ".";
   }
-  std::string text =
-      is_noise(r)
-          ? "The model explains " + logs + " to the noise: " + size + "."
-          : "The model reproduces " + logs + " with an " + size +
-                ", but the remaining error is more than noise. Search for its cause with softgrip diagnose.";
+  std::string text = is_noise(r) ? "The model explains " + logs + " to the noise: " + size + "."
+                                 : "The model reproduces " + logs + " with an " + size +
+                                       ", but the remaining error is larger than the noise. Search for the "
+                                       "cause of this error with softgrip diagnose.";
   if (const double ratio = beta_over_gain(r.fitted); ratio > 1) text += " " + wrong_way_sentence(ratio) + ".";
   if (!r.converged) text += " The search stopped before it converged.";
   return text;
@@ -253,14 +258,14 @@ Page identify_page(const IdentifyReport& report) {
   page.table(score_table(r.records, r.scores));
   if (!r.held_out.empty()) {
     Table table = score_table(r.records, r.held_out);
-    table.caption = "Held-out rest of each log, predicted from its start";
+    table.caption = "Held-out end of each log, predicted by a simulation from the start of the log";
     page.table(table);
   }
   if (r.structure) add_structure(page, *r.structure, r.model.output_unit);
   for (std::size_t i = 0; i < r.scores.size(); ++i) add_log_figures(page, r.records[i], r.scores[i]);
   if (!report.validation.empty()) {
     page.section("Validation");
-    page.paragraph("Logs that were not fitted.");
+    page.paragraph("Prediction of the logs that were not fitted.");
     page.table(score_table(report.validation_records, report.validation));
     for (std::size_t i = 0; i < report.validation.size(); ++i) {
       add_log_figures(page, report.validation_records[i], report.validation[i]);

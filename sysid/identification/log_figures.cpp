@@ -80,7 +80,7 @@ Chart error_by_pressure(const Record& record, const Score& score) {
 
 void add_log_figures(Page& page, const Record& record, const Score& score) {
   page.figure({record.name + " over time",
-               record.name + ": measured against model over time, and their difference.",
+               record.name + ": measured displacement and model over time, and the difference between them.",
                stacked(overlay(record, score))});
   page.figure({record.name + " over pressure",
                record.name + ": hysteresis loops, and the error over the pressure.",

@@ -13,14 +13,14 @@ struct Reason {
 };
 constexpr std::array<Reason, left_out_count> reasons{{
     {"other_channel", "of another channel", false},
-    {"outside_stretch", "outside of --from-s and --to-s", false},
+    {"outside_stretch", "outside the times --from-s and --to-s", false},
     {"empty", "without content", false},
     {"bad_line", "in lines that cannot be read", true},
-    {"cut_off_line", "in the incomplete end of the file", true},
+    {"cut_off_line", "in the incomplete last part of the file", true},
     {"no_time", "without a time", true},
-    {"repeated_time", "at the time of the row before", true},
+    {"repeated_time", "with the time of the previous row", true},
     {"before_command", "before the first command", true},
-    {"hole", "in shorter segments beside a hole", true},
+    {"hole", "in segments that are not the longest one between gaps", true},
 }};
 
 std::size_t sum_of(const RowAccount& account, bool lost_only) {
@@ -51,7 +51,7 @@ double RowAccount::lost_share() const {
 
 std::string RowAccount::sentence() const {
   std::string text = std::to_string(rows) + " rows: " + std::to_string(used) + " used";
-  if (joined > 0) text += ", " + std::to_string(joined) + " joined with a row at the same time";
+  if (joined > 0) text += ", " + std::to_string(joined) + " merged with another row of the same time";
   const std::size_t out = sum_of(*this, false);
   if (out == 0) return text;
   std::string details;

@@ -64,7 +64,7 @@ std::optional<ForeignTable> ArrayCollector::table(const std::string& format,
     } else {
       table.notes.push_back("'" + document::shown(column.name) +
                             "' is skipped: " + std::to_string(column.values.size()) +
-                            " values where others have " + std::to_string(length));
+                            " values, but other arrays have " + std::to_string(length));
     }
   }
   if (most >= 2) return table;

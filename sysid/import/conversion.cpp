@@ -110,7 +110,7 @@ class Converter {
     const std::string all = with_commas(names, [](const std::string& name) { return document::shown(name); });
     refuse(std::string(spec.word) + ": " + (same > 1 ? "more than one column '" : "no column '") +
                document::shown(word) + "'",
-           same > 1       ? "give its number, counted from 1"
+           same > 1       ? "give the number of the column, counted from 1"
            : near.empty() ? "the columns are " + all.substr(0, 400)
                           : "is '" + document::shown(near) + "' meant?");
   }
@@ -320,8 +320,9 @@ class Converter {
         samples[spec.role].push_back(here ? value_at(sources_[role], entry.row) : std::nan(""));
       }
     }
-    remarks_.notes.push_back("each row has " + std::to_string(clocks.size()) +
-                             " times: its values are merged by time, and each time counts as a row");
+    remarks_.notes.push_back(
+        "each row has " + std::to_string(clocks.size()) +
+        " times: the values are merged by time, and each different time counts as one row");
     return samples;
   }
 
@@ -348,7 +349,8 @@ class Converter {
       entries.push_back({now, clock, row});
     }
     const bool apart = clocks_end_s_ < first || last < clocks_begin_s_;
-    if (apart) refuse(name + "does not overlap with the other time", "give one --time COLUMN");
+    if (apart)
+      refuse(name + "does not overlap with the time range of the other column", "give one --time COLUMN");
     clocks_begin_s_ = std::max(clocks_begin_s_, first);
     clocks_end_s_ = std::min(clocks_end_s_, last);
     return !apart;
@@ -379,9 +381,9 @@ class Converter {
     account.used = samples;
     if (!account.balanced()) {
       refuse("the import does not account for all rows: " + account.sentence(),
-             "report this defect of softgrip");
+             "report this error as a defect of softgrip");
     } else if (account.lost_share() > refused_share) {
-      refuse("too few rows are usable: " + account.sentence(),
+      refuse("too few rows can be used: " + account.sentence(),
              remarks_.warnings.empty() ? std::string() : remarks_.warnings.front());
     } else if (account.lost_share() > warned_share) {
       remarks_.warnings.insert(remarks_.warnings.begin(), account.sentence());
@@ -403,15 +405,16 @@ class Converter {
       const std::string name = "the column '" + document::shown(column.name, 40) + "' looks like a time";
       const bool is_time = std::find(times.begin(), times.end(), i) != times.end();
       if (is_time && used.empty()) {
-        remarks_.warnings.push_back(name + " and is not used: --rate-hz takes its place");
+        remarks_.warnings.push_back(name + " and is not used, because --rate-hz replaces this column");
       } else if (is_time && same_clock(table_, mapping_, used.front(), i)) {
-        remarks_.notes.push_back(name + " and contains the same times as the column that is used");
+        remarks_.notes.push_back(name + " and contains the same times as the time column that is used");
       } else if (is_time) {
-        remarks_.warnings.push_back(name + " and is not used: it differs from the time of '" +
+        remarks_.warnings.push_back(name + " and is not used, because its times differ from those of '" +
                                     document::shown(table_.columns[used.front()].name, 40) + "'");
       } else if (names_role(column.name, Role::time) && column.bad_count * 2 > column.values.size()) {
         remarks_.warnings.push_back(name + " and cannot be read ('" +
-                                    document::shown(column.bad.front().text, 30) + "'): it is not used");
+                                    document::shown(column.bad.front().text, 30) +
+                                    "'), so this column is not used");
       }
     }
   }
@@ -433,7 +436,8 @@ class Converter {
         refuse("the rows belong to " + std::to_string(fingers.size()) + " fingers: '" +
                    document::shown(column.name, 40) + "' has " +
                    with_commas(fingers, [](const std::string& finger) { return finger; }),
-               "export the rows of each finger, or a text with this column");
+               "export the rows of each finger to a separate file, or export a text file that contains this "
+               "column");
     }
   }
 
@@ -471,7 +475,7 @@ class Converter {
       const bool scaled = mapped.scale && !angle_of_scale(spec, mapped);
       if (!mapped.unit.empty() && (!mapped.given() || scaled || dates))
         idle("--unit" + word + mapped.unit, !why.empty() ? why
-                                            : scaled     ? "--scale takes its place"
+                                            : scaled     ? "--scale replaces the unit"
                                                          : "the column has dates or times of day");
       if (mapped.scale && !mapped.given()) idle("--scale" + word + shortest(*mapped.scale), why);
       if ((mapped.zero || mapped.zero_first) && (!mapped.given() || time))
@@ -480,14 +484,14 @@ class Converter {
     }
     name_idle_words();
     if (mapping_.separator != 0 && !table_.has_separators)
-      idle("--separator", table_.is_text ? "the file states its own separator" : "the file is not a text");
+      idle("--separator", table_.is_text ? "the file itself states the separator" : "the file is not a text");
     if (!mapping_.sheet.empty() && table_.sheet.empty()) idle("--sheet", "the file is not a workbook");
     if (mapping_.skip_bad_lines &&
         remarks_.account.left_out[static_cast<std::size_t>(LeftOut::bad_line)] == 0)
-      remarks_.notes.emplace_back("--skip-bad-lines: no line was bad");
+      remarks_.notes.emplace_back("--skip-bad-lines had no effect, because all lines are readable");
     const bool cuts = mapping_.from_s > 0 || std::isfinite(mapping_.to_s);
     if (cuts && remarks_.account.left_out[static_cast<std::size_t>(LeftOut::outside_stretch)] == 0)
-      idle("--from-s or --to-s", "all samples are between them");
+      idle("--from-s or --to-s", "all samples are between these two times");
   }
 
   void name_idle_words() {
@@ -503,7 +507,8 @@ class Converter {
       } else if (text_word < table_.missing_cells.size()) {
         cells = table_.missing_cells[text_word++];
       }
-      if (cells == 0) idle("--missing " + document::shown(word, 40), "no used cell contains it");
+      if (cells == 0)
+        idle("--missing " + document::shown(word, 40), "no cell of the used columns contains this text");
     }
   }
 

@@ -423,7 +423,7 @@ def reports():
              columns=coded_truth, says="3 cells of 'tip_mm' with 65535"),
         File("stamps_of_20_ms.csv", "time stamps of 20 ms in a log of 100 Hz, with the rate as an option", table(
             names, [[round(0.02 * (i // 2), 6) for i in range(COUNT)], COMMAND, TIP]), "--rate-hz 100",
-             says="the column 'time_s' looks like a time and is not used: --rate-hz takes its place"),
+             says="the column 'time_s' looks like a time and is not used, because --rate-hz replaces this column"),
         File("cut_off.lvm", "a LabVIEW measurement, cut off", lvm_text[:-20], columns={key: TRUTH[key][:-1] for key in BASIC},
              says="the last line is cut off and left out", left_out={"cut_off_line": 1}),
         File("nul_tail.lvm", "a LabVIEW measurement with NUL bytes at its end", lvm_text.encode() + bytes(100),
@@ -488,7 +488,7 @@ def other_fingers_and_clocks():
         File("own_times.lvm", "a LabVIEW measurement with an X column per channel, with different starts, rates and lengths", own_x,
              columns=late, joined=149, left_out={"empty": 151}, says="channel 2 begins 0.02 s after the first"),
         File("two_lengths.tdms", "LabVIEW TDMS: groups with separate times", tdms.file([
-            tdms.segment("valve", fast), tdms.segment("laser", slow)]), refused="'laser/tip' is skipped: 150 values where others have 300"),
+            tdms.segment("valve", fast), tdms.segment("laser", slow)]), refused="'laser/tip' is skipped: 150 values, but other arrays have 300"),
         File("seconds_and_rest.csv", "seconds and nanoseconds in two columns", table(
             ["stamp_sec", "stamp_nsec", "set_kpa", "tip_mm"], [*stamp, COMMAND, TIP]), tolerance=1e-6,
              says="'stamp_sec' and 'stamp_nsec' are combined into one time"),
@@ -738,7 +738,7 @@ def files():
              left_out={"repeated_time": 240}),
         File("coarser_times.csv", "time stamps of 1 s in a log of 100 Hz",
              table(["time_s", "set_kpa", "tip_mm"], [[i // 100 for i in range(COUNT)], COMMAND, TIP]),
-             refused="too few rows are usable: 300 rows: 3 used, 297 left out (297 at the time of the row before)"),
+             refused="too few rows can be used: 300 rows: 3 used, 297 left out (297 with the time of the previous row)"),
         File("rows_of_commands.csv", "commands in separate rows",
              table(["time_s", "set_kpa", "tip_mm"],
                    [T, [value if i % 10 == 0 else None for i, value in enumerate(COMMAND)],
@@ -756,7 +756,7 @@ def files():
              refused="the times of the columns 'time_a_s', 'time_b_s' differ"),
         File("two_times_chosen.csv", "two times that differ, with one of them as an option",
              table(["time_a_s", "time_b_s", "set_kpa", "tip_mm"], [T, [round(0.5 * t, 6) for t in T], COMMAND, TIP]),
-             "--time time_a_s", says="the column 'time_b_s' looks like a time and is not used: it differs"),
+             "--time time_a_s", says="the column 'time_b_s' looks like a time and is not used, because its times differ"),
         File("fingers.csv", "two fingers in the columns", fingers, refused="the columns belong to 2 fingers: 'left', 'right'"),
         File("fingers_right.csv", "two fingers, one of them selected", fingers, "--channel right", columns=right,
              says="not used: 'P_left (kPa)', 'tip_left (mm)'"),

@@ -177,7 +177,7 @@ class Angles(bench.BenchTest):
     def test_a_recording_in_another_unit_than_its_baseline_is_left_out(self):
         self.softgrip("baseline", "--data", "deg/tp1.csv", "--model", self.in_degrees(TWIN), "--out", "base")
         done = self.softgrip("health", "mm/tp1.csv", "--baseline", "base", expect=3)
-        self.assertIn("its readings are in mm, and the baseline of `` is in deg", done.stderr)
+        self.assertIn("the readings of the recording are in mm, but the baseline of `` is in deg", done.stderr)
 
     def test_logs_of_two_units_are_refused_with_file_and_line(self):
         done = self.softgrip("identify", "--data", "mm/tp1.csv", "deg/sp2.csv", "--out", "out", expect=3)

@@ -84,7 +84,7 @@ class Import(bench.BenchTest):
     def test_the_account_is_said_and_kept(self):
         path = self.foreign("coarse_times.csv")
         done = self.imported(path, "--out", "log.csv", "--yes", "--missing", "888")
-        account = "300 rows: 60 used, 240 left out (240 at the time of the row before)"
+        account = "300 rows: 60 used, 240 left out (240 with the time of the previous row)"
         warnings = [account, "--rate-hz 100 in place of --time keeps every row", "--missing 888 has no effect"]
         for warning in warnings:
             self.assertRegex(done.stderr, f"warning: .*{re.escape(warning)}")

@@ -285,7 +285,7 @@ TEST(RigHealth, ThePageSaysWhatCouldNotBeAllowedFor) {
   const RigHealth judged = rig.judged();
   const std::string html = health_page(judged.fingers[0], {}, {"b", base, {}, {}}).to_html();
   EXPECT_NE(html.find("The temperature is not recorded"), std::string::npos);
-  EXPECT_NE(html.find("contain no healthy finger for a comparison"), std::string::npos);
+  EXPECT_NE(html.find("contain no other healthy finger for a comparison"), std::string::npos);
 }
 
 TEST(RigHealth, ADifferenceThatHasNoOwnerYetIsNoAlarm) {

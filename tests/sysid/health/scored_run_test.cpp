@@ -118,8 +118,8 @@ TEST_F(FoundRuns, WhatIsNotFinishedAndWhatIsOfNoSequenceIsLeftOut) {
   EXPECT_EQ(found.runs[0].run, "1-good");
   EXPECT_EQ(found.runs[0].recipe, "pick 01234567");
   ASSERT_EQ(found.skipped.size(), 2U);
-  EXPECT_EQ(found.skipped[0].why, "it is not finished");
-  EXPECT_NE(found.skipped[1].why.find("not belong to a sequence"), std::string::npos);
+  EXPECT_EQ(found.skipped[0].why, "the recording is not finished");
+  EXPECT_NE(found.skipped[1].why.find("not belong to a single sequence"), std::string::npos);
 }
 
 TEST_F(FoundRuns, OneThatIsNotThereIsLeftOutWithTheReason) {

@@ -159,7 +159,8 @@ TEST_F(Command, IdentifyStatesFirstWhatTheLogsLack) {
   ASSERT_EQ(run("identify --starts 2 --data loading.csv --out result"), 0) << read("err.txt");
   const std::string lines = first_lines(read("out.txt"));
   EXPECT_NE(lines.find("the logs contain no unloading"), std::string::npos) << lines;
-  EXPECT_NE(lines.find("need this excitation: bouc_wen.beta_mm_per_kpa"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("require the missing excitation: bouc_wen.beta_mm_per_kpa"), std::string::npos)
+      << lines;
   EXPECT_NE(nlohmann::json::parse(read("result/identify.json"))["warnings"].dump().find("unloading"),
             std::string::npos);
 }

@@ -23,13 +23,14 @@ TEST(ExcitationLimits, NameTheFreeParametersThatNeedWhatIsMissing) {
       estimate("bouc_wen.alpha_mm_per_kpa", true), estimate("bouc_wen.beta_mm_per_kpa", true),
       estimate("bouc_wen.gamma_per_kpa", false), estimate("kelvin_voigt.k1_kpa_per_mm", true)};
   EXPECT_EQ(excitation_limits({ramp}, parameters),
-            std::vector<std::string>{"the logs contain no unloading: hysteresis cannot be determined; these "
-                                     "parameters need this excitation: "
+            std::vector<std::string>{"the logs contain no unloading: hysteresis cannot be determined; the "
+                                     "following parameters require the missing excitation: "
                                      "bouc_wen.beta_mm_per_kpa"});
   for (double& kpa : ramp.pressure_command_kpa) kpa += 1;
   const std::vector<std::string> both = excitation_limits({ramp}, parameters);
   ASSERT_EQ(both.size(), 2U);
-  EXPECT_NE(both[1].find("need this excitation: kelvin_voigt.k1_kpa_per_mm"), std::string::npos) << both[1];
+  EXPECT_NE(both[1].find("require the missing excitation: kelvin_voigt.k1_kpa_per_mm"), std::string::npos)
+      << both[1];
 }
 
 }  // namespace

@@ -14,10 +14,9 @@ TEST(RowAccount, IsBalancedOnlyWhereEveryRowHasAFate) {
   EXPECT_FALSE(account.balanced());
   account.leave_out(LeftOut::no_time);
   EXPECT_TRUE(account.balanced());
-  EXPECT_EQ(
-      account.sentence(),
-      "10 rows: 6 used, 1 joined with a row at the same time, 3 left out (1 without a time, 2 in shorter "
-      "segments beside a hole)");
+  EXPECT_EQ(account.sentence(),
+            "10 rows: 6 used, 1 merged with another row of the same time, 3 left out (1 without a time, 2 in "
+            "segments that are not the longest one between gaps)");
 }
 
 TEST(RowAccount, RowsThatTheUserLeavesOutAreNotLost) {

@@ -30,7 +30,7 @@ TEST(ArrayCollector, TallAndWideMatricesBecomeColumns) {
   EXPECT_EQ(table->columns[2].name, "wide(1,:)");
   EXPECT_EQ(table->columns[2].values, (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(table->columns[4].unit, "psi");
-  EXPECT_EQ(table->notes, std::vector<std::string>{"'other' is skipped: 5 values where others have 3"});
+  EXPECT_EQ(table->notes, std::vector<std::string>{"'other' is skipped: 5 values, but other arrays have 3"});
 }
 
 TEST(Gunzipped, IsBoundedAndSaysWhatIsWrong) {
