@@ -126,7 +126,7 @@ tl::expected<std::string, std::string> gunzipped(std::string_view bytes, std::si
   if (text.size() > bound)
     return tl::unexpected("after decompression it has more than " + std::to_string(bound) + " bytes");
   if (state == Z_BUF_ERROR) return tl::unexpected(std::string("the gzip file is cut off"));
-  if (state != Z_STREAM_END) return tl::unexpected(std::string("the gzip file is broken"));
+  if (state != Z_STREAM_END) return tl::unexpected(std::string("the gzip file is damaged"));
   return text;
 }
 

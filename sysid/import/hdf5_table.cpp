@@ -139,9 +139,9 @@ void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arr
   if (size[0] == 0 || size[1] == 0) return arrays.pass_over(name, "empty");
   if (!arrays.has_room(size[0], size[1])) return arrays.pass_over(name, too_large);
   if (H5Tget_size(type.get()) > most_type_bytes)
-    return arrays.pass_over(name, "one value has more than 1 MiB");
+    return arrays.pass_over(name, "a single value has more than 1 MiB");
   if (chunk_bytes(dataset, type.get()) > most_chunk_bytes)
-    return arrays.pass_over(name, "its chunks have more than 256 MiB");
+    return arrays.pass_over(name, "the chunks of the dataset have more than 256 MiB");
   if (H5Tget_class(type.get()) == H5T_COMPOUND && rank == 1)
     return collect_members(dataset, type.get(), name, size[0], arrays);
   const std::string matlab_class = attribute_text(dataset, "MATLAB_class");
@@ -163,9 +163,10 @@ void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arr
 /// text.
 std::string foreign_storage(hid_t dataset) {
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
-  if (H5Pget_external_count(creation.get()) > 0) return "its values are in another file (external storage)";
+  if (H5Pget_external_count(creation.get()) > 0)
+    return "the values of the dataset are in another file (external storage)";
   if (H5Pget_layout(creation.get()) == H5D_VIRTUAL)
-    return "its values are in other datasets (virtual dataset)";
+    return "the values of the dataset are in other datasets (virtual dataset)";
   return {};
 }
 

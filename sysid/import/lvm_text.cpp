@@ -114,7 +114,7 @@ class LvmReader {
       for (const std::string& value : values) {
         if (std::isfinite(number(values.front())) && !value.empty() &&
             number(value) != number(values.front()))
-          refuse(line, "the channels have one X column, but differ in " + std::string(key) + ": " +
+          refuse(line, "the channels share one X column, but differ in " + std::string(key) + ": " +
                            values.front() + " and " + value);
         if (!good_) return false;
       }
@@ -125,7 +125,7 @@ class LvmReader {
       const double apart_s = std::abs(seconds(start - starts.front()));
       if (!(apart_s > 0.5 * delta_s)) continue;
       refuse(line,
-             "the channels have one X column, but begin " + significant(apart_s) + " s apart (Date, Time)");
+             "the channels share one X column, but begin " + significant(apart_s) + " s apart (Date, Time)");
       return false;
     }
     return true;
@@ -141,7 +141,7 @@ class LvmReader {
       std::vector<double>& x = table_.columns[2 * k].values;
       for (std::size_t i = begin; i < x.size(); ++i) x[i] += apart_s;
       table_.notes.push_back("channel " + std::to_string(k + 1) + " begins " + significant(apart_s) +
-                             " s after the first (Date, Time)");
+                             " s after the first channel (Date, Time)");
     }
   }
 
@@ -209,9 +209,10 @@ class LvmReader {
       const bool has_time = x[begin] + apart_s > x[begin - 1];
       const double shift = has_time ? apart_s : x[begin - 1] + delta - x[begin];
       for (std::size_t i = begin; i < x.size(); ++i) x[i] += shift;
-      table_.notes.push_back("the times restart in line " + std::to_string(table_.line[begin]) +
-                             (has_time ? ": the section begins at its own Date and Time"
-                                       : ": the section begins one step after the end of the previous one"));
+      table_.notes.push_back(
+          "the times restart in line " + std::to_string(table_.line[begin]) +
+          (has_time ? ": the section begins at the Date and Time of its header"
+                    : ": the section begins one sample interval after the end of the previous section"));
     }
   }
 
@@ -221,7 +222,7 @@ class LvmReader {
           names.size() == table_.columns.size() &&
           std::equal(names.begin(), names.end(), table_.columns.begin(),
                      [](const std::string& name, const TableColumn& c) { return c.name == name; });
-      if (!same) refuse(line, "the columns of this section differ from those of the first");
+      if (!same) refuse(line, "the columns of this section differ from those of the first section");
       return same;
     }
     if (names.size() > most_values / lines_) {
@@ -246,7 +247,7 @@ class LvmReader {
     // Only the last line of a file may have too few cells, because the recording may have been interrupted
     // there.
     if (short_line_ != 0 && !options_.skip_bad_lines) {
-      refuse(short_line_, "too few cells; leave out such lines with --skip-bad-lines");
+      refuse(short_line_, "this line has too few cells; to leave out such lines, use --skip-bad-lines");
       return;
     }
     const std::vector<std::string> cells = cells_of(line, separator_);

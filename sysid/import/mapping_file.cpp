@@ -68,13 +68,13 @@ class MappingReader {
       mapping.separator = separator_named(*word);
       if (mapping.separator == 0)
         map.report("separator", document::in_backticks(*word) + " separates no columns",
-                   "comma, semicolon, tab, space or bar");
+                   "write comma, semicolon, tab, space or bar");
     }
     for (const document::Node* item : map.sequence("missing", false)) mapping.missing.push_back(item->scalar);
     map.finish();
     if (problems_.empty() && !mapping.complete())
       problems_.add(document_.problem({1, 1}, "the mapping is incomplete",
-                                      "time (or rate_hz), displacement, and command or pressure"));
+                                      "required: time (or rate_hz), displacement, and command or pressure"));
     return mapping;
   }
 
@@ -85,10 +85,11 @@ class MappingReader {
       if (item->kind == document::Node::Kind::scalar && !item->scalar.empty()) {
         column.columns.push_back(item->scalar);
       } else {
-        problems_.add(document_.problem(item->at, "a column is its name, or its number counted from 1"));
+        problems_.add(
+            document_.problem(item->at, "give the name of the column, or its number counted from 1"));
       }
     }
-    if (map.good("columns") && column.columns.empty()) map.report("columns", "no column is named");
+    if (map.good("columns") && column.columns.empty()) map.report("columns", "the list of columns is empty");
     column.unit = map.optional_text("unit").value_or("");
     column.scale = map.optional_number("scale", {-1e12, 1e12});
     if (column.scale == 0.0) map.report("scale", "a scale must not be 0");

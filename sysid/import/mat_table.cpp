@@ -63,9 +63,9 @@ bool is_numeric(const matvar_t& variable) {
 const char* what_it_is(const matvar_t& variable) {
   switch (variable.class_type) {
     case MAT_C_CELL:
-      return "an empty cell array, or one that is too deep";
+      return "an empty cell array, or a cell array with too many levels";
     case MAT_C_STRUCT:
-      return "an empty array of structures, or one that is too deep";
+      return "an empty array of structures, or an array with too many levels";
     case MAT_C_CHAR:
       return "a text";
     case MAT_C_SPARSE:

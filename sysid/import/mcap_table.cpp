@@ -168,7 +168,7 @@ class McapReader {
       return;
     }
     if (!scan.good() || (complete && size != inside.size()))
-      return refuse("a chunk is shorter than its stated length");
+      return refuse("a chunk of the file is shorter than the length that its header states");
     if (!packing.empty())
       return refuse("its chunks are compressed with " + document::shown(packing, 20) +
                     ", which is not supported; write it without compression");
@@ -184,7 +184,7 @@ class McapReader {
     scan.skip(sizeof(std::uint16_t));
     std::string_view name = scan.text();
     const std::string_view encoding = scan.text();
-    if (!scan.good()) return refuse("a channel is shorter than its stated length");
+    if (!scan.good()) return refuse("a channel record is shorter than the length that its header states");
     if (name.starts_with('/')) name.remove_prefix(1);
     topics_[id] = {std::string(name), std::string(encoding)};
   }
@@ -254,7 +254,8 @@ class McapReader {
     const auto place = topic.places.try_emplace(name, topic.columns.size());
     if (place.second) {
       if (column_count_++ == most_mcap_columns)
-        return refuse("its messages have more than " + std::to_string(most_mcap_columns) + " keys");
+        return refuse("the messages of the file have more than " + std::to_string(most_mcap_columns) +
+                      " keys");
       topic.columns.emplace_back().name = name;
     }
     if (refused_) return;
@@ -398,9 +399,10 @@ class McapReader {
       return "'" + document::shown(read_[static_cast<std::size_t>(at - offsets_s.begin())].name, 40) + "'";
     };
     refuse("the times '" + document::shown(time.name, 40) + "' of the topics " + topic(least) + " and " +
-               topic(most) + " belong to two clocks: relative to log_time they differ by " +
+               topic(most) +
+               " come from two clocks: relative to log_time, the difference of these times is " +
                significant(*most - *least) + " s",
-           "write the times of one clock, or no times: then log_time is used");
+           "record the times of only one clock. If the messages contain no times, log_time is used");
   }
 
   /// Sorts the rows by time. If the times of a single topic decrease, the order is kept, and order_in_time()

@@ -200,7 +200,7 @@ FingerChoice choose_finger(const ForeignTable& table, const Mapping& given, Prop
       if (other != choice.meant)
         proposal.questions.push_back(
             {"--channel '" + choice.meant + "': a column of finger '" + other + "' is given",
-             "give columns of the same finger"});
+             "give only columns of the selected finger"});
     }
   } else if (choice.fingers.size() > 1) {
     const std::vector<std::string> read = read_fingers(table, choice.fingers);
@@ -238,8 +238,8 @@ void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposa
   if (!of_roles || std::find(of_roles->begin(), of_roles->end(), chosen) == of_roles->end()) {
     proposal.questions.push_back(
         {"the times of the columns " + quoted(words) + " differ",
-         "--time COLUMN selects one of them for all values. If --time is given twice, each time applies to "
-         "the columns that its name or its position indicates"});
+         "use --time COLUMN to select one time column for all values. If --time is given twice, each time "
+         "column applies to the value columns that its name or its position indicates"});
     return;
   }
   time.columns.clear();
@@ -263,10 +263,10 @@ void choose_codes(const ForeignTable& table, Proposal& proposal) {
         const std::string value = shortest(code);
         std::vector<std::string>& missing = proposal.mapping.missing;
         if (std::find(missing.begin(), missing.end(), value) == missing.end()) missing.push_back(value);
-        proposal.warnings.push_back(
-            std::to_string(count) + (count == 1 ? " cell" : " cells") + " of '" +
-            document::shown(column.name, 40) + "' with " + value +
-            ", far from all others, count as missing; --missing NA keeps them as readings");
+        proposal.warnings.push_back(std::to_string(count) + (count == 1 ? " cell" : " cells") + " of '" +
+                                    document::shown(column.name, 40) + "' with " + value +
+                                    ", far from all other values, count as missing; to keep these values as "
+                                    "readings, use --missing NA");
       }
     }
   }
@@ -372,7 +372,7 @@ std::string mapping_table(const ForeignTable& table, const Mapping& mapping) {
   std::string text;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const TableColumn& column = table.columns[i];
-    std::string use = column.is_part_of_time ? "part of the time" : "-";
+    std::string use = column.is_part_of_time ? "the column is a part of the time" : "-";
     for (const RoleSpec& spec : roles) {
       const ColumnMapping& mapped = mapping[spec.role];
       const bool here = std::any_of(mapped.columns.begin(), mapped.columns.end(),

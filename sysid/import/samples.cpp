@@ -102,16 +102,15 @@ std::string about_repeats(const std::vector<double>& time_s, std::size_t repeate
     changes.push_back(i);
   }
   if (steps.empty())
-    return "all rows have the same time; use --rate-hz R in place of --time to derive the times from the row "
-           "numbers";
-  // The first and the last time stamp may occur in fewer rows than the others. The rate is therefore computed
-  // without them.
+    return "all rows have the same time. To compute the times from the row numbers, use --rate-hz R instead "
+           "of --time";
+  // The first and the last time stamp may have fewer rows than the others, so they are not used for the rate.
   const std::size_t rows = changes.size() > 1 ? changes.back() - changes.front() : time_s.size() - 1;
   const double rows_s =
       changes.size() > 1 ? time_s[changes.back()] - time_s[changes.front()] : time_s.back() - time_s.front();
   const double rate = static_cast<double>(rows) / rows_s;
   return std::to_string(repeated) + " of " + std::to_string(time_s.size()) +
-         " rows have the time of the row before: the time stamps have steps of " +
+         " rows have the time of the previous row, because the time stamps have steps of " +
          significant(median_of(std::span<double>(steps))) + " s. If the rows are evenly spaced, --rate-hz " +
          significant(rate) + " in place of --time keeps every row";
 }
@@ -133,12 +132,11 @@ std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSample
   const std::vector<double>& time_s = samples[Role::time];
   for (std::size_t i = 1; i < samples.size(); ++i) {
     if (time_s[i] < time_s[i - 1])
-      return SampleProblem{
-          samples.row[i],
-          "the time goes back, from " + significant(time_s[i - 1], 7) + " s to " + significant(time_s[i], 7) +
-              " s after the first sample",
-          "if the file has two runs, split it here and import each. If the clock was set, use "
-          "--rate-hz R instead of --time"};
+      return SampleProblem{samples.row[i],
+                           "the time goes back, from " + significant(time_s[i - 1], 7) + " s to " +
+                               significant(time_s[i], 7) + " s after the first sample",
+                           "if the file contains two runs, split the file here and import each run. If the "
+                           "clock was set during the recording, use --rate-hz R instead of --time"};
   }
   std::vector<std::size_t> kept;
   std::size_t repeated = 0;
@@ -155,7 +153,7 @@ std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSample
     }
   }
   if (kept.empty())
-    return SampleProblem{0, "no samples between --from-s and --to-s",
+    return SampleProblem{0, "the file has no samples between --from-s and --to-s",
                          "the file lasts " + significant(time_s.back()) + " s"};
   remarks.account.leave_out(LeftOut::repeated_time, repeated);
   if (repeated > 0)
@@ -190,7 +188,8 @@ void complete_drive(ForeignSamples& samples, ImportRemarks& remarks) {
     whole[i] = whole[i - 1];
     ++carried;
   }
-  if (carried > 0) remarks.notes.push_back(counted(carried, "without a command have the previous command"));
+  if (carried > 0)
+    remarks.notes.push_back(counted(carried, "without a command keep the command of the previous sample"));
 }
 
 void cut_at_holes(ForeignSamples& samples, ImportRemarks& remarks) {
@@ -220,7 +219,7 @@ void cut_at_holes(ForeignSamples& samples, ImportRemarks& remarks) {
                           (edges.size() == 3 ? " hole" : " holes") + ": the longest segment is kept, " +
                           significant(time_s[edges[longest]], 6) + " to " +
                           significant(time_s[edges[longest + 1] - 1], 6) +
-                          " s; select another one with --from-s and --to-s: " + others);
+                          " s; to select another segment, use --from-s and --to-s: " + others);
   remarks.account.leave_out(LeftOut::hole, samples.size() - (edges[longest + 1] - edges[longest]));
   keep_range(samples, edges[longest], edges[longest + 1]);
   const double begin_s = samples[Role::time].front();

@@ -16,7 +16,8 @@
 namespace softgrip::sysid {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the values are copied as they are in the file");
+static_assert(std::endian::native == std::endian::little,
+              "the values are copied from the file without a conversion");
 
 constexpr std::size_t lead_in_bytes = 28;
 constexpr std::size_t most_channels = 10'000;
@@ -24,8 +25,9 @@ constexpr std::size_t most_channels = 10'000;
 /// 28 bytes can repeat a long list of channels.
 constexpr std::size_t most_steps = 100'000'000;
 constexpr std::size_t longest_label = 1000;
-constexpr const char* has_daqmx = "has raw values of DAQmx, which need its scales";
-/// Value of the length field of a segment whose recording was not finished.
+constexpr const char* has_daqmx =
+    "has raw values of DAQmx, which cannot be converted without the scales of DAQmx";
+/// Value of the length field of a segment that was not finished.
 constexpr std::uint64_t no_length = ~std::uint64_t{0};
 
 // Flags in the header of a segment.
@@ -291,7 +293,7 @@ class TdmsReader {
     if (!scan.good()) return false;
     if (size == 0 && type != TdmsType::string) return unread_type(type, "values in " + quoted(channel.name));
     if (channel.has_index && channel.type != type)
-      return unread("changes the type of the values in " + quoted(channel.name));
+      return unread("changes the type of the values of the channel in " + quoted(channel.name));
     if (size > 0 && channel.count > (std::uint64_t{1} << 40U)) return false;
     channel.bytes = size == 0 ? scan.value<std::uint64_t>() : channel.count * size;
     channel.type = type;
@@ -332,7 +334,7 @@ class TdmsReader {
       row += size;
       values += size > 0 ? channels_[i].count : 0;
       if (interleaved && (size == 0 || channels_[i].count != channels_[listed_[0]].count))
-        refused = "its interleaved channels have texts, or are not equally long";
+        refused = "the interleaved channels of the segment contain texts, or have different lengths";
     }
     if (!refused.empty() || chunk == 0) return;
     steps_ += listed_.size() * (bytes.size() / chunk + 1);
@@ -412,12 +414,13 @@ class TdmsReader {
       if (channel.type == TdmsType::string && channel.has_index) arrays_.pass_over(channel.name, "a text");
       if (channel.values.empty()) continue;
       if (channel.needs_scale) {
-        arrays_.pass_over(channel.name, "its values are not scaled");
+        arrays_.pass_over(channel.name, "the values of this channel are not scaled");
         continue;
       }
       const std::size_t count = channel.values.size();
       if (channel.first) {
-        arrays_.note("'" + document::shown(channel.name) + "' has time stamps: seconds after the first");
+        arrays_.note("'" + document::shown(channel.name) +
+                     "' has time stamps, which are converted to seconds after the first time stamp");
         channel.unit = "s";
       }
       if (channel.increment_s > 0 && std::isfinite(channel.increment_s)) {
@@ -438,7 +441,7 @@ class TdmsReader {
     std::vector<double> time_s(channel.values.size());
     for (std::size_t i = 0; i < time_s.size(); ++i)
       time_s[i] = start + static_cast<double>(i) * channel.increment_s;
-    arrays_.note("'" + name + "' counts from wf_start_offset in steps of wf_increment");
+    arrays_.note("'" + name + "' is computed from wf_start_offset in steps of wf_increment");
     arrays_.add(name, "s", time_s.size(), 1, time_s);
   }
 

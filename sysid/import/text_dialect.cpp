@@ -266,7 +266,8 @@ std::optional<Dialect> dialect_of(const std::string& file, const TextLines& line
     problems.add({file,
                   {at.number, 1},
                   std::string(at.text.substr(0, 200)),
-                  lines.content.empty() ? "the file is empty" : "no rows of numbers in two or more columns",
+                  lines.content.empty() ? "the file is empty"
+                                        : "the file contains no rows of numbers in two or more columns",
                   lines.content.empty() ? "" : "state the separator of the columns with --separator"});
     return std::nullopt;
   }

@@ -102,7 +102,7 @@ tl::expected<std::string, std::string> utf8_of(std::string_view bytes) {
   if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) {
     text = from_utf16(bytes, bytes.front() == '\xfe');
   } else if (bytes.find('\0') != std::string_view::npos) {
-    return tl::unexpected(std::string("this is not a text and not in a known format"));
+    return tl::unexpected(std::string("this file is not a text file, and its format is not known"));
   } else if (is_utf8(bytes)) {
     if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
     text = bytes;

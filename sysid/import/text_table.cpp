@@ -59,7 +59,7 @@ class RowReader {
     for (std::size_t i = 0; i < skipped_.size() && i < bad_lines_named; ++i)
       lines += (lines.empty() ? "" : ", ") + std::to_string(skipped_[i]);
     table_.notes.push_back("--skip-bad-lines leaves out " + std::to_string(skipped_.size()) +
-                           " lines with another number of cells: " + lines +
+                           " lines with a different number of cells:" + lines +
                            (skipped_.size() > bad_lines_named ? ", ..." : ""));
   }
 
@@ -95,7 +95,7 @@ class RowReader {
                   closed ? std::to_string(cells_.size()) + " cells where the rows above have " +
                                std::to_string(dialect_.width)
                          : std::string("a quotation mark is not closed"),
-                  "leave out and count such lines with --skip-bad-lines");
+                  "to leave out and count such lines, use --skip-bad-lines");
     }
   }
 

@@ -114,7 +114,7 @@ class SheetReader {
       : root_(sheet.document_element()), data_(child_of(root_, "sheetData")), texts_(texts) {}
 
   tl::expected<SheetText, SheetProblem> read() {
-    if (local_name(root_.name()) != "worksheet") fail({1, 1}, "its XML is not a worksheet");
+    if (local_name(root_.name()) != "worksheet") fail({1, 1}, "the XML of the sheet is not a worksheet");
     walk([this](const SheetCell& cell) { survey(cell); });
     full_row_ = first_full_row();
     if (dates_ > 0) walk([this](const SheetCell& cell) { survey_date(cell); });
@@ -164,7 +164,7 @@ class SheetReader {
         if (!at || at->row != row || at->column < next)
           return fail({static_cast<int>(row), static_cast<int>(next + 1)},
                       "row " + std::to_string(row) + " has a cell '" + document::shown(name) + "' where " +
-                          cell_name(row, next) + " or a cell right of it is expected");
+                          cell_name(row, next) + " or a cell to the right of this cell is expected");
         cell.column = at->column;
       }
       if (cell.column >= most_sheet_columns)
@@ -328,7 +328,7 @@ class SheetReader {
       text += written(cell);
       if (text.size() > most_text_bytes)
         fail({static_cast<int>(row), 1},
-             "its text has more than " + std::to_string(most_text_bytes) + " bytes");
+             "the text of the sheet has more than " + std::to_string(most_text_bytes) + " bytes");
     });
     end_row();
     text += '\n';
@@ -358,7 +358,7 @@ class SheetReader {
     for (const pugi::xml_node& merge : child_of(root_, "mergeCells").children())
       merged.add(document::shown(attribute_of(merge, "ref"), 20));
     if (merged.count > 0)
-      note("merged cells have the value only in the first cell", merged.count, merged.list());
+      note("of merged cells, only the first cell has the value", merged.count, merged.list());
   }
 
   void name_hidden() {

@@ -33,7 +33,7 @@ std::size_t tree_bytes(std::string_view text) {
 }  // namespace
 
 tl::expected<void, std::string> load_xml(std::string& text, pugi::xml_document& document) {
-  if (tree_bytes(text) > most_tree_bytes) return tl::unexpected(std::string("it has too many cells"));
+  if (tree_bytes(text) > most_tree_bytes) return tl::unexpected(std::string("the sheet has too many cells"));
   constexpr unsigned options = pugi::parse_default | pugi::parse_embed_pcdata;
   const pugi::xml_parse_result result = document.load_buffer_inplace(text.data(), text.size(), options);
   if (!result)

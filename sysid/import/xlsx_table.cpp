@@ -251,7 +251,7 @@ class WorkbookReader {
     if (with_numbers.size() > 1)
       return refuse(
           std::to_string(with_numbers.size()) + " sheets have rows of numbers: " + listed(with_numbers),
-          "--sheet takes one of them");
+          "to select one sheet, use --sheet");
     if (!found)
       return refuse("no sheet has two rows of numbers in two or more columns",
                     "the sheets are " + listed(names()));

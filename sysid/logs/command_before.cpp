@@ -103,10 +103,10 @@ Log with_command_before(const Log& log, double before_kpa) {
     if (!column->empty()) put_first(*column, column->front());
   }
   for (OtherColumn& other : longer.others) other.cells.insert(other.cells.begin(), std::string());
-  longer.notes.push_back({0, "the log begins at the moment at which the command was set from " +
-                                 significant(before_kpa, 3) + " to " +
-                                 significant(log.pressure_command_kpa.front(), 3) +
-                                 " kPa: a sample with the earlier command was added at its start"});
+  longer.notes.push_back(
+      {0, "the log begins when the command changes from " + significant(before_kpa, 3) + " to " +
+              significant(log.pressure_command_kpa.front(), 3) +
+              " kPa, so a sample with the earlier command was added at the start of the log"});
   return longer;
 }
 

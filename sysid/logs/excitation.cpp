@@ -76,12 +76,13 @@ std::vector<Excitation> missing_excitation(const std::vector<Log>& logs) {
 std::string without(Excitation missing) {
   switch (missing) {
     case Excitation::unloading:
-      return "the logs contain no unloading: hysteresis cannot be determined";
+      return "the logs contain no unloading (decrease of the pressure), so hysteresis cannot be determined";
     case Excitation::rest:
-      return "the logs contain no rest longer than 3 s at zero pressure: creep, softening and drift are hard "
-             "to separate";
+      return "the logs contain no rest longer than 3 s at zero pressure, so creep, softening and drift are "
+             "hard to separate";
     case Excitation::amplitudes:
-      return "the logs contain only one amplitude: effects that depend on the amplitude cannot be determined";
+      return "the logs contain only one amplitude of the pressure, so effects that depend on the amplitude "
+             "cannot be determined";
   }
   return {};
 }

@@ -84,8 +84,9 @@ class Check {
       const double step = log_.time_s[i] - log_.time_s[i - 1];
       if (step > 0) continue;
       if (++found <= 3) {
-        const std::string hint =
-            i > 1 && log_.time_s[i] == 0 ? "two runs in one file? Give them as two logs" : std::string();
+        const std::string hint = i > 1 && log_.time_s[i] == 0
+                                     ? "if the file contains two runs, give each run as a separate log"
+                                     : std::string();
         refuse(i, source_.time_column,
                step == 0 ? "the time " + shortest(log_.time_s[i]) + " s occurs twice"
                          : "the time goes back from " + shortest(log_.time_s[i - 1]) + " s to " +
@@ -101,11 +102,11 @@ class Check {
     const double start = log_.time_s.front();
     if (std::abs(start) > 1.5 * sampling_.median_interval_s) {
       refuse(0, source_.time_column, "the time starts at " + significant(start, 6) + " s",
-             "times count from 0: subtract the first one");
+             "the times of a log must start at 0: subtract the first time");
     }
     if (sampling_.median_interval_s > longest_median_interval_s) {
       refuse(0, source_.time_column, "samples are " + significant(sampling_.median_interval_s) + " s apart",
-             "is the time in milliseconds? Divide by 1000");
+             "if the time is in milliseconds, divide it by 1000");
     }
   }
 
@@ -127,16 +128,17 @@ class Check {
         refuse(i, source_.time_column,
                "a hole of " + significant(interval) + " s in which the command changed by " +
                    significant(change) + " kPa",
-               "cut the log there and give the parts as two logs");
+               "cut the log at this gap and give the two parts as two logs");
       }
     }
     if (gaps > 0) {
-      note(longest, std::to_string(gaps) + " gaps in the sampling, the longest of " + significant(longest_s) +
-                        " s; the command is assumed to be linear across them");
+      note(longest, std::to_string(gaps) + " gaps in the sampling, of which the longest has " +
+                        significant(longest_s) + " s; the command is assumed to be linear during these gaps");
     }
     if (sampling_.jitter_s > 0.01 * sampling_.median_interval_s) {
       note(log_.size(), "irregular sampling: " + significant(1e3 * sampling_.median_interval_s) + " ms ± " +
-                            significant(1e3 * sampling_.jitter_s) + " ms; used as it is, not resampled");
+                            significant(1e3 * sampling_.jitter_s) +
+                            " ms; the log is used without resampling");
     }
   }
 
@@ -158,17 +160,19 @@ class Check {
     const std::size_t y = largest(log_.displacement_mm);
     if (std::abs(log_.pressure_command_kpa[p]) > largest_pressure_kpa) {
       refuse(p, source_.command_column, "a command of " + significant(log_.pressure_command_kpa[p]) + " kPa",
-             "is the column in Pa? Divide by 1000");
+             "if the column is in Pa, divide it by 1000");
     } else if (command_.width() > 0 && std::max(-command_.lowest, command_.highest) < small_pressure_kpa) {
-      note(p, "the command stays below " + significant(small_pressure_kpa) + " kPa: is the column in bar?");
+      note(p, "the command stays below " + significant(small_pressure_kpa) +
+                  " kPa: check if the column is in bar");
     }
     if (std::abs(log_.displacement_mm[y]) > largest_displacement_mm) {
       refuse(y, source_.displacement_column,
              in_unit("a displacement of ") + significant(log_.displacement_mm[y]) + in_unit(" mm"),
              is_code(log_.displacement_mm[y])
-                 ? "if this is a code for a missing reading, leave it out with softgrip import --missing"
-             : log_.output_unit == model::OutputUnit::deg ? "is the column in degrees?"
-                                                          : "is the column in micrometres? Divide by 1000");
+                 ? "if this value is a code for a missing reading, remove it with softgrip import --missing"
+             : log_.output_unit == model::OutputUnit::deg
+                 ? "check if the column is in degrees"
+                 : "if the column is in micrometres, divide it by 1000");
     } else if (const double span = span_mm(log_); span > 0 && span < small_reading(log_.output_unit)) {
       note(y, in_unit("the displacement spans ") + significant(span) + in_unit(" mm: is the column in ") +
                   (log_.output_unit == model::OutputUnit::deg ? "radians?" : "metres?"));
@@ -188,7 +192,7 @@ class Check {
       refuse(at, source_.displacement_column, message,
              "a log must have at least " + std::to_string(fewest_samples) + " readings");
     } else {
-      note(at, message + "; they are simulated but not compared");
+      note(at, message + "; these samples are simulated, but they are not compared with the model");
     }
   }
 
@@ -196,12 +200,13 @@ class Check {
     if (command_.width() <= 0) {
       refuse(0, source_.command_column,
              "the command is " + significant(command_.lowest) + " kPa from start to end",
-             "a model can only be identified from motion");
+             "a model can be identified only from a log in which the pressure changes");
       return;
     }
     if (span_mm(log_) <= 0) {
-      refuse(0, source_.displacement_column, in_unit("the displacement never changes while the command does"),
-             "is the sensor connected?");
+      refuse(0, source_.displacement_column,
+             in_unit("the displacement never changes, although the command changes"),
+             "check if the sensor is connected");
     }
   }
 
@@ -231,10 +236,10 @@ class Check {
     if (clipped == 0) return;
     const double share = static_cast<double>(clipped) / static_cast<double>(log_.size());
     const std::string message = percent(share) + " of the readings remain at the extreme value " +
-                                significant(value, 6) + in_unit(" mm while the command moves");
+                                significant(value, 6) + in_unit(" mm while the command changes");
     if (share > share_refused) {
       refuse(first, source_.displacement_column, message,
-             "the sensor clips: move it, or cut these stretches out of the readings");
+             "the sensor saturates: move the sensor, or remove the readings of these samples");
     } else {
       note(first, message);
     }

@@ -35,12 +35,12 @@ void report_near_miss(const Cell& cell, std::string_view name, std::string_view 
 bool header_is_plausible(std::string_view line, const std::vector<Cell>& cells, LogReporter& report) {
   if (cells.size() == 1 && line.find(';') != std::string_view::npos) {
     report.add("separator", {1, static_cast<int>(line.find(';')) + 1}, line,
-               "the columns are separated by ';'", "a log is separated by ',' with '.' in numbers");
+               "the columns are separated by ';'", "a log requires ',' between columns and '.' in numbers");
     return false;
   }
   if (cells.size() == 1 && line.find('\t') != std::string_view::npos) {
     report.add("separator", {1, static_cast<int>(line.find('\t')) + 1}, line,
-               "the columns are separated by tabs", "a log is separated by ','");
+               "the columns are separated by tabs", "a log requires ',' between columns");
     return false;
   }
   if (std::all_of(cells.begin(), cells.end(), [](const Cell& c) { return to_number(c.text).has_value(); })) {
@@ -67,7 +67,7 @@ std::string hint_of_missing(std::string_view column, const std::vector<std::stri
   const auto angle = std::find_if(names.begin(), names.end(),
                                   [](const std::string& name) { return name.starts_with("angle"); });
   if (column == reading_columns.front().name && angle != names.end())
-    return "is it '" + *angle + "'? A bending angle is 'angle_deg' or 'angle_rad'";
+    return "is it '" + *angle + "'? For a bending angle, use 'angle_deg' or 'angle_rad'";
   const std::string near = document::nearest(column, names);
   return near.empty() ? std::string() : "is it '" + near + "'?";
 }

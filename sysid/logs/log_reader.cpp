@@ -37,7 +37,7 @@ double read_cell(const KnownColumn& known, std::string_view name, const Cell& ce
   }
   if (!std::isfinite(*value)) {
     report.add("not finite", at, line, "'" + std::string(text) + "' in column " + column,
-               known.may_be_empty ? "leave the cell empty where there was no reading" : "");
+               known.may_be_empty ? "if there was no reading, leave the cell empty" : "");
     return no_reading;
   }
   return *value;
@@ -69,7 +69,9 @@ class RowReader {
       report_.add("row", {line_number, 1}, line,
                   std::to_string(cells_.size()) + " cells where the header has " +
                       std::to_string(header_.names.size()),
-                  cells_.size() == 2 * header_.names.size() ? "numbers with a decimal comma?" : "");
+                  cells_.size() == 2 * header_.names.size()
+                      ? "if the numbers have a decimal comma, use a decimal point"
+                      : "");
       return;
     }
     if (!closed) {
@@ -137,7 +139,7 @@ void check_channel(const RowReader& rows, const LogHeader& header, const LogOpti
   if (header.channel < 0) {
     if (!options.channel.empty()) {
       report.add("channel", at, header_line,
-                 "channel '" + options.channel + "' was requested, and the log has no channel column");
+                 "channel '" + options.channel + "' was requested, but the log has no column 'channel'");
     }
     return;
   }
@@ -159,8 +161,8 @@ bool is_text(std::string_view text, LogReporter& report) {
   if (zero == std::string_view::npos) return true;
   const auto line = static_cast<int>(std::count(text.begin(), text.begin() + static_cast<long>(zero), '\n'));
   const bool wide = text.size() > 1 && (text[0] == '\xff' || text[0] == '\xfe');
-  report.add("binary", {line + 1, 1}, {}, "a byte 0: this is not a CSV text",
-             wide ? "it looks like UTF-16: save it as UTF-8" : "");
+  report.add("binary", {line + 1, 1}, {}, "the file contains a byte 0, so it is not a CSV text",
+             wide ? "the file seems to be in UTF-16: save it as UTF-8" : "");
   return false;
 }
 

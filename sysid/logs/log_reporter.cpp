@@ -21,7 +21,8 @@ void LogReporter::finish() {
     problems_.add({file_,
                    last.first,
                    last.second,
-                   kind + ": " + std::to_string(counts_[kind] - shown) + " more, the last one here",
+                   kind + ": " + std::to_string(counts_[kind] - shown) +
+                       " more problems of this kind, the last one here",
                    {}});
   }
   last_.clear();

@@ -78,12 +78,14 @@ void check_measured_pressure(const Log& log, std::vector<std::string>& warnings)
   if (sums.correlation() < clear_correlation) return;
   const double slope = sums.slope();
   if (const std::string units = pressure_units_apart(slope); !units.empty())
-    warnings.push_back("the measured pressure is " + significant(slope, 3) + " times the command, as " +
-                       units +
-                       " are: if the unit of one of them is wrong, state it with `softgrip import --unit`");
+    warnings.push_back(
+        "the measured pressure is " + significant(slope, 3) + " times the command, with the same factor as " +
+        units +
+        " have: if the unit of one column is wrong, state the right unit with `softgrip import --unit`");
   constexpr int clearly_before = -2;
   if (best_lag(log.pressure_command_kpa, log.pressure_kpa) <= clearly_before)
-    warnings.emplace_back("the measured pressure precedes its command: the two columns may be swapped");
+    warnings.emplace_back(
+        "the measured pressure changes before its command, so the two columns may be swapped");
 }
 
 const std::vector<double>& drive_of(const Log& log) {
@@ -124,9 +126,9 @@ void check_response(const Log& log, std::vector<std::string>& warnings) {
   const double share = loop_share(drive, log.displacement_mm);
   if (correlation > clear_correlation && share < clear_loop_backwards)
     warnings.push_back(
-        "the reading precedes the pressure (its loops run backwards and enclose " +
+        "the reading changes before the pressure (the hysteresis loops run backwards and enclose " +
         significant(-100 * share, 2) +
-        " % of their bounding rectangle): the columns of pressure and displacement may be swapped");
+        " % of their bounding rectangle), so the columns of pressure and displacement may be swapped");
 }
 
 void check_free_motion(const Log& log, std::vector<std::string>& warnings) {
@@ -137,16 +139,16 @@ void check_free_motion(const Log& log, std::vector<std::string>& warnings) {
   if (holding == 0) return;
   warnings.push_back("the finger holds a part in " +
                      significant(100 * static_cast<double>(holding) / static_cast<double>(log.size()), 2) +
-                     " % of the rows (column result): a model of free motion cannot be fitted to them or "
-                     "tested with them; record a run without contact");
+                     " % of the rows (column result): a model of free motion cannot be fitted to or tested "
+                     "with these rows; record a run without contact");
 }
 
 /// Returns a text about a column: its name, its largest value, and the option that states the probable unit.
 std::string state_unit(const PressureColumn& column, const ColumnExtent& p, const char* unit) {
   const double largest = -p.lowest > p.highest ? p.lowest : p.highest;
-  return " The largest value of `" + column.name + "` is " + significant(largest, 3) +
-         ". State its unit: `softgrip import --unit " + column.role + "=" + unit + "`, or `(" + unit +
-         ")` in its header";
+  return ". The largest value of `" + column.name + "` is " + significant(largest, 3) +
+         ". State the unit of this column: `softgrip import --unit " + column.role + "=" + unit + "`, or `(" +
+         unit + ")` in its header";
 }
 
 void judge_unit_of_pressure(const Log& log, const PressureColumn& column,
@@ -159,19 +161,22 @@ void judge_unit_of_pressure(const Log& log, const PressureColumn& column,
       log.output_unit == model::OutputUnit::deg ? large_gain_deg_per_kpa : large_gain_mm_per_kpa;
   if (largest < small_as_mpa) {
     warnings.push_back("the pressure stays below " + significant(small_pressure_kpa) +
-                       " kPa: MPa, bar or V in a column taken for kPa?" + state_unit(column, *p, "MPa"));
+                       " kPa: check if the values are in MPa, bar or V instead of kPa" +
+                       state_unit(column, *p, "MPa"));
   } else if (largest < small_pressure_kpa) {
     warnings.push_back("the pressure stays below " + significant(small_pressure_kpa) +
-                       " kPa: bar or V in a column taken for kPa?" + state_unit(column, *p, "bar"));
+                       " kPa: check if the values are in bar or V instead of kPa" +
+                       state_unit(column, *p, "bar"));
   } else if (largest < small_as_psi && y && y->width() > large_gain * p->width()) {
-    warnings.push_back("the pressure stays below " + significant(small_as_psi) +
-                       " kPa, and the finger moves by " +
-                       model::in_unit(significant(y->width() / p->width(), 3) + " mm", log.output_unit) +
-                       " per kPa: psi in a column taken for kPa?" + state_unit(column, *p, "psi"));
+    warnings.push_back(
+        "the pressure stays below " + significant(small_as_psi) + " kPa, and the finger moves by " +
+        model::in_unit(significant(y->width() / p->width(), 3) + " mm", log.output_unit) +
+        " per kPa: check if the values are in psi instead of kPa" + state_unit(column, *p, "psi"));
   } else if (largest > large_pressure_kpa) {
-    warnings.push_back("the pressure reaches " + significant(largest) +
-                       " kPa, which no soft finger withstands: Pa or mbar in a column taken for kPa?" +
-                       state_unit(column, *p, largest < small_as_mbar ? "mbar" : "Pa"));
+    warnings.push_back(
+        "the pressure reaches " + significant(largest) +
+        " kPa, which no soft finger withstands: check if the values are in Pa or mbar instead of kPa" +
+        state_unit(column, *p, largest < small_as_mbar ? "mbar" : "Pa"));
   }
 }
 
@@ -187,15 +192,17 @@ void check_spans(const Log& log, std::vector<std::string>& warnings) {
   if (const auto y = extent_of(log.displacement_mm); y && y->width() > 0) {
     if (y->width() < small_reading(unit))
       warnings.push_back(model::in_unit("the displacement spans ", unit) + significant(y->width()) +
-                         (unit == OutputUnit::deg ? " deg: radians or V in a column taken for deg?"
-                                                  : " mm: metres or V in a column taken for mm?"));
+                         (unit == OutputUnit::deg
+                              ? " deg: check if the values are in radians or V instead of deg"
+                              : " mm: check if the values are in metres or V instead of mm"));
     if (y->width() > large_displacement_mm)
       warnings.push_back(model::in_unit("the displacement spans ", unit) + significant(y->width()) +
-                         (unit == OutputUnit::deg ? " deg: counts or degrees in a column taken for radians?"
-                                                  : " mm: micrometres in a column taken for mm?"));
+                         (unit == OutputUnit::deg
+                              ? " deg: check if the values are in counts or degrees instead of radians"
+                              : " mm: check if the values are in micrometres instead of mm"));
   }
   if (const auto t = extent_of(log.temperature_c); t && t->lowest > 200)
-    warnings.emplace_back("the temperature is above 200 C: kelvin?");
+    warnings.emplace_back("the temperature is above 200 C: check if the values are in kelvin");
 }
 
 }  // namespace
@@ -210,9 +217,10 @@ std::vector<std::string> plausibility_warnings(const Log& log, const PressureCol
   if (log.size() > 1) {
     const double interval = sampling_of(log).median_interval_s;
     if (interval > slow_sampling_s)
-      warnings.push_back("samples are " + significant(interval) + " s apart: ms in a column taken for s?");
+      warnings.push_back("samples are " + significant(interval) +
+                         " s apart: check if the times are in ms instead of s");
     if (interval < 1e-5)
-      warnings.push_back("samples are " + significant(interval) + " s apart: is the unit of the time right?");
+      warnings.push_back("samples are " + significant(interval) + " s apart: check the unit of the time");
   }
   return warnings;
 }
@@ -241,7 +249,7 @@ std::vector<std::string> plausibility_warnings_among(const std::vector<Log>& log
                                     [&](const Log& log) { return same_samples(log, logs[i]); });
     if (first != logs.begin() + static_cast<std::ptrdiff_t>(i))
       warnings.push_back(logs[i].name + ": the same samples as " + first->name +
-                         "; repeated samples make the intervals too narrow");
+                         ", and repeated samples make the confidence intervals too narrow");
   }
   std::vector<double> clear = gains;
   std::erase(clear, 0);

@@ -178,7 +178,8 @@ void Page::figure(Figure figure) {
   const std::string title = "Figure " + std::to_string(number) + ".";
   const std::string svg = svg_of(figure);
   if (body_.size() + svg.size() + kept_for_text > most_bytes) {
-    paragraph(title + " " + figure.caption + " It is left out to keep this page small; --figures writes it.");
+    paragraph(title + " " + figure.caption +
+              " This figure is omitted to keep the page small; --figures writes this figure to a file.");
   } else {
     body_ += "<figure id=\"f" + std::to_string(number) + "\">" + svg + "<figcaption><b>" + title + "</b> " +
              escaped(figure.caption);

@@ -47,7 +47,7 @@ std::string chosen_by_means(const std::vector<Record>& averaged) {
   double mean_s = 0;
   for (const Record& record : averaged) mean_s = std::max(mean_s, record.mean_interval_s());
   return "more than " + std::to_string(enough_readings) +
-         " readings: the structure was chosen with means over " + significant(1e3 * mean_s, 2) +
+         " readings, so the structure was chosen with means over " + significant(1e3 * mean_s, 2) +
          " ms, and its parameters were fitted to all samples";
 }
 
@@ -113,10 +113,10 @@ void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Id
   result.model = with_valve(result.fitted, stage);
   if (stage.is_far_off()) {
     result.warnings.push_back(
-        "a dead time and a lag do not describe the valve: the error between command and measured pressure "
-        "is " +
+        "a model of dead time and lag does not describe the valve: the error between this model and the "
+        "measured pressure is " +
         significant(stage.rmse_kpa, 3) + " kPa RMS, " + significant(stage.rmse_percent, 2) +
-        " % of its range");
+        " % of the pressure range");
   }
   result.structure->valve = std::move(valve);
 }
@@ -127,7 +127,8 @@ void add_warnings(Identification& result) {
     result.warnings.push_back(wrong_way_sentence(ratio) + ". Run softgrip diagnose");
   for (const Record& record : result.records) {
     if (record.start_unknown)
-      result.warnings.push_back(record.name + " does not start from rest: its start state was estimated");
+      result.warnings.push_back(record.name +
+                                " does not start from rest, so the initial state of this log was estimated");
   }
 }
 
@@ -152,7 +153,8 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
   std::size_t readings = 0;
   for (const Record& each : result.records) readings += each.readings;
   if (readings < fewest_readings)
-    return Failure("only " + std::to_string(readings) + " readings to fit: too few to choose a structure (" +
+    return Failure("only " + std::to_string(readings) +
+                   " readings to fit, which is too few to choose a structure (" +
                    std::to_string(fewest_readings) + " are needed)");
 
   StructureChoiceOptions choice_options;

@@ -308,7 +308,7 @@ FitPoint fit_from(const NonlinearNumbers* near, const StructureTrial& trial,
 std::string_view name_of(Ingredient ingredient) {
   constexpr std::array<std::string_view, all_ingredients.size()> names{
       "hysteresis",
-      "play operators (Bouc-Wen instead)",
+      "play operators (replaced by Bouc-Wen)",
       "creep",
       "slow creep",
       "dependence of creep on pressure",
@@ -317,7 +317,7 @@ std::string_view name_of(Ingredient ingredient) {
       "a second lag",
       "a rate limit",
       "delay and lag",
-      "a regulator's overlap (a lag instead)",
+      "a regulator with overlap (replaced by a lag)",
       "a separate time constant for venting",
       "nonlinear characteristic and envelopes",
       "a resonance",
@@ -393,7 +393,7 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
     offer_extended(limited, options.threads, choice);
   }
   if (options.drive == Drive::command) {
-    say("a regulator instead of the lag");
+    say("trying a regulator instead of the lag");
     offer_extended(regulated, options.threads, choice);
   }
   if (options.dynamics) {
@@ -423,7 +423,7 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
   std::vector<WithoutIngredient> ablation;
   const StructureTrial& chosen = choice.trials[choice.chosen];
   if (chosen.structure.published) return ablation;
-  if (options.progress) options.progress("removing one component after the other");
+  if (options.progress) options.progress("removing one component at a time");
   for (const Ingredient ingredient : ingredients) {
     if (!has(chosen.structure, ingredient)) continue;
     ablation.push_back({ingredient, {}});

@@ -313,7 +313,7 @@ def measurements():
         File("stamps.tdms", "LabVIEW TDMS: time stamps, a text, integers", tdms.file([tdms.segment("log", stamps)]),
              says="'log/comment' is skipped: a text", tolerance=1e-6),
         File("waveform.tdms", "LabVIEW TDMS: waveforms", tdms.file([tdms.segment("log", steps)]),
-             says="'wf_time' counts from wf_start_offset in steps of wf_increment"),
+             says="'wf_time' is computed from wf_start_offset in steps of wf_increment"),
         File("cut_off.tdms", "LabVIEW TDMS, interleaved and cut off", tdms.file([tdms.segment("log", times, interleaved=True)])[:-100 * 24 - 5],
              columns={key: TRUTH[key][:199] for key in BASIC}, says="the file is cut off", left_out={"cut_off_line": 1}),
         File("daqmx.tdms", "LabVIEW TDMS: raw values of DAQmx", whole[:4] + bytes([whole[4] | 128]) + whole[5:],
@@ -388,7 +388,7 @@ def reports():
             ["Date", *names[1:]], [[(datetime.datetime(2024, 5, 31) + datetime.timedelta(seconds=t)).isoformat(
                 timespec="milliseconds") for t in step_back], COMMAND, TIP]), refused="date_corrected.csv:152:1: the time goes back"),
         File("blank_commands.xlsx", "a workbook with a command in every third row", workbooks.book(blanks),
-             columns=BASIC_OF | thirds, says="200 samples without a command have the previous command"),
+             columns=BASIC_OF | thirds, says="200 samples without a command keep the command of the previous sample"),
         File("late_command.csv", "readings before the first command",
              table(names, [T, [None] * 10 + COMMAND[10:], TIP]), columns={key: without(set(range(10)))[key] for key in BASIC},
              says="10 samples before the first command left out", left_out={"before_command": 10}),
@@ -418,7 +418,7 @@ def reports():
              columns={"time_s": [i / 100 for i in range(10 * COUNT)], "pressure_command_kpa": COMMAND * 10,
                       "displacement_mm": slow * 10}, says="95.0 % of the samples have no reading"),
         File("code_minus_1000.csv", "-1000 for missing readings", table(names, [T, COMMAND, coded[-1000]]),
-             columns=coded_truth, says="3 cells of 'tip_mm' with -1000, far from all others, count as missing"),
+             columns=coded_truth, says="3 cells of 'tip_mm' with -1000, far from all other values, count as missing"),
         File("code_65535.csv", "65535 for missing readings", table(names, [T, COMMAND, coded[65535]]),
              columns=coded_truth, says="3 cells of 'tip_mm' with 65535"),
         File("stamps_of_20_ms.csv", "time stamps of 20 ms in a log of 100 Hz, with the rate as an option", table(
@@ -440,7 +440,7 @@ def reports():
         File("short_rows.csv", "three rows without their last cell, skipped",
              "\n".join(line.rsplit(",", 1)[0] if i in (40, 41, 200) else line for i, line in enumerate(PLAIN.split("\n"))),
              "--skip-bad-lines", columns={key: without({39, 40, 199})[key] for key in BASIC}, left_out={"bad_line": 3},
-             says="leaves out 3 lines with another number of cells: 41, 42, 201"),
+             says="leaves out 3 lines with a different number of cells: 41, 42, 201"),
         *other_fingers_and_clocks(),
         File("idle_sheet.mcap", "an MCAP recording with options of other formats", exported(bytes),
              "--channel left --sheet Run --separator tab", columns=MEASURED, left_out={"other_channel": 300},
@@ -482,9 +482,9 @@ def other_fingers_and_clocks():
              refused="the rows belong to 2 fingers: 'run.finger' has 1, 2"),
         File("finger_readings.csv", "readings in a column called finger", readings, "--displacement finger --unit displacement=mm"),
         File("two_steps.lvm", "a LabVIEW measurement without X columns, with 2 rates", one_x.replace("0,01\t0,01", "0,01\t0,02"),
-             refused="the channels have one X column, but differ in Delta_X: 0,01 and 0,02"),
+             refused="the channels share one X column, but differ in Delta_X: 0,01 and 0,02"),
         File("two_starts.lvm", "a LabVIEW measurement without X columns, with 2 starts", one_x.replace("50,938\t\n", "51,138\t\n"),
-             refused="the channels have one X column, but begin 0.2 s apart"),
+             refused="the channels share one X column, but begin 0.2 s apart"),
         File("own_times.lvm", "a LabVIEW measurement with an X column per channel, with different starts, rates and lengths", own_x,
              columns=late, joined=149, left_out={"empty": 151}, says="channel 2 begins 0.02 s after the first"),
         File("two_lengths.tdms", "LabVIEW TDMS: groups with separate times", tdms.file([
@@ -536,7 +536,7 @@ def signals(stamp):
              says="the messages of 2 topics are merged by 'header.stamp.sec'"),
         File("signals_apart.mcap", "MCAP: a topic per signal, with a sensor clock that counts from its start", mcap(
             stamped("/valve", "set_kpa", COMMAND) + stamped("/laser", "tip_mm", TIP, begin=1717156000)),
-             refused="of the topics 'laser' and 'valve' belong to two clocks: relative to log_time they differ by 1.717e+09 s"),
+             refused="of the topics 'laser' and 'valve' come from two clocks: relative to log_time, the difference of these times is 1.717e+09 s"),
         File("signals_back.mcap", "MCAP: a topic per signal, with a clock that steps back", mcap(
             stamped("/valve", "set_kpa", COMMAND)[100:] + [(name, t + 10, content) for name, t, content in both[:100]]
             + stamped("/laser", "tip_mm", TIP)), refused="the time goes back"),
@@ -647,7 +647,7 @@ def files():
              table(["time_s", "set_kpa", "tip_mm"], [T, broken_bar, TIP]),
              columns={key: TRUTH[key] for key in BASIC} | {"pressure_command_kpa": [
                  COMMAND[49] if i == 50 else value for i, value in enumerate(COMMAND)]},
-             says="have the previous command"),
+             says="keep the command of the previous sample"),
         File("duplicates.csv", "rows that occur twice",
              PLAIN.replace("\n1.5,", "\n1.49,61,99\n1.5,"), says="1 sample with the time of the previous sample left out",
              left_out={"repeated_time": 1}),
@@ -689,7 +689,7 @@ def files():
              "--time 1 --command 2 --displacement 3 --unit time=s --unit command=kPa --unit displacement=mm"),
         File("one_section.lvm", "a LabVIEW measurement", lvm("One", 1)),
         File("sections.lvm", "a LabVIEW measurement in 3 sections", lvm("One", 3),
-             says="the section begins one step after the end of the previous one"),
+             says="the section begins one sample interval after the end of the previous section"),
         File("counted.lvm", "a LabVIEW measurement without X columns", lvm("No", 1)),
         File("old.mat", "MATLAB 4", matlab_4("time_s", T) + matlab_4("set_bar", scaled(COMMAND, BAR))
              + matlab_4("tip_mm", TIP)),
@@ -744,7 +744,7 @@ def files():
                    [T, [value if i % 10 == 0 else None for i, value in enumerate(COMMAND)],
                     [None if i % 10 == 0 else tip for i, tip in enumerate(TIP)]]),
              columns={"time_s": T, "pressure_command_kpa": held, "displacement_mm": [
-                 math.nan if i % 10 == 0 else tip for i, tip in enumerate(TIP)]}, says="have the previous command"),
+                 math.nan if i % 10 == 0 else tip for i, tip in enumerate(TIP)]}, says="keep the command of the previous sample"),
         File("rows_at_one_time.csv", "command and reading in two rows of one time",
              "time_s,set_kpa,tip_mm\n" + "".join(f"{t!r},{c!r},\n{t!r},,{y!r}\n" for t, c, y in pairs), joined=300),
         File("two_times.csv", "separate times of the command and of the reading",
@@ -766,14 +766,14 @@ def files():
              refused="--channel 'thumb': the file has no column 'channel'"),
         File("codes.csv", "999 for missing readings", table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, coded]),
              columns=BASIC_OF | {"displacement_mm": [math.nan if v == 999 else v for v in coded]},
-             says="3 cells of 'tip_mm' with 999, far from all others, count as missing"),
+             says="3 cells of 'tip_mm' with 999, far from all other values, count as missing"),
         File("nul_tail.csv", "NUL bytes after the last line", PLAIN.encode() + bytes(512),
              says="512 NUL bytes at the end of the file are left out"),
         File("extra_separator.csv", "a separator at the end of each row of numbers", PLAIN.replace("\n", ",\n").replace(
             "tip_mm,\n", "tip_mm\n")),
         File("bad_lines.csv", "a row with a word and a row with a cell too many, both skipped",
              changed(changed(PLAIN, 120, ",", ",,"), 77, "0.75,", "0.75x,"), "--skip-bad-lines",
-             columns={key: values for key, values in without({75, 118}).items() if key in BASIC}, says="--skip-bad-lines leaves out 1 lines with another number of cells: 120",
+             columns={key: values for key, values in without({75, 118}).items() if key in BASIC}, says="--skip-bad-lines leaves out 1 lines with a different number of cells: 120",
              left_out={"bad_line": 2}),
         File("idle_options.csv", "options without an effect", PLAIN,
              "--missing 888 --unit supply=bar --to-s 100", says="--missing 888 has no effect"),
@@ -814,7 +814,7 @@ def files():
         *measurements(),
         *reports(),
         File("noise.bin", "random bytes", bytes((i * i * 31 + 7 * i) % 251 for i in range(3000)),
-             refused="not a text and not in a known format"),
+             refused="this file is not a text file, and its format is not known"),
     ]
 
 

@@ -191,7 +191,7 @@ class Bombs(bench_files.Files):
         many = f"<worksheet><sheetData>{'<row/>' * 20_000_000}</sheetData></worksheet>"
         repeated = "<worksheet><sheetData>" + "<row><c t='s'><v>0</v></c></row>" * 500_000 + "</sheetData></worksheet>"
         for sheet, strings, reason in ((huge, [], "after decompression the workbook has more than 536870912 bytes"),
-                                       (many, [], "it has too many cells"),
+                                       (many, [], "the sheet has too many cells"),
                                        (repeated, ["x" * 30_000], "the sheet has more than 536870912 bytes of text")):
             packed = workbooks.package({"Run": sheet}, strings)
             self.assertLess(len(packed), 4 << 20)
@@ -232,7 +232,7 @@ class Bombs(bench_files.Files):
         self.limited("import", "bomb.h5", "--yes", "--out", "from_h5.csv", code=0)
         said = (self.folder / "from_h5.import.yaml").read_text()
         self.assertIn("'rows' is skipped", said)
-        self.assertIn("'chunk' is skipped: its chunks have more than 256 MiB", said)
+        self.assertIn("'chunk' is skipped: the chunks of the dataset have more than 256 MiB", said)
 
 
 class OtherFiles(bench_files.Files):

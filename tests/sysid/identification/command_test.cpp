@@ -219,9 +219,10 @@ TEST_F(Command, AUnitIsNamedWhereANumberIsOutOfItsRange) {
   for (double& kpa : log.pressure_command_kpa) kpa *= 1e-3;
   write("mpa.csv", format_log(log));
   EXPECT_EQ(run("identify --data mpa.csv --out result"), 3);
-  EXPECT_NE(read("err.txt").find("MPa, bar or V in a column taken for kPa? The largest value of "
-                                 "`pressure_command_kpa` is 0.06. State its unit: `softgrip import --unit "
-                                 "command=MPa`"),
+  EXPECT_NE(read("err.txt").find(
+                "check if the values are in MPa, bar or V instead of kPa. The largest value of "
+                "`pressure_command_kpa` is 0.06. State the unit of this column: `softgrip import --unit "
+                "command=MPa`"),
             std::string::npos)
       << read("err.txt");
   EXPECT_FALSE(fs::exists(folder_ / "result"));

@@ -22,10 +22,12 @@ TEST(ExcitationLimits, NameTheFreeParametersThatNeedWhatIsMissing) {
   const std::vector<Estimate> parameters{
       estimate("bouc_wen.alpha_mm_per_kpa", true), estimate("bouc_wen.beta_mm_per_kpa", true),
       estimate("bouc_wen.gamma_per_kpa", false), estimate("kelvin_voigt.k1_kpa_per_mm", true)};
-  EXPECT_EQ(excitation_limits({ramp}, parameters),
-            std::vector<std::string>{"the logs contain no unloading: hysteresis cannot be determined; the "
-                                     "following parameters require the missing excitation: "
-                                     "bouc_wen.beta_mm_per_kpa"});
+  EXPECT_EQ(
+      excitation_limits({ramp}, parameters),
+      std::vector<std::string>{
+          "the logs contain no unloading (decrease of the pressure), so hysteresis cannot be determined; the "
+          "following parameters require the missing excitation: "
+          "bouc_wen.beta_mm_per_kpa"});
   for (double& kpa : ramp.pressure_command_kpa) kpa += 1;
   const std::vector<std::string> both = excitation_limits({ramp}, parameters);
   ASSERT_EQ(both.size(), 2U);

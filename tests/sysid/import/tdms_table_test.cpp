@@ -139,7 +139,8 @@ TEST(TdmsTable, NamesWhatItDoesNotSupport) {
   EXPECT_NE(complex.find("has values in 'g/z' of type 1048589, which is not supported"), std::string::npos)
       << complex;
   const std::string changed = said(2, channel("/'g'/'z'", 10, 2) + channel("/'g'/'z'", 3, 2));
-  EXPECT_NE(changed.find("changes the type of the values in 'g/z'"), std::string::npos) << changed;
+  EXPECT_NE(changed.find("changes the type of the values of the channel in 'g/z'"), std::string::npos)
+      << changed;
   std::string fixed_point = channel("/'g'/'z'", 10, 2);
   fixed_point.replace(fixed_point.size() - 4, 4,
                       bytes_of(std::uint32_t{1}) + text_of("gain") + bytes_of(std::uint32_t{0x4f}));

@@ -282,7 +282,7 @@ TEST(WorkbookXml, RefusesATreeThatNeedsTooMuchMemory) {
   pugi::xml_document document;
   const auto loaded = load_xml(text, document);
   ASSERT_FALSE(loaded);
-  EXPECT_EQ(loaded.error(), "it has too many cells");
+  EXPECT_EQ(loaded.error(), "the sheet has too many cells");
 }
 
 /// A text behind an element is a separate XML node. The reader must include such nodes when it counts the

@@ -74,12 +74,14 @@ TEST(MissingExcitation, OfAVacuumIsThatOfAPressure) {
 }
 
 TEST(MissingExcitation, HasASentence) {
-  EXPECT_EQ(without(Excitation::unloading), "the logs contain no unloading: hysteresis cannot be determined");
+  EXPECT_EQ(without(Excitation::unloading),
+            "the logs contain no unloading (decrease of the pressure), so hysteresis cannot be determined");
   EXPECT_EQ(without(Excitation::rest),
-            "the logs contain no rest longer than 3 s at zero pressure: creep, softening and drift are hard "
-            "to separate");
+            "the logs contain no rest longer than 3 s at zero pressure, so creep, softening and drift are "
+            "hard to separate");
   EXPECT_EQ(without(Excitation::amplitudes),
-            "the logs contain only one amplitude: effects that depend on the amplitude cannot be determined");
+            "the logs contain only one amplitude of the pressure, so effects that depend on the amplitude "
+            "cannot be determined");
 }
 
 }  // namespace

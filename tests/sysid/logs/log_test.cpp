@@ -136,7 +136,7 @@ std::vector<Bad> bad_logs() {
        "--channel"},
       {"NoSuchChannel", header + ",channel\n0,0,0,left\n", 1, 1, "no channel 'thumb'", "",
        channel_named("thumb")},
-      {"ChannelOfAPlainLog", good_text(), 1, 1, "no channel column", "", channel_named("left")},
+      {"ChannelOfAPlainLog", good_text(), 1, 1, "no column 'channel'", "", channel_named("left")},
   };
 }
 

@@ -68,9 +68,11 @@ TEST(PlausibilityWarnings, AUnitThatIsFarFromKpaIsNamed) {
   for (const double sign : {1.0, -1.0}) {
     EXPECT_EQ(warnings(sign * 60, sign * 20), "") << sign;
     EXPECT_NE(warnings(sign * 0.06, sign * 20).find("MPa, bar or V"), std::string::npos) << sign;
-    EXPECT_NE(warnings(sign * 0.6, sign * 20).find("kPa: bar or V"), std::string::npos) << sign;
+    EXPECT_NE(warnings(sign * 0.6, sign * 20).find("kPa: check if the values are in bar or V"),
+              std::string::npos)
+        << sign;
     EXPECT_NE(warnings(sign * 60e3, sign * 20).find("Pa or mbar"), std::string::npos) << sign;
-    EXPECT_NE(warnings(sign * 8.7, sign * 20).find("moves by 2.3 mm per kPa: psi in a column"),
+    EXPECT_NE(warnings(sign * 8.7, sign * 20).find("moves by 2.3 mm per kPa: check if the values are in psi"),
               std::string::npos)
         << warnings(sign * 8.7, sign * 20);
     EXPECT_EQ(warnings(sign * 8.7, sign * 4), "")
@@ -136,7 +138,7 @@ TEST(PlausibilityWarnings, ALogThatIsGivenTwice) {
   logs[0].name = "a", logs[1].name = "b";
   logs[0].displacement_mm[3] = logs[1].displacement_mm[3] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(all_of(plausibility_warnings_among(logs)),
-            "b: the same samples as a; repeated samples make the intervals too narrow\n");
+            "b: the same samples as a, and repeated samples make the confidence intervals too narrow\n");
   logs[1].displacement_mm[4] += 0.001;
   EXPECT_EQ(all_of(plausibility_warnings_among(logs)), "");
 }

@@ -94,7 +94,7 @@ TEST(Page, StaysBelowItsBoundHoweverManyFigures) {
   for (int i = 0; i < 100; ++i) page.figure({"loops", "Loops.", {{noisy_chart(20'000)}}});
   const std::string html = page.to_html();
   EXPECT_LT(html.size(), Page::most_bytes);
-  EXPECT_NE(html.find("Figure 100. Loops. It is left out"), std::string::npos);
+  EXPECT_NE(html.find("Figure 100. Loops. This figure is omitted"), std::string::npos);
   EXPECT_EQ(page.figures().size(), 100U) << "the figures can still be written";
 }
 

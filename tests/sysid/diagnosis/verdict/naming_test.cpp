@@ -91,7 +91,8 @@ TEST(DataWarnings, SayWhatALogWithoutUnloadingCannotShow) {
   std::vector<std::string> warnings;
   warn_of_data({ramp}, scales_of(make_records({ramp}, {})), warnings);
   EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& w) {
-    return w == "the logs contain no unloading: hysteresis cannot be determined";
+    return w ==
+           "the logs contain no unloading (decrease of the pressure), so hysteresis cannot be determined";
   }));
 }
 
