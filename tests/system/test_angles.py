@@ -201,7 +201,7 @@ class Angles(bench.BenchTest):
             done = self.softgrip(*command, "--gauge", "gauge.csv", "--out", "out", expect=3)
             self.assertRegex(done.stderr, r"gauge\.csv: the gauge is in mm, and (the model bench_twin|deg/tp1\.csv) is in deg")
         done = self.softgrip("baseline", "--data", "deg/tp1.csv", "--model", TWIN, "--out", "out", expect=3)
-        self.assertIn(f"{TWIN} is in mm, and the logs are in deg", done.stderr)
+        self.assertIn(f"{TWIN} is in mm, but the logs are in deg", done.stderr)
         self.assertFalse((self.folder / "out").exists())
 
     def test_no_rig_takes_a_model_in_degrees(self):

@@ -159,16 +159,15 @@ class Baseline(bench.BenchTest):
     def test_who_is_not_allowed_moves_nothing(self):
         board = self.emulator()
         rig = self.rig(board.port)
-        self.assertIn("allow it with --yes", self.commissioned(rig, expect=2).stderr)
+        self.assertIn("allow the motion with --yes", self.commissioned(rig, expect=2).stderr)
         screen = terminal.Terminal([bench.SOFTGRIP, "baseline", "--rig", rig, "--rig-channel", "left", "--out", "base"],
                                    self.folder, columns=200)
         self.addCleanup(screen.close)
         bench.wait_for("the question", lambda: "Continue? [y/N]" in screen.text())
-        self.assertRegex(screen.text(), r"channel 'left' of bench will move: .* at most [\d.]+ kPa, about 17 minutes; "
-                                        "keep the finger's range free")
+        self.assertRegex(screen.text(), r"channel 'left' of bench will move: .* at most [\d.]+ kPa and the duration about 17 minutes. Keep the range of the finger free of objects")
         screen.type("n\n")
         self.assertEqual(screen.wait(), 1)
-        self.assertIn("not allowed to move the rig", screen.text())
+        self.assertIn("softgrip was not allowed to move the rig", screen.text())
         self.assertEqual(board.commands_kpa(), [0, 0])
         self.check_nothing_is_left()
 

@@ -51,7 +51,8 @@ sysid::Waveform gentle(const sysid::RigLimits& limits) {
 /// Returns the motion that precedes the first run. The first motion to a displacement, or the first after a
 /// long pause, differs from later motions. It also changes the rest position.
 sysid::Waveform first_load(const sysid::RigLimits& limits) {
-  return slow("first_load", "so that both runs begin after the same loads", 1, 2, limits);
+  return slow("first_load", "motion to the full pressure, so that both runs begin after equal loads", 1, 2,
+              limits);
 }
 
 std::vector<sysid::Waveform> chosen(const std::vector<std::string>& names, const sysid::RigLimits& limits) {
@@ -119,7 +120,7 @@ class Commissioning {
   tl::expected<CommissioningRuns, NotCommissioned> run() {
     runs_.limits = limits_for(rig_, options_.experiments, 1, 0);
     if (!rig_.simulated && options_.consent && !options_.consent(what_moves()))
-      return fails(ExitCode::failed, "not allowed to move the rig");
+      return fails(ExitCode::failed, "softgrip was not allowed to move the rig");
     signals_.emplace();
     const ScratchFolder scratch;
     if (scratch.path().empty())
@@ -144,15 +145,17 @@ class Commissioning {
     for (const sysid::Waveform& waveform : waveforms)
       length_s += 2 * (options_.rest_s + waveform.duration_s() + pause_s);
     return "channel '" + rig_.channel_name() + "' of " + rig_.rig.name +
-           " will move: one gentle motion, then " + std::to_string(waveforms.size()) +
-           " experiments twice, at most " + significant(runs_.limits.pressure_max_kpa, 3) + " kPa, about " +
-           significant(length_s / 60, 2) + " minutes; keep the finger's range free";
+           " will move: first one gentle motion, then each of " + std::to_string(waveforms.size()) +
+           " experiments twice. The pressure is at most " + significant(runs_.limits.pressure_max_kpa, 3) +
+           " kPa and the duration about " + significant(length_s / 60, 2) +
+           " minutes. Keep the range of the finger free of objects";
   }
 
   static std::string no_motion(double found, double expected) {
-    return "the finger hardly moved: " + significant(found, 2) + " mm, its model predicts " +
+    return "the finger hardly moved: " + significant(found, 2) + " mm, but the model predicts " +
            significant(expected, 2) +
-           " mm; check the air supply and that the sensor measures this finger (softgrip doctor --move)";
+           " mm. Check the air supply, and check that the sensor measures this finger (softgrip doctor "
+           "--move)";
   }
 
   /// Plays the gentle motion. Computes the limits of the experiments from the displacement during this

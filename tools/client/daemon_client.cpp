@@ -22,8 +22,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t longest_line = std::size_t{8} << 20U;
 
 constexpr const char* how_to_start =
-    "start the service ('systemctl start softgripd') or your own daemon ('softgripd --config RIG'), "
-    "or name its socket with --socket";
+    "start the service ('systemctl start softgripd') or your own daemon ('softgripd --config RIG'), or name "
+    "the socket of the daemon with --socket";
 
 ClientFailure cannot_connect(const std::string& path, int error) {
   switch (error) {
@@ -36,7 +36,8 @@ ClientFailure cannot_connect(const std::string& path, int error) {
       return {ExitCode::io, "no permission to open " + path +
                                 ": the group of this file determines who may move the gripper"};
     case EAGAIN:
-      return {ExitCode::io, "the daemon at " + path + " accepts no connections: it is paused or overloaded"};
+      return {ExitCode::io, "the daemon at " + path +
+                                " accepts no connections, because the daemon is paused or overloaded"};
     default:
       return {ExitCode::io, "cannot connect to " + path + ": " + std::strerror(error)};
   }
@@ -63,7 +64,7 @@ namespace {
 
 ClientFailure failure_of(const Json& error) {
   const std::string code = error.value("code", "");
-  const std::string message = error.value("message", "the daemon gives no reason");
+  const std::string message = error.value("message", "the daemon gave no reason for the refusal");
   if (code == "sequence_refused") {
     return {ExitCode::input_refused, message + listed(error.value("problems", Json::array()))};
   }

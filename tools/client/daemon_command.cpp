@@ -33,7 +33,7 @@ void add_daemon_options(CLI::App& command, DaemonOptions& options) {
   command
       .add_option_function<std::string>(
           "--rig", [&options](const std::string& path) { options.socket = socket_of(path); },
-          "Rig file of the daemon; the socket is read from this file")
+          "Rig file of the daemon; the path of the socket is read from this file")
       ->excludes(socket);
   command.add_flag("--json", options.json, "Print the result as JSON");
 }

@@ -58,7 +58,7 @@ std::string shown_lines(std::string_view text) {
 std::string sentence_of_acknowledged(const nlohmann::ordered_json& result) {
   constexpr std::size_t longest_name = 100;
   const auto fault = result.find("acknowledged");
-  if (fault == result.end() || !fault->is_object()) return "acknowledged: the grip results are cleared";
+  if (fault == result.end() || !fault->is_object()) return "acknowledged; the grip results are cleared";
   const auto text = [&](const char* key) {
     const auto found = fault->find(key);
     const bool is_text = found != fault->end() && found->is_string();

@@ -143,13 +143,13 @@ Fault fault_of(const Json& value, const Shape& shape, const std::string& path);
 Fault fault_of_field(const Json& owner, const Field& field, bool is_required, const std::string& path) {
   const auto found = owner.find(field.key);
   if (found == owner.end()) return is_required ? Fault("`" + path + "` is missing") : std::nullopt;
-  if ((kinds_of(*found) & field.kinds) == 0) return "`" + path + "` is of the wrong kind";
+  if ((kinds_of(*found) & field.kinds) == 0) return "`" + path + "` has the wrong type";
   if (field.inside == nullptr) return std::nullopt;
   if (found->is_object()) return fault_of(*found, *field.inside, path);
   if (!found->is_array()) return std::nullopt;
   for (std::size_t i = 0; i < found->size(); ++i) {
     const std::string place = path + "[" + std::to_string(i) + "]";
-    if (!(*found)[i].is_object()) return "`" + place + "` is of the wrong kind";
+    if (!(*found)[i].is_object()) return "`" + place + "` has the wrong type";
     if (Fault wrong = fault_of((*found)[i], *field.inside, place)) return wrong;
   }
   return std::nullopt;

@@ -29,7 +29,8 @@ tl::expected<control::Argument, std::string> argument_of(const std::string& sett
 
 void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
   command
-      .add_option("--set", settings, "Parameter of the sequence that overrides its default; may be repeated")
+      .add_option("--set", settings,
+                  "Value of a parameter of the sequence, instead of its default; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
 }

@@ -36,7 +36,7 @@ std::optional<ExitCode> refuse_overwriting(const std::vector<std::string>& outpu
       for (const std::string& output : outputs) {
         if (!is_stream(output) && same_file(output, file))
           return fail(ExitCode::usage, output + " is an input of this command (" + input +
-                                           "): it is not overwritten. Name another output");
+                                           "), so this file is not overwritten. Name another output");
       }
     }
   }

@@ -66,7 +66,7 @@ tl::expected<model::Model, ExitCode> model_of(const BaselineOptions& options,
     if (!model || model->output_unit == logs.front().output_unit) return model;
     return tl::unexpected(fail(ExitCode::input_refused, options.model + " is in " +
                                                             std::string(name_of(model->output_unit)) +
-                                                            ", and the logs are in " +
+                                                            ", but the logs are in " +
                                                             std::string(name_of(logs.front().output_unit))));
   }
   ProgressLine line;
@@ -117,15 +117,16 @@ tl::expected<Json, ExitCode> checked(const BaselineOptions& options, const Runs&
 /// Returns the comparison of the two runs as text, with the RMS errors of the model: "The second run: ...".
 std::string text_of_check(const Json& check) {
   if (check.is_null())
-    return "There is no second run (--check), so the repeatability of the finger is unknown.";
+    return "No second run (--check) was given, so the repeatability of the finger is unknown.";
   const auto number = [](const Json& value) { return significant(value.get<double>(), 3); };
   const std::string unit = " " + check["output_unit"].get<std::string>();
   const Json& model = check["model_rmse_mm"];
   return "The second run: " + check["sentence"].get<std::string>() +
          " Residual of the baseline model: " + number(check["healthy_heldout_rms_mm"]) + unit +
          " on the first run (held out), " + number(check["second_run_rms_mm"]) + unit +
-         " on the second. Error of model.yaml simulated from the command: " + number(model["first_run"]) +
-         " and " + number(model["second_run"]) + unit + ".";
+         " on the second run. RMSE of model.yaml, simulated from the command, on the first and the second "
+         "run: " +
+         number(model["first_run"]) + " and " + number(model["second_run"]) + unit + ".";
 }
 
 tl::expected<Runs, ExitCode> recorded(const BaselineOptions& options) {
@@ -157,7 +158,8 @@ std::vector<BaselineFile> files_of_played(const std::vector<sysid::Log>& logs, c
 tl::expected<Runs, ExitCode> played(const BaselineOptions& options) {
   std::error_code none;
   if (std::filesystem::exists(options.out, none) && !std::filesystem::is_empty(options.out, none))
-    return tl::unexpected(fail(ExitCode::usage, options.out + " already exists: name a new folder"));
+    return tl::unexpected(
+        fail(ExitCode::usage, options.out + " already exists: give the name of a new folder"));
   const auto rig = rig_to_move(
       options.rig, options.rig_channel.empty() ? options.logs.channel : options.rig_channel, options.yes);
   if (!rig) return tl::unexpected(rig.error());
@@ -226,7 +228,7 @@ ExitCode checked_again(BaselineOptions options) {
   if (!baseline) return fail(ExitCode::input_refused, baseline.error());
   if (baseline->second.empty())
     return fail(ExitCode::input_refused,
-                folder + " has no second run: record the baseline with --check or --rig");
+                folder + " contains no second run: record the baseline again with --check or --rig");
   options.data = baseline->logs;
   options.check = baseline->second;
   const auto runs = recorded(options);
@@ -268,22 +270,23 @@ void add_rig_options(CLI::App& command, BaselineOptions& options) {
       "--rig", options.rig, "Rig file of the rig on which the commissioning experiment is run twice");
   rig->excludes(data)->excludes(command.get_option("--check"));
   command
-      .add_option("--rig-channel", options.rig_channel, "With --rig: the channel to move [that of --channel]")
+      .add_option("--rig-channel", options.rig_channel,
+                  "With --rig: the channel to move [the channel given by --channel]")
       ->needs(rig);
   std::vector<std::string> menu;
   for (const sysid::Waveform& waveform : sysid::experiment_menu({})) menu.push_back(waveform.name);
-  command.add_option("--experiments", options.experiments, "With --rig: the experiments to play")
+  command.add_option("--experiments", options.experiments, "With --rig: the experiments to run")
       ->needs(rig)
       ->check(CLI::IsMember(menu))
       ->capture_default_str();
   command
       .add_option(
           "--rest-s", options.rest_s,
-          "With --rig: duration of the rest at zero pressure before each experiment, so that creep decays")
+          "With --rig: duration of the rest at zero pressure before each experiment, in which creep decays")
       ->needs(rig)
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
-  command.add_flag("--yes", options.yes, "Move the rig without asking")->needs(rig);
+  command.add_flag("--yes", options.yes, "Move the rig without a confirmation question")->needs(rig);
 }
 
 }  // namespace
@@ -296,10 +299,11 @@ void add_baseline(CLI::App& program, ExitCode& outcome) {
   command->add_option(
       "--check", options->check,
       "Logs of a second run of the healthy finger; the exit code is 6 if the finger has changed between the "
-      "runs. Without --data and --rig: folder of an existing baseline to check");
+      "two runs. Without --data and --rig: folder of the existing baseline that is checked");
   add_rig_options(*command, *options);
-  command->add_option("--gauge", options->gauge,
-                      "Readings of the sensor at positions that a gauge measured; stored with the logs");
+  command->add_option(
+      "--gauge", options->gauge,
+      "File with readings of the sensor at positions that a gauge measured; stored with the logs");
   command->add_option("--model", options->model, "Model file of the finger [identified from the logs]");
   command->add_option("--out", options->out, "Folder for the logs, model.yaml and baseline.json");
   command->add_option("--seed", options->seed, "Random seed of start points and resampling")

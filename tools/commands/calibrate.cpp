@@ -173,8 +173,8 @@ ExitCode write_into_rig(const rig::RigFile& rig, const calibrate::Results& resul
   if (!changed) return fail(ExitCode::not_acceptable, "not written: " + changed.error());
   const auto backup = calibrate::write_rig(rig, *changed);
   if (!backup) return fail(ExitCode::io, "not written: " + backup.error());
-  std::fprintf(stderr, "%s: channel `%s` has the new points; old file: %s\n", rig.path.c_str(),
-               channel.c_str(), backup->c_str());
+  std::fprintf(stderr, "%s: channel `%s` has the new calibration points; the previous file is %s\n",
+               rig.path.c_str(), channel.c_str(), backup->c_str());
   return ExitCode::done;
 }
 
@@ -196,7 +196,7 @@ tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, c
   const auto channel = channel_of(rig, options.channel);
   if (!channel) {
     return tl::unexpected(
-        fail(ExitCode::usage, "name a channel of the rig with --channel: " + names_of(rig)));
+        fail(ExitCode::usage, "give the name of a channel of the rig with --channel: " + names_of(rig)));
   }
   if (!options.sensor && !options.valve && !options.dead_zone) {
     options.sensor = true;
@@ -251,12 +251,14 @@ ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
   const bool safe = session.leave();
   if (!safe)
     std::fprintf(stderr,
-                 "the board did NOT confirm the rest pressures: check before you reach into the gripper\n");
+                 "the board did NOT confirm the rest pressures: check the pressures before you reach into "
+                 "the gripper\n");
   if (!results) return fail(results.error().code, results.error().text);
   ExitCode code = write_results(rig, *results, options);
   if (!accepted(rig, *results, options, terminal, clock, stop)) {
-    return fail(ExitCode::not_acceptable,
-                "not written: " + rig.path + " is unchanged; --yes writes without a question");
+    return fail(
+        ExitCode::not_acceptable,
+        "not written: " + rig.path + " is unchanged; to write without a confirmation question, use --yes");
   }
   if (code == ExitCode::done && options.write) code = write_into_rig(rig, *results);
   return code == ExitCode::done && !safe ? ExitCode::io : code;
@@ -278,7 +280,7 @@ ExitCode run(CalibrateOptions options) {
 void add_measuring_options(CLI::App& command, CalibrateOptions& options) {
   command
       .add_option("--at-kpa", options.at_kpa,
-                  "Pressures of the two points [1/6 and 2/3 of the range of the limits]")
+                  "Pressures of the two calibration points [1/6 and 2/3 of the permitted pressure range]")
       ->expected(2);
   command.add_option("--settle-s", options.settle_s, "Wait after every motion")
       ->check(CLI::Range(0.0, 600.0))
@@ -291,7 +293,7 @@ void add_measuring_options(CLI::App& command, CalibrateOptions& options) {
       ->capture_default_str();
   command
       .add_option("--repeats", options.repeats,
-                  "Number of visits to each point; with 2 or more, the repeat spread is computed")
+                  "Number of measurements at each point; with 2 or more, the repeatability is computed")
       ->check(CLI::Range(1, 20))
       ->capture_default_str();
 }
@@ -303,40 +305,45 @@ void add_calibrate(CLI::App& program, ExitCode& outcome) {
   CLI::App* command =
       program.add_subcommand("calibrate", "Calibrate sensor and valve against a gauge and a manometer");
   command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed one]");
-  command->add_option("--channel", options->channel, "Channel; required if the rig has several");
+  command->add_option("--channel", options->channel,
+                      "Channel to calibrate; required if the rig has more than one channel");
   command->add_flag("--sensor", options->sensor, "Calibrate the displacement sensor against a gauge");
   command->add_flag("--valve", options->valve,
                     "Calibrate the valve against the pressure monitor or a manometer; needs --move");
   command->add_flag("--dead-zone", options->dead_zone,
-                    "Find the lowest command that the valve follows; needs --move");
+                    "Find the lowest command to which the valve responds; needs --move");
   command->add_flag("--move", options->move,
-                    "Allow softgrip to move the finger within the limits; without this option you place the "
-                    "target by hand");
+                    "Allow softgrip to move the finger within its limits; without this option, you place the "
+                    "target of the sensor by hand");
   command->add_flag("--manometer", options->manometer,
-                    "Use a manometer although there is a pressure monitor");
+                    "Use a manometer, although the channel has a pressure monitor");
   command
       ->add_option("--gauge-mm", options->gauge_mm,
-                   "Readings of the gauge, so that no questions are asked: two, or two per visit")
+                   "Readings of the gauge, instead of questions at the terminal: two values, or two values "
+                   "for each visit")
       ->expected(2, 40);
   command
       ->add_option("--manometer-kpa", options->manometer_kpa,
-                   "Readings of the manometer, so that no questions are asked: two, or two per visit")
+                   "Readings of the manometer, instead of questions at the terminal: two values, or two "
+                   "values for each visit")
       ->expected(2, 40);
   add_measuring_options(*command, *options);
   command->add_option("--date", options->date, "Date of the calibration [today]");
-  command->add_option("--socket", options->socket,
-                      "Socket on which no daemon may run [that of the rig file]");
+  command->add_option(
+      "--socket", options->socket,
+      "Socket of a daemon that must not run during the calibration [the socket in the rig file]");
   command
       ->add_option("--out", options->out,
                    "File for the calibrated lines of the rig file; - is the standard output")
       ->capture_default_str();
-  command->add_flag("--write", options->write,
-                    "Write the points into the rig file and keep the old file next to it");
-  command->add_flag("--yes", options->yes, "Write doubtful results without a question");
+  command->add_flag(
+      "--write", options->write,
+      "Write the calibration points into the rig file, and keep the previous file next to the new file");
+  command->add_flag("--yes", options->yes, "Write doubtful results without a confirmation question");
   command->footer(
       "Questions go to the standard error. Answers are read line by line from the standard input.\nExit "
-      "codes: 0 done, 2 usage, 3 input refused, 4 the board or a file failed, 5 the daemon runs,\n6 the "
-      "measurements give no calibration, or a sensor that the motion requires gave no valid readings.");
+      "codes: 0 done, 2 usage, 3 input refused, 4 the board or a file failed, 5 the daemon runs,\n6 no "
+      "calibration can be computed from the measurements, or a required sensor gave no valid readings.");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

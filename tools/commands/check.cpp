@@ -66,7 +66,9 @@ void print_report_text(const rig::CheckReport& report) {
       std::printf(": %zu %s\n", file.errors, file.errors == 1 ? "error" : "errors");
     } else {
       std::printf(": ok%s%s\n", file.warnings > 0 ? ", with warnings" : "",
-                  unfitted ? ", but not checked with a rig: name a rig file too" : "");
+                  unfitted
+                      ? ", but not checked with a rig: to check the sequence with a rig, also give a rig file"
+                      : "");
     }
   }
 }
@@ -89,8 +91,8 @@ void add_check(CLI::App& program, ExitCode& outcome) {
   CLI::App* command = program.add_subcommand("check", "Validate rig, board, model and sequence files");
   command
       ->add_option("FILE", options->files,
-                   "Files of these kinds, or folders that contain them; sequences are also checked with the "
-                   "given rig files")
+                   "Rig, board, model and sequence files, or folders that contain such files; sequences are "
+                   "also checked with the given rig files")
       ->required();
   add_set_option(*command, options->settings);
   command->add_flag("--json", options->json, "Print the findings as JSON");

@@ -17,7 +17,8 @@ void add_completion(CLI::App& program, ExitCode& outcome) {
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
   command->footer(
-      "The Debian package installs the scripts. Otherwise: source <(softgrip completion bash);\n"
+      "The Debian package installs these scripts. Without the package, run one of these commands: source "
+      "<(softgrip completion bash);\n"
       "softgrip completion zsh >DIRECTORY_OF_FPATH/_softgrip;\n"
       "softgrip completion fish >~/.config/fish/completions/softgrip.fish.");
   command->callback([&program, shell, &outcome] {

@@ -92,7 +92,7 @@ void print_cause(const sysid::NamedCause& named) {
   if (passed_over > 0)
     std::printf("      %zu parameters that these logs do not determine are in diagnosis.json\n", passed_over);
   for (const sysid::Cause& alternative : named.alternatives) {
-    std::printf("      alternative: %s explains the data equally well\n",
+    std::printf("      alternative cause: %s explains the data equally well\n",
                 std::string(alternative.id).c_str());
   }
 }
@@ -252,9 +252,9 @@ ExitCode run(DiagnoseOptions options, const std::vector<std::string>& call) {
 
 void add_diagnose(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<DiagnoseOptions>();
-  CLI::App* command =
-      program.add_subcommand("diagnose", "Find the error of a model on measured data, and its cause");
-  command->add_option("--model", options->model, "Model file in use [that of the baseline]");
+  CLI::App* command = program.add_subcommand(
+      "diagnose", "Find the error of a model on measured data, and the cause of this error");
+  command->add_option("--model", options->model, "Model file in use [the model of the baseline]");
   command
       ->add_option("--data", options->data,
                    "Logs of one measurement campaign, in order (CSV, or a recording's folder)")
@@ -279,8 +279,8 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
       "Readings of the sensor at positions that a gauge measured (CSV: gauge_mm,displacement_mm)");
   command
       ->add_option("--nulls", options->diagnosis.null_campaigns,
-                   "Number of data sets that are simulated without any cause, to calibrate the search (with "
-                   "19, the smallest p is 0.05)")
+                   "Number of simulated data sets without any cause, from which the p-value of the search is "
+                   "computed (with 19, the smallest p-value is 0.05)")
       ->capture_default_str();
   command->add_option("--seed", options->diagnosis.seed, "Random seed of start points and resampling")
       ->capture_default_str();

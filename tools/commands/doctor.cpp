@@ -68,9 +68,9 @@ void examine_health(const rig::RigFile& rig, doctor::Findings& findings) {
       findings.ok("health", line.text);
     else
       findings.warn("health", line.text,
-                    line.advice.empty()
-                        ? "see the finger's page in " + rig.recorder.directory + "/" + health_folder
-                        : line.advice);
+                    line.advice.empty() ? "see the page of the finger in the folder " +
+                                              rig.recorder.directory + "/" + health_folder
+                                        : line.advice);
   }
 }
 
@@ -81,7 +81,7 @@ void look_myself(const rig::RigFile& rig, bool move, doctor::Findings& findings)
   examine_health(rig, findings);
   const auto lock = daemon::BoardLock::take(rig);
   if (!lock) {
-    findings.fail("board", lock.error(), "stop that program first");
+    findings.fail("board", lock.error(), "first stop the program that controls the board");
     return;
   }
   const MonotonicClock clock;
@@ -117,10 +117,9 @@ ExitCode ask_for_a_name(const std::string& socket) {
     const auto rig = rig::load_rig(near, problems);
     hint = "; " + near + (rig && is_simulated(*rig) ? " is the simulated rig" : " exists here");
   }
-  return fail(ExitCode::usage, "no daemon runs on " + socket +
-                                   ": name the rig, `softgrip doctor --rig RIG`, or the "
-                                   "daemon's socket with --socket" +
-                                   hint);
+  return fail(ExitCode::usage,
+              "no daemon runs on " + socket +
+                  ": give the rig file with --rig RIG, or the socket of the daemon with --socket" + hint);
 }
 
 /// Checks the rig of the running daemon if the user gave no rig file.
@@ -173,7 +172,7 @@ ExitCode run(const DoctorOptions& options) {
     examine_health(*rig, findings);
   } else if (runs) {
     findings.fail("daemon", client.error().message,
-                  "the board is not examined, because the daemon does not respond");
+                  "the board was not checked, because the daemon does not respond");
   } else {
     look_myself(*rig, options.move, findings);
   }
@@ -188,15 +187,16 @@ void add_doctor(CLI::App& program, ExitCode& outcome) {
   CLI::App* command = program.add_subcommand(
       "doctor",
       "Check that the rig is ready: computer, board, sensors, disk. Each check is ok, warn or fail");
-  command->add_option("--rig", options->rig, "Rig file [that of the running daemon]");
+  command->add_option("--rig", options->rig, "Rig file [the rig file of the running daemon]");
   command->add_flag(
       "--move", options->move,
       "Allow softgrip to move each finger a little, within its limits, to check that it follows");
-  command->add_option("--socket", options->socket, "Socket of a running daemon [the rig file's]");
+  command->add_option("--socket", options->socket, "Socket of a running daemon [the socket in the rig file]");
   command->add_flag("--json", options->json, "Print the findings as JSON");
   command->footer(
       "If no daemon runs, this command writes the rest pressures to the board and reads the sensors. If the "
-      "daemon runs, it reads the daemon's status instead.\nExit codes: 0 fit to run, 6 not fit to run, 2 no "
+      "daemon runs, this command instead reads the status of the daemon.\nExit codes: 0 fit to run, 6 not "
+      "fit to run, 2 no "
       "rig is named and no daemon runs, 3 the rig file is refused, 4 the rig file cannot be read, 5 --move "
       "was given while the daemon runs.");
   command->callback([options, &outcome] { outcome = run(*options); });

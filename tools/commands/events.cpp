@@ -68,9 +68,9 @@ void add_events(CLI::App& program, ExitCode& outcome) {
                    "Number of newest events to show; the daemon keeps 10000")
       ->capture_default_str()
       ->check(CLI::Range(1, 10'000));
-  command->add_option("--since", options->since,
-                      "Only events after the one with this number, or since a time: 10min, 2h, 10:15, "
-                      "2026-11-21 10:15");
+  command->add_option(
+      "--since", options->since,
+      "Only events after the event with this number, or since a time: 10min, 2h, 10:15, 2026-11-21 10:15");
   command->add_option("--severity", options->query.severity, "Only events of at least this severity")
       ->capture_default_str()
       ->check(CLI::IsMember({"information", "warning", "error"}));

@@ -63,13 +63,15 @@ void report(const ExportOptions& options, const std::string& format, const std::
     std::fprintf(stream, "%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     return;
   }
-  for (const std::string& name : left_out) std::fprintf(stream, "skipped, not numeric: %s\n", name.c_str());
+  for (const std::string& name : left_out)
+    std::fprintf(stream, "skipped, because the columns are not numeric: %s\n", name.c_str());
   std::fprintf(stream, "%zu signals, %zu samples -> %s\n", signals, samples, options.out.c_str());
 }
 
 ExitCode export_c(const ExportOptions& options) {
   if (!options.rate_hz)
-    return fail(ExitCode::usage, "--format c needs --rate-hz: how often the function will be called");
+    return fail(ExitCode::usage,
+                "--format c needs --rate-hz, the number of calls of the function per second");
   const auto model = read_model(options.input);
   if (!model) return model.error();
   const auto source = c_source(*model, 1 / *options.rate_hz, options.pressure_max_kpa,
@@ -106,7 +108,8 @@ std::optional<ExitCode> refused(const ExportOptions& options, const std::string&
     return fail(ExitCode::usage,
                 options.input + " is not a recording, log or series: a model can only be exported as .c");
   if (options.rate_hz)
-    return fail(ExitCode::usage, "--rate-hz is only for --format c: samples keep their own times");
+    return fail(ExitCode::usage,
+                "--rate-hz is permitted only with --format c, because samples keep their own times");
   return std::nullopt;
 }
 
@@ -118,7 +121,7 @@ ExitCode run(const ExportOptions& options) {
   if (const auto code = refused(options, format)) return *code;
   if (format == "c") return export_c(options);
   if (format == "mat" && is_stream(options.out))
-    return fail(ExitCode::usage, "a .mat is written into a file, not into " + options.out);
+    return fail(ExitCode::usage, "a .mat file cannot be written to " + options.out);
   const auto groups = read_signals(options.input);
   if (!groups) return groups.error();
   std::vector<std::string> left_out;
@@ -157,7 +160,7 @@ void add_export(CLI::App& program, ExitCode& outcome) {
       ->check(number_between(0.1, 100000));
   command
       ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
-                   "Highest pressure at which the inverse must exist")
+                   "Highest pressure at which the inverse of the model must exist")
       ->check(number_between(0.1, 10000))
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print a summary as JSON");

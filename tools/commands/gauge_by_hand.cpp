@@ -23,9 +23,9 @@ tl::unexpected<NotPlayed> failed(std::string why) {
 
 std::string what_is_done(const ExperimentRig& rig, std::size_t readings) {
   return "The sensor of channel '" + rig.channel_name() + "' of " + rig.rig.name +
-         " is checked against a gauge: you hold its target at " + std::to_string(readings) + " positions, " +
-         significant(sysid::minutes_for(readings), 2) +
-         " minutes. The finger is vented, and the rig does not move it";
+         " is checked against a gauge: you hold the target of the sensor at " + std::to_string(readings) +
+         " positions, " + significant(sysid::minutes_for(readings), 2) +
+         " minutes. The finger is vented and does not move";
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
              const std::vector<double>& positions_mm,
              const std::string& folder) -> tl::expected<sysid::GaugeFile, NotPlayed> {
     if (!consent(what_is_done(rig, positions_mm.size())))
-      return tl::unexpected(NotPlayed{true, "not allowed to check the sensor"});
+      return tl::unexpected(NotPlayed{true, "softgrip was not allowed to check the sensor"});
     if (daemon_runs(rig.rig.socket.path)) return failed(stop_the_daemon);
     const auto lock = daemon::BoardLock::take(rig.rig);
     if (!lock) return failed(lock.error());
@@ -45,7 +45,9 @@ GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
     MotionSession session(rig.rig, *board, clock, [&signals] { return signals.first() != 0; });
     if (const auto connected = session.connect(); !connected) return failed(connected.error().text);
     calibrate::TerminalOperator terminal;
-    terminal.tell("Enter: the target is there; a number: its actual position [mm]; -: skip this position");
+    terminal.tell(
+        "Enter: the target is at this position; a number: actual position of the target [mm]; -: skip this "
+        "position");
     calibrate::Settings settings;
     settings.channel = rig.channel;
     const auto visits = calibrate::read_positions(session, terminal, settings, positions_mm);
@@ -54,7 +56,9 @@ GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
       return tl::unexpected(
           NotPlayed{visits.error().code == ExitCode::failed, visits.error().text, visits.error().code});
     if (!safe)
-      return failed("the board did not confirm the rest pressures: check before you reach into the gripper");
+      return failed(
+          "the board did not confirm the rest pressures: check the pressures before you reach into the "
+          "gripper");
     std::vector<sysid::GaugeReading> readings;
     for (const calibrate::GaugeVisit& visit : *visits)
       readings.push_back({visit.position_mm, visit.reading_mm, static_cast<double>(visit.count)});

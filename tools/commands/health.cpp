@@ -60,8 +60,9 @@ void print(const health::JudgedFinger& finger) {
   const health::FingerHealth& health = finger.health;
   std::printf("%s: %s\n", health.finger.c_str(), health_sentence(health, finger.suspicion).c_str());
   for (const health::HealthAlarm& alarm : health.standing()) {
-    std::printf("  noticed %s, %zu grips after it began: %s\n", health.points[alarm.noticed].label.c_str(),
-                alarm.grips, std::string(sysid::info_of(alarm.number).id).c_str());
+    std::printf("  detected %s, %zu grips after the change began: %s\n",
+                health.points[alarm.noticed].label.c_str(), alarm.grips,
+                std::string(sysid::info_of(alarm.number).id).c_str());
   }
   for (const health::Suspect& suspect : finger.suspicion.suspects) {
     std::printf("  %s\n", suspect.id.c_str());
@@ -69,7 +70,7 @@ void print(const health::JudgedFinger& finger) {
   }
   for (const std::string& advice : finger.suspicion.advice) std::printf("  - %s\n", advice.c_str());
   if (!finger.suspicion.suspects.empty())
-    std::printf("  to confirm it, record the commissioning experiment again:\n      %s\n",
+    std::printf("  to confirm the cause, record the commissioning experiment again:\n      %s\n",
                 health::settling_command(finger.source.baseline).c_str());
 }
 
@@ -131,7 +132,7 @@ ExitCode run(HealthOptions options) {
 void add_health(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<HealthOptions>();
   CLI::App* command = program.add_subcommand(
-      "health", "Report which fingers have changed, and since when, from the recordings of ordinary work");
+      "health", "Report from the recordings of normal operation which fingers have changed, and since when");
   command->add_option("runs", options->runs, "Recordings, or folders of recordings")->required();
   command
       ->add_option(
@@ -144,8 +145,9 @@ void add_health(CLI::App& program, ExitCode& outcome) {
       "--out", options->out,
       "Folder for health.json, a page per finger, and the indicators of all recordings so far");
   command
-      ->add_option("--points", options->points,
-                   "Unit that is evaluated: all grips of a day together, or each grip separately")
+      ->add_option(
+          "--points", options->points,
+          "Data of one point of the evaluation: all grips of a day together, or each grip separately")
       ->check(CLI::IsMember({"day", "run"}))
       ->capture_default_str();
   command

@@ -113,7 +113,7 @@ void print_structure(const sysid::StructureEvidence& s, model::OutputUnit output
       significant(s.valve->delay_s, 3).c_str(), significant(s.valve->filling_time_constant_s, 3).c_str(),
       significant(s.valve->venting_time_constant_s, 3).c_str(), significant(s.valve->rmse_kpa, 3).c_str(),
       significant(s.valve->rmse_percent_of_range, 2).c_str());
-  print_scores("Both stages in series, from the command", s.valve->from_command);
+  print_scores("Valve and finger in series, simulated from the command", s.valve->from_command);
 }
 
 void print_summary(const sysid::IdentifyReport& report, const std::string& out) {
@@ -196,19 +196,21 @@ ExitCode run(IdentifyOptions options, const std::vector<std::string>& call) {
 }
 
 void add_fit_options(CLI::App& command, sysid::IdentifyOptions& fit) {
-  command.add_option("--fix", fit.fixed, "Parameters that keep their start value (bouc_wen.gamma_per_kpa)");
-  command.add_option("--free", fit.free, "Fit only these parameters and fix all others");
+  command.add_option("--fix", fit.fixed,
+                     "Parameters that are fixed at their start value (example: bouc_wen.gamma_per_kpa)");
+  command.add_option("--free", fit.free, "Fit only these parameters, and fix all other parameters");
   command.add_option("--starts", fit.starts, "Number of start points of the search")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
   command.add_option("--seed", fit.seed, "Seed of the start points")->capture_default_str();
   command.add_option("--exponents", fit.exponents, "Exponents of the hysteresis to try")
       ->check(CLI::Range(1, 4));
-  command.add_flag("--robust", fit.robust, "Robust fit: outliers count linearly (Huber)");
+  command.add_flag("--robust", fit.robust, "Robust fit: the loss of outliers grows only linearly (Huber)");
   command.add_flag("--profile", fit.profile, "Also compute intervals by profile likelihood");
   command
-      .add_option("--fit-share", fit.fit_share,
-                  "Share of every log, counted from its start, that is fitted; the rest is held out")
+      .add_option(
+          "--fit-share", fit.fit_share,
+          "Share of each log that is fitted, from the start of the log; the rest of the log is held out")
       ->check(number_between(0.05, 1.0))
       ->capture_default_str();
   command.add_option("--threads", fit.threads, "Number of threads; 0: one per core")->capture_default_str();
@@ -237,8 +239,8 @@ void add_identify(CLI::App& program, ExitCode& outcome) {
       program.add_subcommand("identify", "Estimate model parameters from logs, with 95 % intervals");
   command->add_option("--data", options->data, "Logs to fit (CSV, or a recording's folder)")->required();
   command->add_option("--validate", options->validate, "Logs to predict");
-  command->add_option("--start", options->start, "Model file to start from [the base structure]");
-  command->add_option("--branches", options->branches, "Creep branches of the base structure")
+  command->add_option("--start", options->start, "Model file with the start values [the base structure]");
+  command->add_option("--branches", options->branches, "Number of creep branches of the base structure")
       ->check(CLI::Range(1, 8))
       ->capture_default_str();
   command

@@ -26,41 +26,49 @@ void add_import(CLI::App& program, ExitCode& outcome) {
         ->add_option("--" + word, options->columns[static_cast<std::size_t>(spec.role)],
                      "Column of the " + word +
                          ": its name, or its number counted from 1. If the option is given twice, " +
-                         (spec.role == sysid::Role::time ? "each time applies to its own columns"
+                         (spec.role == sysid::Role::time ? "each time column applies to its own value columns"
                                                          : "the columns are averaged"))
         ->allow_extra_args(false);
   }
   command
-      ->add_option("--unit", options->units, "ROLE=UNIT, if the file does not state the unit (pressure=psi)")
+      ->add_option("--unit", options->units,
+                   "ROLE=UNIT: unit of a column, if the file does not state the unit (example: pressure=psi)")
       ->allow_extra_args(false);
   command
       ->add_option("--scale", options->scales,
-                   "ROLE=X: factor that converts the column to s, kPa, mm or C (displacement=-2.5), or to "
-                   "the unit of --unit displacement=deg or =rad")
+                   "ROLE=X: factor that converts the column to s, kPa, mm or C (example: displacement=-2.5). "
+                   "With --unit displacement=deg or displacement=rad, the factor converts to this unit")
       ->allow_extra_args(false);
   command
       ->add_option("--zero", options->zeros,
-                   "ROLE=X: value in the column's unit that is subtracted before scaling; ROLE=first: "
-                   "subtract the first value")
+                   "ROLE=X: value that is subtracted from the column before scaling, in the unit of the "
+                   "column; ROLE=first: subtract the first value of the column")
       ->allow_extra_args(false);
-  command->add_option("--rate-hz", options->rate_hz, "Samples per second of a file without times")
+  command->add_option("--rate-hz", options->rate_hz, "Sampling rate of a file without times")
       ->check(number_between(1e-3, 1e7));
   command
       ->add_option("--missing", options->missing,
-                   "Value of a missing reading (-999), in addition to NaN and similar")
+                   "Value or text that stands for a missing reading (example: -999), in addition to NaN and "
+                   "similar texts")
       ->allow_extra_args(false);
   command->add_option("--separator", options->separator, "comma, semicolon, tab, space or bar [detected]");
-  command->add_option("--channel", options->channel, "Only the rows or columns of this channel");
-  command->add_option("--sheet", options->sheet, "Sheet of a workbook if several contain numbers");
+  command->add_option("--channel", options->channel, "Import only the rows or columns of this channel");
+  command->add_option("--sheet", options->sheet,
+                      "Sheet of a workbook, if more than one sheet contains numbers");
   command->add_flag("--skip-bad-lines", options->skip_bad_lines, "Skip unreadable lines, and count them");
   command
       ->add_option("--from-s", options->from_s,
-                   "First sample to use, relative to the first one of the file [s]")
+                   "Time of the first sample to use, relative to the first sample of the file [s]")
       ->check(number_between(0.0, 1e9));
-  command->add_option("--to-s", options->to_s, "Last sample to use [s]")->check(number_between(0.0, 1e9));
-  command->add_option("--map", options->map,
-                      "Assignment of an earlier import (.import.yaml); options override it");
-  command->add_flag("--yes", options->yes, "Accept the proposed assignment without a question");
+  command
+      ->add_option("--to-s", options->to_s,
+                   "Time of the last sample to use, relative to the first sample of the file [s]")
+      ->check(number_between(0.0, 1e9));
+  command->add_option(
+      "--map", options->map,
+      "Column assignment of an earlier import (.import.yaml); options override this assignment");
+  command->add_flag("--yes", options->yes,
+                    "Accept the proposed column assignment without a confirmation question");
   command->add_flag("--json", options->json, "Print a summary as JSON");
   command->callback([options, &outcome] { outcome = run_import(*options); });
 }

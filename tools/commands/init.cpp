@@ -81,8 +81,8 @@ std::optional<ExitCode> settle(const Fact& fact, const InitOptions& options, Rig
     return fail(ExitCode::failed, "stopped: nothing was written");
   }
   if (question->otherwise.empty()) {
-    return fail(ExitCode::usage,
-                "without a terminal, --" + fact.key + " is required (" + question->text + ")");
+    return fail(ExitCode::usage, "without a terminal, give the option --" + fact.key + " is required (" +
+                                     question->text + ")");
   }
   const std::string complaint = fact.take(question->otherwise, draft);
   if (complaint.empty()) return std::nullopt;
@@ -93,7 +93,7 @@ ExitCode run(const InitOptions& options) {
   std::error_code error;
   if (std::filesystem::exists(options.file, error)) {
     return fail(ExitCode::state_refused,
-                options.file + " already exists and is not changed: name another file");
+                options.file + " already exists and is not changed: give the name of another file");
   }
   RigDraft draft;
   draft.name = options.name.empty() ? std::filesystem::path(options.file).stem().string() : options.name;
@@ -108,8 +108,8 @@ ExitCode run(const InitOptions& options) {
   if (!text) return refuse(text.error());
   if (const auto written = create_file(options.file, *text); !written)
     return fail(ExitCode::io, written.error());
-  std::printf("%s is written. Next:\n  softgrip check %s\n  softgrip doctor --rig %s\n", options.file.c_str(),
-              options.file.c_str(), options.file.c_str());
+  std::printf("%s was written. Next:\n  softgrip check %s\n  softgrip doctor --rig %s\n",
+              options.file.c_str(), options.file.c_str(), options.file.c_str());
   return ExitCode::done;
 }
 
@@ -121,10 +121,10 @@ void add_init(CLI::App& program, ExitCode& outcome) {
       program.add_subcommand("init", "Create a commented rig file, interactively or from options");
   command->add_option("FILE", options->file, "Rig file to create; an existing file is never overwritten")
       ->capture_default_str();
-  command->add_option("--name", options->name, "Name of the rig [that of the file]");
+  command->add_option("--name", options->name, "Name of the rig [the name of the file]");
   command
       ->add_option("--rate-hz", options->rate_hz,
-                   "Rate of loop and bus [the highest usual rate that the board allows]")
+                   "Rate of the control loop and the bus [the highest usual rate that the board permits]")
       ->check(CLI::Range(1.0, 10000.0));
   command->add_flag("--service", options->service, "Use the folders of the system service instead of /tmp");
   for (const Fact& fact : draft_facts()) {
@@ -136,8 +136,9 @@ void add_init(CLI::App& program, ExitCode& outcome) {
     }
   }
   command->footer(
-      "On a terminal, init asks a question for each missing option. Otherwise it uses the default, and an "
-      "option\nwithout a default is required. Exit codes: 0 written, 1 stopped, 2 usage, 3 the resulting rig "
+      "On a terminal, init asks a question for each missing option. Without a terminal, init uses the "
+      "defaults,\nand options without a default are required. Exit codes: 0 written, 1 stopped, 2 usage, 3 "
+      "the resulting rig "
       "file is refused,\n4 the file cannot be written, 5 the file already exists.");
   command->callback([options, &outcome] { outcome = run(*options); });
 }

@@ -262,13 +262,13 @@ void add_investigate(CLI::App& program, ExitCode& outcome) {
   command->add_option("--data", options->data, "Logs of one measurement campaign, in order")->required();
   command->add_option("--rig", options->rig, "Rig file of the rig that is moved");
   command->add_option("--rig-channel", options->rig_channel,
-                      "With --rig: the channel to move [that of --channel]");
+                      "With --rig: the channel to move [the channel given by --channel]");
   command->add_option(
       "--rig-command", options->rig_command,
-      "Program that runs an experiment on another rig; it is called as COMMAND COMMAND_CSV LOG_OUT");
+      "Program that runs an experiment on a rig without softgripd; called as COMMAND COMMAND_CSV LOG_OUT");
   command->add_option("--gauge-command", options->gauge_command,
-                      "With --rig-command: program that checks the sensor against a gauge; it is called as "
-                      "COMMAND POSITIONS_CSV GAUGE_OUT");
+                      "With --rig-command: program that checks the sensor against a gauge; called as COMMAND "
+                      "POSITIONS_CSV GAUGE_OUT");
   command->add_option("--gauge", options->gauge, "An existing gauge file (CSV: gauge_mm,displacement_mm)");
   command->add_option("--out", options->out, "Folder for all results")->required();
   command
@@ -283,7 +283,7 @@ void add_investigate(CLI::App& program, ExitCode& outcome) {
   command->add_option("--slew-kpa-per-s", options->slew_kpa_per_s, "With --rig-command: slew rate of the rig")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_flag("--yes", options->yes, "Move the rig without a question");
+  command->add_flag("--yes", options->yes, "Move the rig without a confirmation question");
   command->add_flag(
       "--no-closed-loop", options->no_closed_loop,
       "Do not retune the controller with the extended model, and do not measure the closed loop");

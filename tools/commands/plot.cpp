@@ -104,8 +104,9 @@ void add_plot(CLI::App& program, ExitCode& outcome) {
   CLI::App* command =
       program.add_subcommand("plot", "Plot a recording: pressure, displacement, error, states");
   command
-      ->add_option("RECORDING", options->recordings,
-                   "A recording's folder or a log (CSV); with two, the second is drawn over the first")
+      ->add_option(
+          "RECORDING", options->recordings,
+          "Folder of a recording, or a log (CSV); if two are given, the second is drawn over the first")
       ->required()
       ->expected(1, 2);
   command
@@ -115,7 +116,8 @@ void add_plot(CLI::App& program, ExitCode& outcome) {
   command->add_option("--channel", options->channel, "This channel only");
   command->add_option("--from", options->from_s, "Begin at this time [s]");
   command->add_option("--to", options->to_s, "End at this time [s]");
-  command->add_flag("--beside", options->beside, "Two recordings side by side instead of over each other");
+  command->add_flag("--beside", options->beside,
+                    "Draw two recordings side by side instead of over each other");
   command->add_flag("--json", options->json, "Print a summary as JSON");
   command->callback([options, &outcome] { outcome = run(*options); });
 }

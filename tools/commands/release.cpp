@@ -7,8 +7,8 @@ namespace softgrip::tools {
 
 void add_release(CLI::App& program, ExitCode& outcome) {
   add_plain_request(program, outcome, "release",
-                    "Release: the running sequence continues with its release step. If no sequence runs, "
-                    "pressurised fingers are vented",
+                    "Continue the running sequence with its release step. If no sequence runs, vent the "
+                    "pressurised fingers",
                     "releasing");
 }
 

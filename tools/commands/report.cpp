@@ -40,10 +40,10 @@ void print_verification(const Verification& v, const std::string& folder) {
     std::printf("  %s: reported %s, recomputed %s\n", d.where.c_str(), d.reported.c_str(),
                 d.recomputed.c_str());
   if (v.comparison.differences.empty()) {
-    std::printf("%s: all %zu numbers are reproduced\n", folder.c_str(), v.comparison.numbers);
+    std::printf("%s: all %zu numbers of the report are reproduced\n", folder.c_str(), v.comparison.numbers);
   } else {
-    std::printf("%s: of %zu numbers the %zu above differ\n", folder.c_str(), v.comparison.numbers,
-                v.comparison.differences.size());
+    std::printf("%s: of %zu numbers, the %zu numbers above differ from the report\n", folder.c_str(),
+                v.comparison.numbers, v.comparison.differences.size());
   }
 }
 
@@ -66,9 +66,12 @@ void add_report(CLI::App& program, ExitCode& outcome) {
       program.add_subcommand("report", "Recompute a report from its logs and compare the numbers");
   command
       ->add_option("--verify", options->folder,
-                   "Folder that identify, validate or diagnose wrote; the call is repeated and compared")
+                   "Folder that identify, validate or diagnose wrote; the command is run again and the "
+                   "results are compared")
       ->required();
-  command->add_option("--tolerance", options->tolerance, "Relative tolerance for equal numbers")
+  command
+      ->add_option("--tolerance", options->tolerance,
+                   "Largest relative difference of two numbers that count as equal")
       ->check(number_between(0.0, 1.0))
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print the differences as JSON");

@@ -122,14 +122,16 @@ void add_run(CLI::App& program, ExitCode& outcome) {
   add_set_option(*command, options->settings);
   command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed one]");
   command->add_option("--record", options->record, "Record into this folder; overrides the rig file");
-  command->add_flag("--virtual-time", options->virtual_time,
-                    "Run as fast as possible and repeatably; simulated boards only");
+  command->add_flag(
+      "--virtual-time", options->virtual_time,
+      "Run as fast as possible, with identical results in every run; only for simulated boards");
   command->add_option("--seed", options->seed, "Seed of a simulated board; overrides the rig file");
-  command->add_flag("--no-socket", options->no_socket, "Do not listen on the rig file's socket");
+  command->add_flag("--no-socket", options->no_socket,
+                    "Do not open the socket of the rig file, so that no client can connect");
   command->add_flag("--quiet", options->quiet, "Print only the results");
   command->add_flag("--json", options->json, "Print events and results as JSON, one per line");
   command->footer(
-      "Ctrl-C and other ending signals: the command writes the safe outputs and then ends by the same "
+      "After Ctrl-C or another ending signal, the command writes the safe outputs and then ends by the same "
       "signal,\nso that a loop of a shell does not start the next sequence.");
   command->callback([options, &outcome] { outcome = run(*options); });
 }

@@ -45,7 +45,8 @@ tl::expected<sysid::Log, ExitCode> read_input(const SimulateOptions& options) {
     return sysid::sampled_signal(*signal, options.rate_hz.value_or(default_rate_hz));
   }
   if (options.rate_hz) {
-    return tl::unexpected{fail(ExitCode::usage, "--rate-hz is only for a SIGNAL; a log has its own times")};
+    return tl::unexpected{
+        fail(ExitCode::usage, "--rate-hz is permitted only with a SIGNAL, because a log has its own times")};
   }
   document::Problems problems;
   sysid::LogOptions log_options;
@@ -124,7 +125,7 @@ void add_simulate(CLI::App& program, ExitCode& outcome) {
   command->add_option("--seed", options->settings.seed, "Seed of all noise")->capture_default_str();
   command->add_option("--rate-hz", options->rate_hz, "Samples per second of a SIGNAL [100]")
       ->check(number_between(0.1, 100000));
-  command->add_option("--channel", options->channel, "Channel of a log with several channels");
+  command->add_option("--channel", options->channel, "Channel to use from a log with several channels");
   command->add_flag("--json", options->json, "Print a summary as JSON");
   command->callback([options, &outcome] { outcome = run(*options); });
 }

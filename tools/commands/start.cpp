@@ -153,10 +153,9 @@ bool FollowedStart::stop_confirmed() {
 
 ExitCode FollowedStart::take_back(const Break& reason) {
   const bool stopped = stop_confirmed();
-  const char* const outcome =
-      stopped ? "sequence stopped"
-              : "the stop was not confirmed: the sequence may still run. `softgrip status` shows it, "
-                "`softgrip stop` stops it";
+  const char* const outcome = stopped ? "sequence stopped"
+                                      : "the stop was not confirmed, so the sequence may still run. "
+                                        "`softgrip status` shows the sequence, `softgrip stop` stops it";
   if (reason.signal == 0) return fail(reason.failure.code, reason.failure.message + "; " + outcome);
   note_ending_signal(reason.signal);
   return fail(ExitCode::failed, outcome);
@@ -210,13 +209,15 @@ ExitCode run(const StartOptions& options) {
 void add_start(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<StartOptions>();
   CLI::App* command = program.add_subcommand("start", "Start a sequence of the daemon");
-  command->add_option("SEQUENCE", options->sequence, "A file, or a name in the daemon's sequence directory")
+  command
+      ->add_option("SEQUENCE", options->sequence,
+                   "Sequence: a file, or a name in the sequence directory of the daemon")
       ->required();
   add_set_option(*command, options->settings);
   add_daemon_options(*command, options->daemon);
   command->add_flag("--wait", options->wait,
-                    "Follow the sequence to its end, and stop it if this command is interrupted; exit code 6 "
-                    "unless every grip succeeded");
+                    "Wait for the end of the sequence, and stop the sequence if this command is interrupted. "
+                    "The exit code is 6 if a grip did not succeed");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

@@ -72,10 +72,11 @@ void add_published(CLI::App& study, ExitCode& outcome) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = study.add_subcommand(
-      "published", "Analyse the published parameters: a hysteresis model that absorbs an unmodelled latency");
+      "published",
+      "Show that the published parameters describe a hysteresis model that absorbs an unmodelled latency");
   add_output(*command, options->output);
   command->add_option("--seed", options->study.seed, "Seed of noise and start points")->capture_default_str();
-  command->add_option("--starts", options->study.starts, "Start points per identification")
+  command->add_option("--starts", options->study.starts, "Number of start points of each identification")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->callback([options, &outcome] {
@@ -94,7 +95,7 @@ void add_control(CLI::App& study, ExitCode& outcome) {
                                            "Compare how accurately the control schemes track references on "
                                            "simulated fingers with model errors and noise");
   add_output(*command, options->output);
-  command->add_option("--draws", options->study.draws, "Simulated fingers per figure")
+  command->add_option("--draws", options->study.draws, "Number of simulated fingers for each result")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   command->add_option("--seed", options->study.seed, "Seed of fingers, noise and logs")

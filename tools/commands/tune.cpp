@@ -77,7 +77,7 @@ std::string snippet(const TuneOptions& options, const control::TuneTask& task, c
                     const std::string& model_name) {
   std::string text;
   text += "# `softgrip tune` for " + model_name + ", " + significant(task.rate_hz) +
-          " Hz, every parameter off by up to " + significant(options.mismatch_percent) + " %, " +
+          " Hz, with an error of every parameter of up to " + significant(options.mismatch_percent) + " %, " +
           std::to_string(task.draws) + " fingers, seed " + std::to_string(task.seed) + ".\n";
   text += "# Worst Ms " + significant(tuned.sensitivity, 3) + " (bound " +
           significant(task.most_sensitivity, 3) + "), crossover " + significant(tuned.crossover_hz, 3) +
@@ -159,7 +159,7 @@ ExitCode run(TuneOptions& options) {
     std::fputs(on_screen(text).c_str(), stream);
   }
   if (tuned.sensitivity > task.most_sensitivity) {
-    return fail(ExitCode::not_acceptable, "no gains keep the margin");
+    return fail(ExitCode::not_acceptable, "no controller gains keep the stability margin");
   }
   return ExitCode::done;
 }
@@ -171,15 +171,20 @@ void add_tune(CLI::App& program, ExitCode& outcome) {
   CLI::App* command = program.add_subcommand("tune", "Tune PID gains that tolerate model errors");
   command->add_option("--model", options->model, "Model file")->required();
   command->add_option("--rig", options->rig, "Rig file: rate, limits, feedforward and latency of a channel");
-  command->add_option("--channel", options->channel, "Channel of the rig [the first]");
-  command->add_option("--rate-hz", options->rate_hz, "Rate of the loop, without --rig [200]")
+  command->add_option("--channel", options->channel, "Channel of the rig [the first channel]");
+  command->add_option("--rate-hz", options->rate_hz, "Rate of the control loop, if --rig is not given [200]")
       ->check(number_between(10.0, 2000.0));
-  command->add_option("--feedforward", options->feedforward, "Feedforward [that of the rig, or none]")
+  command
+      ->add_option("--feedforward", options->feedforward, "Feedforward [the feedforward of the rig, or none]")
       ->check(CLI::IsMember(
           std::vector<std::string>(control::feedforward_names.begin(), control::feedforward_names.end())));
-  command->add_option("--pressure-max-kpa", options->pressure_max_kpa, "Highest pressure, without a rig [60]")
+  command
+      ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
+                   "Highest pressure, if --rig is not given [60]")
       ->check(number_between(1.0, 1000.0));
-  command->add_option("--mismatch-percent", options->mismatch_percent, "Largest error of every parameter")
+  command
+      ->add_option("--mismatch-percent", options->mismatch_percent,
+                   "Largest relative error of each model parameter")
       ->check(number_between(0.0, 50.0))
       ->capture_default_str();
   command
@@ -190,7 +195,7 @@ void add_tune(CLI::App& program, ExitCode& outcome) {
   command->add_option("--frequencies-hz", options->task.frequencies_hz, "Frequencies of the tracked sines")
       ->check(number_between(0.01, 5.0))
       ->capture_default_str();
-  command->add_option("--noise-mm", options->task.noise_mm, "Noise of the sensor, without --rig")
+  command->add_option("--noise-mm", options->task.noise_mm, "Noise of the sensor, if --rig is not given")
       ->check(number_between(0.0, 10.0))
       ->capture_default_str();
   command->add_option("--draws", options->task.draws, "Fingers")

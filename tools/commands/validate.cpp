@@ -114,7 +114,7 @@ ExitCode run(const ValidateOptions& options, const std::vector<std::string>& cal
 
 void add_validate(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<ValidateOptions>();
-  CLI::App* command = program.add_subcommand("validate", "Report how well a model predicts logs");
+  CLI::App* command = program.add_subcommand("validate", "Report the prediction error of a model on logs");
   command->add_option("--model", options->model, "Model file")->required();
   command->add_option("--data", options->data, "Logs to predict (CSV, or a recording's folder)")->required();
   command->add_option("--out", options->out, "Folder for validate.json, report.html, and series.csv per log");

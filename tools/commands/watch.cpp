@@ -255,8 +255,8 @@ void LiveWatch::leave() {
   for (const auto& [id, request] : asked_) {
     if (request.value("command", "") == "start")
       std::fprintf(stderr,
-                   "softgrip: the daemon has not replied to the start of %s: `softgrip status` shows if it "
-                   "runs, `softgrip stop` stops it\n",
+                   "softgrip: the daemon has not replied to the start of %s. `softgrip status` shows if this "
+                   "sequence runs, `softgrip stop` stops the sequence\n",
                    request.value("sequence", "").c_str());
   }
 }

@@ -79,11 +79,11 @@ TEST(ReplyCheck, AcceptsWhatTheDaemonSends) {
 TEST(ReplyCheck, SaysWhatIsMalformed) {
   EXPECT_EQ(error_of("{}"), "`ok` is missing");
   EXPECT_EQ(error_of("[]"), "a line is not a JSON object");
-  EXPECT_EQ(error_of(R"({"ok":1})"), "`ok` is of the wrong kind");
+  EXPECT_EQ(error_of(R"({"ok":1})"), "`ok` has the wrong type");
   EXPECT_EQ(error_of(R"({"ok":true})"), "`result` is missing");
   EXPECT_EQ(error_of(R"({"ok":false,"error":{"code":"busy"}})"), "`error.message` is missing");
-  EXPECT_EQ(error_of(R"({"ok":true,"result":{"events":[{},3]}})"), "`result.events[1]` is of the wrong kind");
-  EXPECT_EQ(error_of(R"({"id":-1,"ok":true,"result":{}})"), "`id` is of the wrong kind");
+  EXPECT_EQ(error_of(R"({"ok":true,"result":{"events":[{},3]}})"), "`result.events[1]` has the wrong type");
+  EXPECT_EQ(error_of(R"({"id":-1,"ok":true,"result":{}})"), "`id` has the wrong type");
   EXPECT_EQ(error_of(R"({"watch":{}})"), "`watch.state` is missing");
   EXPECT_EQ(error_of(""), "a line is not JSON in UTF-8");
   EXPECT_EQ(error_of("{\"ok\":true,\"result\":{\"a\":\"\xff\xfe\"}}"), "a line is not JSON in UTF-8");
