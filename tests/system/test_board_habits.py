@@ -133,7 +133,7 @@ class BoardHabits(bench.BenchTest):
         inputs = "function: 3\n  address: 0\n  count: 8"
         at = {n: self.board(f"at_{n}", (inputs, inputs.replace("0", str(n)))) for n in (1, 400, 401)}
         self.assert_says(self.examined(at[1], self.board("plain")), "one register lower", "address_base: 1")
-        self.assert_says(self.examined(at[400], at[401]), "accepts the request if it begins one register higher, at 401", "by one")
+        self.assert_says(self.examined(at[400], at[401]), "accepts the request if the request begins one register higher, at 401", "by one")
 
     def test_the_doctor_says_the_other_read_function(self):
         inputs, apart = "function: 3\n  address: 0\n  count: 8", ("fc23: true", "fc23: false")
@@ -167,7 +167,7 @@ class BoardHabits(bench.BenchTest):
     def test_the_doctor_says_what_a_gateway_does(self):
         plain = self.board("plain")
         self.assert_says(self.examined(plain, plain, "--rtu-over-tcp"), "the other framing", "framing: rtu")
-        self.assert_says(self.examined(plain, plain, fault="wrong_transaction"), "its responses are correct",
+        self.assert_says(self.examined(plain, plain, fault="wrong_transaction"), "responses of the board are correct",
                          "accept_no_transaction_id")
 
     def test_a_rig_that_says_its_habits_works(self):

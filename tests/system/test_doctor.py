@@ -274,7 +274,7 @@ class Calibrate(bench.BenchTest):
         before = rig.read_bytes()
         wrong = ("--gauge-mm", "4.8", "118.9", "--write")
         done = self.softgrip("calibrate", "--rig", rig, *self.QUICK, *wrong, expect=6)
-        self.assertIn("doubtful: sensor: where the line of the rig file gives", done.stderr)
+        self.assertIn("doubtful: sensor: at the point where the calibration line in the rig file gives", done.stderr)
         self.assertIn("doubtful: sensor: between", done.stderr)
         self.assertIn("is unchanged", done.stderr)
         self.assertEqual(rig.read_bytes(), before)

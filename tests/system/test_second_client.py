@@ -74,7 +74,7 @@ class SecondClient(bench.BenchTest):
         rig = self.rig(emulator.port)
         alone = self.doctor(rig)
         self.assertEqual(alone["watchdog"]["verdict"], "warn")
-        self.assertIn("a client that only reads feeds the watchdog", alone["watchdog"]["text"])
+        self.assertIn("even a client that only reads resets the watchdog", alone["watchdog"]["text"])
         self.assertEqual(alone["clients"]["verdict"], "ok")
         self.reader(emulator.port)
         both = self.doctor(rig)

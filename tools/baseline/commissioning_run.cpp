@@ -146,8 +146,8 @@ class Commissioning {
       length_s += 2 * (options_.rest_s + waveform.duration_s() + pause_s);
     return "channel '" + rig_.channel_name() + "' of " + rig_.rig.name +
            " will move: one gentle motion, then each of " + std::to_string(waveforms.size()) +
-           " experiments twice, at most " + significant(runs_.limits.pressure_max_kpa, 3) + " kPa, in about " +
-           significant(length_s / 60, 2) + " minutes. Keep the range of the finger free";
+           " experiments twice, at most " + significant(runs_.limits.pressure_max_kpa, 3) +
+           " kPa, in about " + significant(length_s / 60, 2) + " minutes. Keep the range of the finger free";
   }
 
   static std::string no_motion(double found, double expected) {

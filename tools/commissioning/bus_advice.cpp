@@ -17,16 +17,16 @@ struct BusAdvice {
 
 constexpr std::array<BusAdvice, 5> bus_advices{{
     {BusStatus::disconnected,
-     "check power and cable of the board, its address in the rig file, and that no other Modbus client "
-     "occupies it"},
+     "check the power and the cable of the board, and its address in the rig file; check that no other "
+     "Modbus client occupies the board"},
     {BusStatus::closed_at_once,
-     "the board is reachable but accepts no further client: end the other programs that are connected "
-     "to it, or wait until it drops a broken connection"},
+     "the board is reachable but accepts no further client: end the other programs that are connected to the "
+     "board, or wait until the board drops a broken connection"},
     {BusStatus::timed_out,
      "check power and cable of the board and `unit` in the rig file; a board that ignores the first requests "
      "after a connection needs `settle_s`"},
     {BusStatus::bad_reply,
-     "look for another Modbus client or a gateway that mixes up responses; check `unit` in the rig file"},
+     "check for another Modbus client or a gateway that mixes up responses; check `unit` in the rig file"},
     {BusStatus::exception,
      "the board responds but rejects the request: compare the function code, address and count in the board "
      "map with the manual of the board"},

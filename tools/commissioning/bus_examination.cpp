@@ -148,8 +148,9 @@ class BusInquiry {
         return findings.fail(name_, heard.detail + ", a response of a gateway",
                              "check `unit` in the rig file, and power and wires behind the gateway");
       default:
-        return findings.fail(name_, heard.detail,
-                             "the board responds and reports an internal failure: look at its display");
+        return findings.fail(
+            name_, heard.detail,
+            "the board responds but reports an internal failure: read the display of the board");
     }
     findings.fail(
         name_, heard.detail,
@@ -179,8 +180,8 @@ class BusInquiry {
     for (const int by : {-1, 1}) {
       if (!can_move(by) || ask(moved(by)).status != BusStatus::ok) continue;
       findings.fail(name_,
-                    fmt::format("{}; the board accepts the request if it begins one register {}, at {}: the "
-                                "addresses are off by one",
+                    fmt::format("{}; the board accepts the request if the request begins one register {}, at "
+                                "{}, so the addresses are wrong by one",
                                 heard.detail, by < 0 ? "lower" : "higher", asked_.address + by),
                     base_advice(by));
       return true;
@@ -236,24 +237,25 @@ class BusInquiry {
       other.rtu_framing = !tcp->rtu_framing;
       if (try_address(other)) {
         return findings.fail(
-            name_, heard.detail + "; it responds to the other framing",
+            name_, heard.detail + "; the board responds to requests with the other framing",
             fmt::format("write `framing: {}` in the rig file", other.rtu_framing ? "rtu" : "tcp"));
       }
       other = *tcp;
       other.numbered = false;
       if (tcp->numbered && !tcp->rtu_framing && try_address(other)) {
-        return findings.fail(name_,
-                             heard.detail + "; its responses are correct except for the transaction id",
-                             "the gateway does not return the transaction id. `accept_no_transaction_id` in "
-                             "the rig file accepts the risk");
+        return findings.fail(
+            name_, heard.detail + "; the responses of the board are correct except for the transaction id",
+            "the gateway does not return the transaction id. To accept the risk, write "
+            "`accept_no_transaction_id` in the rig file");
       }
     }
     if (try_other_units(heard, findings)) return;
     findings.fail(name_, heard.detail,
                   heard.status == BusStatus::bad_reply
-                      ? "compare `unit` in the rig file with that of the board; look for another Modbus "
-                        "client on the line"
-                      : "no unit id responds: check power and wires, and that the port is a Modbus port");
+                      ? "compare `unit` in the rig file with the unit id of the board; check for another "
+                        "Modbus client on the line"
+                      : "no unit id responds: check the power and the wires of the board, and check that the "
+                        "port is a Modbus port");
   }
 
   bool try_address(const drivers::TcpAddress& other) {
@@ -306,16 +308,16 @@ class BusInquiry {
     const std::string name(drivers::name_of(fit.order));
     if (fit.by != 0) {
       return findings.fail(name_,
-                           fmt::format("the inputs are implausible with the board map; if read one register "
-                                       "{}, they are probably {}: the addresses are off by one",
+                           fmt::format("the inputs are implausible with the board map; read one register {}, "
+                                       "the inputs are probably {}, so the addresses are wrong by one",
                                        fit.by < 0 ? "lower" : "higher", fit.shown),
                            base_advice(fit.by));
     }
-    findings.fail(
-        name_,
-        fmt::format("the inputs are implausible with `{}`; with `{}` they are {}: probably the word order",
-                    drivers::name_of(map_.word_order), name, fit.shown),
-        fmt::format("write `word_order: {}` in the board map", name));
+    findings.fail(name_,
+                  fmt::format("the inputs are implausible with `{}`; with `{}` the inputs are {}, so the "
+                              "word order is probably wrong",
+                              drivers::name_of(map_.word_order), name, fit.shown),
+                  fmt::format("write `word_order: {}` in the board map", name));
   }
 
   const rig::RigFile& rig_;

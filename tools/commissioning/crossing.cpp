@@ -143,10 +143,11 @@ void tell_crossings(const rig::RigFile& rig, std::span<const Crossing> crossings
     const char* const what = valves                                   ? "valves "
                              : crossing.kind == CrossingKind::sensors ? "sensors "
                                                                       : "monitors ";
-    findings.fail(
-        what + names, "crossed: " + shown,
-        fmt::format("swap {}: their wires at the board, or their numbers under `{}` in the rig file{}",
-                    terminals, key, valves ? "; or the lines between valves and fingers" : ""));
+    findings.fail(what + names, "crossed: " + shown,
+                  fmt::format("swap {}: exchange the wires of these terminals at the board, or exchange the "
+                              "numbers under `{}` in the rig file{}",
+                              terminals, key,
+                              valves ? "; or swap the air lines between the valves and the fingers" : ""));
   }
 }
 

@@ -85,9 +85,9 @@ void judge_real_time(const Json& status, Findings& findings) {
     const std::string detail = text_in(step, "detail");
     const bool slow_kernel = name == "kernel" && detail.find("no PREEMPT_RT") != std::string::npos;
     if (text_in(step, "outcome") == "failed") {
-      findings.warn(name, detail, "grant this setting, or accept that " + text_in(step, "cost"));
+      findings.warn(name, detail, "grant this real-time setting, or accept that " + text_in(step, "cost"));
     } else if (slow_kernel) {
-      findings.warn(name, detail, "install linux-image-rt-amd64 (Debian) and boot it");
+      findings.warn(name, detail, "install linux-image-rt-amd64 (Debian) and boot this kernel");
     } else {
       findings.ok(name, detail.empty() ? text_in(step, "outcome") : detail);
     }
@@ -104,11 +104,11 @@ void judge_loop(const Json& status, const Json& statistics, Findings& findings) 
       fmt::format("{:.0f} ticks, {:.0f} overruns, wake-up latency p99 {:.0f} us, max {:.0f} us", ticks,
                   overruns, p99_us, number_in(part(loop, "wake_up"), "max_us"));
   if (overruns > 1e-2 * ticks) {
-    findings.fail(
-        "loop", text,
-        "cycles are missed: see scheduling above, lower rate_hz, or reduce the load of the processor");
+    findings.fail("loop", text,
+                  "cycles are missed: see the finding `scheduling`, lower rate_hz, or reduce the load of the "
+                  "processor");
   } else if (overruns > 0 || p99_us > period_us / 10) {
-    findings.warn("loop", text, "cycles were missed or late occasionally: see scheduling above");
+    findings.warn("loop", text, "cycles were missed or late occasionally: see the finding `scheduling`");
   } else {
     findings.ok("loop", text);
   }
@@ -131,7 +131,7 @@ void judge_bus(const Json& status, const Json& statistics, Findings& findings) {
                   std::string(bus_advice(text_in(bus, "failure_kind"))) + "; softgripd reconnects");
   } else if (failures > 1e-3 * exchanges) {
     findings.warn("board", text,
-                  "exchanges fail. Check cable, termination, other Modbus clients and the rate");
+                  "some exchanges fail. Check the cable, the termination, other Modbus clients and rate_hz");
   } else {
     findings.ok("board", text);
   }
@@ -151,7 +151,7 @@ void judge_channel(const Json& channel, bool connected, bool has_run, Findings& 
     findings.ok("sensor " + name, text);
   } else {
     findings.fail("sensor " + name, "readings are not valid: " + validity,
-                  "check the sensor's display, its wire and its window");
+                  "check the display, the wire and the window of the sensor");
     findings.not_judged("model " + name, "see `sensor " + name + "`");
     return;
   }
@@ -160,15 +160,17 @@ void judge_channel(const Json& channel, bool connected, bool has_run, Findings& 
       fmt::format("{}, residual {:.2f} mm RMS", health, number_in(channel, "health_rms_mm"));
   if (health == "unfit" && !has_run) {
     findings.warn("model " + name, residual,
-                  "no sequence has run since softgripd started, and the finger was probably not at rest "
-                  "then. Run a sequence");
+                  "no sequence has run since softgripd started, and the finger was probably not at rest at "
+                  "the start. Run a sequence");
   } else if (health == "unfit") {
-    findings.fail("model " + name, residual,
-                  "record tp1 and identify again; look for wear, leaks or a moved sensor");
+    findings.fail(
+        "model " + name, residual,
+        "record the test signal tp1 and identify the model again; check for wear, leaks or a moved sensor");
   } else if (health == "suspect") {
-    findings.warn("model " + name, residual, "calibrate and identify again soon");
+    findings.warn("model " + name, residual, "calibrate the sensor and identify the model again soon");
   } else {
-    findings.ok("model " + name, health == "unknown" ? "not judged yet: no finger has moved" : residual);
+    findings.ok("model " + name,
+                health == "unknown" ? "not checked yet, because no finger has moved" : residual);
   }
 }
 
@@ -177,16 +179,18 @@ void judge_rest(const Json& status, Findings& findings) {
   if (const std::string error = text_in(recording, "error"); !error.empty()) {
     findings.fail("recording", error, "free disk space, or check the permissions of the folder");
   } else if (number_in(recording, "dropped_rows") > 0) {
-    findings.warn("recording", fmt::format("{:.0f} rows were lost", number_in(recording, "dropped_rows")),
-                  "the disk is too slow: use another disk or raise recorder: decimation");
+    findings.warn(
+        "recording", fmt::format("{:.0f} rows were lost", number_in(recording, "dropped_rows")),
+        "the disk is too slow: use a faster disk, or raise `decimation` under `recorder` in the rig file");
   }
   const Json gpio = part(status, "gpio");
   if (gpio.empty()) return;
   if (is_set(gpio, "lost")) {
-    findings.fail("gpio", "the digital lines cannot be read", "restore the chip and restart softgripd");
+    findings.fail("gpio", "the digital lines cannot be read",
+                  "connect the GPIO chip again and restart softgripd");
   } else if (is_set(gpio, "emergency_stop")) {
     findings.warn("gpio", "the emergency stop is pressed, or has not been released since the start",
-                  "release it, then `softgrip acknowledge`");
+                  "release the emergency stop, then run `softgrip acknowledge`");
   } else {
     findings.ok("gpio",
                 fmt::format("emergency stop released, enable {}", is_set(gpio, "enable") ? "on" : "off"));

@@ -91,7 +91,7 @@ std::optional<std::pair<double, double>> two_numbers(const std::string& text) {
 // --- Questions about the values of a draft, and checks of the answers
 
 std::optional<Question> ask_board(const RigDraft&) {
-  return Question{"board map, one or several, each as a file or a name" + in_brackets(names_in("boards")) +
+  return Question{"one or more board maps, each as a file or a name" + in_brackets(names_in("boards")) +
                       ", or `simulated`",
                   ""};
 }
@@ -99,7 +99,7 @@ std::optional<Question> ask_board(const RigDraft&) {
 std::string take_board(const std::string& text, RigDraft& draft) {
   draft.modules.clear();
   const std::vector<std::string> words = words_of(text);
-  if (words.empty()) return "a board map is needed";
+  if (words.empty()) return "at least one board map is required";
   if (words.size() == 1 && words.front() == "simulated") return "";
   for (const std::string& word : words) {
     const std::string path = path_of(word, "boards");
@@ -110,7 +110,7 @@ std::string take_board(const std::string& text, RigDraft& draft) {
     draft.modules.push_back({path, *map});
   }
   if (most_fingers(draft, false) == 0)
-    return "valves need outputs and sensors need inputs: add a module with the missing ones";
+    return "valves need outputs and sensors need inputs: add a module with the missing terminals";
   return "";
 }
 
@@ -122,7 +122,7 @@ std::optional<Question> ask_address(const RigDraft& draft) {
 
 std::string take_address(const std::string& text, RigDraft& draft) {
   const std::vector<std::string> words = words_of(text);
-  if (words.size() != 1) return "one address or device is needed";
+  if (words.size() != 1) return "one address or one device is required";
   const std::string& word = words.front();
   if (word.front() == '/') {
     const auto unclear = drivers::unclear_serial_device(word);
@@ -149,8 +149,9 @@ std::string take_address(const std::string& text, RigDraft& draft) {
 
 std::optional<Question> ask_unit(const RigDraft& draft) {
   if (draft.modules.empty()) return std::nullopt;
-  return Question{draft.modules.size() > 1 ? "unit id of the first module; the others follow in order"
-                                           : "unit id of the board",
+  return Question{draft.modules.size() > 1
+                      ? "unit id of the first module; the other modules have the next unit ids"
+                      : "unit id of the board",
                   "1"};
 }
 
@@ -234,7 +235,7 @@ std::string take_valve(const std::string& text, RigDraft& draft) {
 
 std::optional<Question> ask_pressure_max(const RigDraft& draft) {
   const double highest = std::max(draft.valve.y0, draft.valve.y1);
-  return Question{"highest permissible pressure of a finger, kPa", written(std::min(60.0, highest))};
+  return Question{"highest permitted pressure of a finger, kPa", written(std::min(60.0, highest))};
 }
 
 std::string take_pressure_max(const std::string& text, RigDraft& draft) {
@@ -266,7 +267,8 @@ std::string take_sensor(const std::string& text, RigDraft& draft) {
 
 std::optional<Question> ask_monitor(const RigDraft& draft) {
   if (draft.fingers.size() > most_fingers(draft, true)) return std::nullopt;
-  return Question{"is the pressure of each finger measured (the valve's monitor output), yes or no", "yes"};
+  return Question{"is the pressure of each finger measured by the monitor output of its valve, yes or no",
+                  "yes"};
 }
 
 std::string take_monitor(const std::string& text, RigDraft& draft) {
@@ -281,15 +283,15 @@ std::string take_monitor(const std::string& text, RigDraft& draft) {
 std::optional<Question> ask_watchdog(const RigDraft& draft) {
   if (has_watchdog(draft)) return std::nullopt;
   return Question{
-      "this board does not vent without communication: it keeps the last pressures if softgripd fails. Is "
-      "this "
-      "accepted, yes or no",
+      "this board does not vent without communication: if softgripd fails, the board keeps the last "
+      "pressures. Is this risk accepted, yes or no",
       ""};
 }
 
 std::string take_watchdog(const std::string& text, RigDraft& draft) {
   if (text != "yes" && text != "y")
-    return "the rig is refused unless this is accepted: enter yes, or choose another board (Ctrl-C ends)";
+    return "the rig is refused if the risk is not accepted: enter yes, or choose a different board (Ctrl-C "
+           "ends)";
   draft.accepts_no_watchdog = true;
   return "";
 }
@@ -298,18 +300,20 @@ std::string take_watchdog(const std::string& text, RigDraft& draft) {
 
 const std::vector<Fact>& draft_facts() {
   static const std::vector<Fact> facts{
-      {"board", "Board map, a file or a name in config/boards; once per module; or `simulated`", 1, ask_board,
-       take_board},
+      {"board",
+       "Board map: a file, a name in config/boards, or `simulated`; give the option once for each module", 1,
+       ask_board, take_board},
       {"address", "Numeric address with or without :PORT, or the path of a serial device", 1, ask_address,
        take_address},
       {"unit", "Unit id of the first module [1]", 1, ask_unit, take_unit},
       {"baud", "Baud rate of the serial line [9600]", 1, ask_baud, take_baud},
-      {"finger", "Name of a finger; once per finger [left right]", 1, ask_fingers, take_fingers},
-      {"model", "Model of the finger's free motion, a file or a name in config/models [bench_twin]", 1,
+      {"finger", "Name of a finger; give the option once for each finger [left right]", 1, ask_fingers,
+       take_fingers},
+      {"model", "Model of the free motion of the finger: a file, or a name in config/models [bench_twin]", 1,
        ask_model, take_model},
       {"valve-kpa", "Pressures at the lower and the upper end of the valve's signal [0 100]", 2, ask_valve,
        take_valve},
-      {"pressure-max-kpa", "Highest permissible pressure of a finger [60]", 1, ask_pressure_max,
+      {"pressure-max-kpa", "Highest permitted pressure of a finger [60]", 1, ask_pressure_max,
        take_pressure_max},
       {"sensor-mm", "Displacements at the lower and the upper end of the sensor's signal [-5 45]", 2,
        ask_sensor, take_sensor},

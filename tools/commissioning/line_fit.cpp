@@ -110,7 +110,8 @@ tl::expected<Line, std::string> fit_line(const std::vector<Visit>& visits, const
                                          const std::string& unit, const std::string& electrical) {
   const Means low = means_of(visits, false);
   const Means high = means_of(visits, true);
-  if (low.count == 0 || high.count == 0) return tl::unexpected(std::string("two positions are needed"));
+  if (low.count == 0 || high.count == 0)
+    return tl::unexpected(std::string("two different positions are required"));
   for (const Visit& visit : visits) {
     if (!std::isfinite(visit.reference) || !std::isfinite(visit.electrical)) {
       return tl::unexpected(std::string("a value is not a number"));
@@ -119,21 +120,21 @@ tl::expected<Line, std::string> fit_line(const std::vector<Visit>& visits, const
   const double span = std::abs(high.reference - low.reference);
   const double electrical_span = std::abs(high.electrical - low.electrical);
   if (span < demands.least_span) {
-    return tl::unexpected(
-        fmt::format("the two points are too close: {:.4g} {} apart, at least {:.4g} are needed", span, unit,
-                    demands.least_span));
+    return tl::unexpected(fmt::format(
+        "the two points are too close: the distance is {:.4g} {}, but at least {:.4g} is required", span,
+        unit, demands.least_span));
   }
   if (electrical_span < demands.least_electrical_span) {
     return tl::unexpected(
-        fmt::format("the signal does not follow: it changes by {:.4g} {} between points that are {:.4g} {} "
-                    "apart, and a change of at least {:.4g} is needed",
+        fmt::format("the signal does not follow: the signal changes by {:.4g} {} between points with a "
+                    "distance of {:.4g} {}, but a change of at least {:.4g} is required",
                     electrical_span, electrical, span, unit, demands.least_electrical_span));
   }
   const double noise = largest(visits, &Visit::noise);
   if (noise > demands.most_noise_share * electrical_span) {
-    return tl::unexpected(
-        fmt::format("too much noise: {:.4g} {} on a difference of {:.4g} {}, which is more than {:g} %",
-                    noise, electrical, electrical_span, electrical, 100 * demands.most_noise_share));
+    return tl::unexpected(fmt::format(
+        "too much noise: the noise is {:.4g} {} on a difference of {:.4g} {}, which is more than {:g} %",
+        noise, electrical, electrical_span, electrical, 100 * demands.most_noise_share));
   }
   Line line;
   const Means all = means_of(visits, std::nullopt);
@@ -145,9 +146,10 @@ tl::expected<Line, std::string> fit_line(const std::vector<Visit>& visits, const
     line.repeat_spread =
         std::max(spread_at(visits, line.residuals, false), spread_at(visits, line.residuals, true));
     if (*line.repeat_spread > span / 10) {
-      return tl::unexpected(fmt::format(
-          "not repeatable: visits to one position differ by {:.4g} {}, and the two positions by {:.4g}",
-          *line.repeat_spread, unit, span));
+      return tl::unexpected(
+          fmt::format("not repeatable: repeated measurements at one position differ by {:.4g} {}, but the "
+                      "two positions differ only by {:.4g}",
+                      *line.repeat_spread, unit, span));
     }
   }
   line.noise = noise * std::abs(line.slope);

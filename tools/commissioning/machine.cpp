@@ -54,12 +54,12 @@ void take(const RealTimeStep& step, bool required, Findings& findings) {
   }
   const std::string who = " (as user " + user() + ")";
   if (required) {
-    findings.fail(
-        step.name, step.detail + who,
-        "softgripd will not start, because the rig file sets real_time: required. Without this setting, " +
-            step.cost);
+    findings.fail(step.name, step.detail + who,
+                  "softgripd will not start, because the rig file sets `real_time: required`. Without this "
+                  "setting of the computer, " +
+                      step.cost);
   } else {
-    findings.warn(step.name, step.detail + who, "grant this setting, or accept that " + step.cost);
+    findings.warn(step.name, step.detail + who, "grant this real-time setting, or accept that " + step.cost);
   }
 }
 
@@ -91,16 +91,14 @@ void judge_timer(const rig::RigFile& rig, const daemon::Histogram& wake_up, Find
   if (resolution.tv_sec > 0 || resolution.tv_nsec > 1000) {
     findings.fail("timer", text, "this kernel has no high-resolution timers (CONFIG_HIGH_RES_TIMERS)");
   } else if (static_cast<double>(wake_up.quantile_ns(0.95)) * us_per_ns > period_us / 2) {
-    // One late wake-up per second is tolerable. If 5 % of the wake-ups are late, the set-up of the computer
-    // is faulty.
-    findings.fail(
-        "timer", text,
-        "cycles will be missed: grant SCHED_FIFO, lower rate_hz, or reduce the load of the processor");
+    // One late wake-up per second is tolerable. If one wake-up in 20 is late, the set-up is faulty.
+    findings.fail("timer", text,
+                  "the control loop will miss cycles: grant SCHED_FIFO, lower rate_hz, or reduce the load of "
+                  "the processor");
   } else if (p99_us > period_us / 10 || max_us > period_us / 2) {
-    findings.warn(
-        "timer", text,
-        "a wake-up was late by a large part of a cycle: see `kernel` and `scheduling`, and check what else "
-        "this computer does");
+    findings.warn("timer", text,
+                  "a wake-up was late by a large part of a cycle: see the findings `kernel` and "
+                  "`scheduling`, and check which other programs run on this computer");
   } else {
     findings.ok("timer", text);
   }
@@ -137,7 +135,7 @@ void examine_machine(const rig::RigFile& rig, Findings& findings) {
   if (kernel.detail.find("no PREEMPT_RT") == std::string::npos) {
     findings.ok("kernel", kernel.detail);
   } else {
-    findings.warn("kernel", kernel.detail, "install linux-image-rt-amd64 (Debian) and boot it");
+    findings.warn("kernel", kernel.detail, "install linux-image-rt-amd64 (Debian) and boot this kernel");
   }
   daemon::RealTimeReport report;
   daemon::Histogram wake_up;
@@ -165,13 +163,13 @@ void examine_clock(Findings& findings) {
   std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &date);
   constexpr int year_of_the_software = 2025;
   if (date.tm_year + 1900 < year_of_the_software) {
-    findings.fail(
-        "clock", fmt::format("{}: the clock is wrong", text),
-        "set it (timedatectl set-time, or a time server): recordings and calibrations carry its date");
+    findings.fail("clock", fmt::format("{}: the clock of the computer is wrong", text),
+                  "set the clock (timedatectl set-time, or a time server), because recordings and "
+                  "calibrations contain its date");
   } else if (status < 0 || status == TIME_ERROR || (state.status & STA_UNSYNC) != 0) {
     findings.warn("clock", fmt::format("{}, not synchronised", text),
-                  "recordings may carry a wrong date: install chrony or systemd-timesyncd, or compare with a "
-                  "watch. Control uses the monotonic clock and is not affected");
+                  "recordings may contain a wrong date: install chrony or systemd-timesyncd, or compare the "
+                  "clock with a watch. The control uses the monotonic clock and is not affected");
   } else {
     findings.ok("clock", fmt::format("{}, synchronised", text));
   }
@@ -202,8 +200,8 @@ void examine_disk(const rig::RigFile& rig, Findings& findings) {
     return findings.fail(
         "disk",
         fmt::format("{} cannot be written as user {}: {}", recorder.directory, user(), std::strerror(failed)),
-        failed == ENOSPC ? "free space, or move recorder: directory"
-                         : "give the folder to the user of softgripd");
+        failed == ENOSPC ? "free disk space, or change `directory` under `recorder` in the rig file"
+                         : "make the user of softgripd the owner of the folder");
   }
   struct statvfs space {};
   if (::statvfs(folder.c_str(), &space) != 0) {
@@ -217,9 +215,11 @@ void examine_disk(const rig::RigFile& rig, Findings& findings) {
   const std::string text = fmt::format("{}: {} GB free, about {} of recording", recorder.directory,
                                        significant(free_bytes * 1e-9, 3), in_hours_or_days(hours));
   if (hours < least_hours) {
-    findings.fail("disk", text, "free space, or move recorder: directory, or raise recorder: decimation");
+    findings.fail(
+        "disk", text,
+        "free disk space, or change `directory` or raise `decimation` under `recorder` in the rig file");
   } else if (hours < good_hours) {
-    findings.warn("disk", text, "less than a day: move old recordings away");
+    findings.warn("disk", text, "the free space lasts less than a day: move old recordings to another disk");
   } else {
     findings.ok("disk", text);
   }

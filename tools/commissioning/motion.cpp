@@ -85,16 +85,19 @@ class Beside {
 void judge_model(const control::ChannelSettings& channel, const Motion& motion, Findings& findings) {
   const control::ModelHealthSettings& health = channel.health;
   const double healthy_mm = 2 * std::hypot(health.model_error_mm, health.noise_mm);
-  const std::string text =
-      fmt::format("residual {:.2f} mm RMS during the motion; healthy below {:.2f}, unfit above {:.2f}",
-                  motion.residual_rms_mm, healthy_mm, health.unfit_mm);
+  const std::string text = fmt::format(
+      "residual {:.2f} mm RMS during the motion; the model is healthy below {:.2f} mm and unfit above {:.2f} "
+      "mm",
+      motion.residual_rms_mm, healthy_mm, health.unfit_mm);
   const std::string name = "model " + channel.name;
   if (motion.residual_rms_mm > health.unfit_mm) {
     findings.fail(name, text,
-                  "the cause may be another finger, wear, a leak or a moved sensor: inspect, calibrate, then "
-                  "identify again");
+                  "the cause may be a replaced finger, wear, a leak or a moved sensor: inspect the finger, "
+                  "calibrate the sensor, then identify the model again");
   } else if (motion.residual_rms_mm > healthy_mm) {
-    findings.warn(name, text, "grip detection loses margin: record tp1 and identify again soon");
+    findings.warn(
+        name, text,
+        "the detection of a grip loses margin: record the test signal tp1 and identify the model again soon");
   } else {
     findings.ok(name, text);
   }
@@ -153,8 +156,8 @@ bool judge_valve(const control::ChannelSettings& of, const Sample& monitor, doub
     findings.ok("valve " + of.name, text);
   } else {
     findings.fail("valve " + of.name, text,
-                  "check supply pressure, valve power, leaks and kinked lines. If they are in order, "
-                  "calibrate valve and monitor");
+                  "check supply pressure, valve power, leaks and kinked lines. If these are in order, "
+                  "calibrate the valve and the pressure monitor");
   }
   return follows;
 }
@@ -163,22 +166,21 @@ void judge_finger(const control::ChannelSettings& of, const Sample& rest, const 
                   const Motion& motion, bool pressure_seen, Findings& findings) {
   const double moved_mm = seen.mean - rest.mean;
   const std::string name = "finger " + of.name;
-  const std::string text = fmt::format("moved {:.2f} mm at {:.1f} kPa, the model predicts {:.2f} mm",
-                                       moved_mm, motion.command_kpa, motion.model_mm);
+  const std::string text =
+      fmt::format("the finger moved {:.2f} mm at {:.1f} kPa; the model predicts {:.2f} mm", moved_mm,
+                  motion.command_kpa, motion.model_mm);
   const auto broken = [&](const std::string& what, const std::string& advice) {
     findings.fail(name, what, advice);
     findings.not_judged("model " + of.name, "see `" + name + "`");
   };
   if (seen.invalid > 0) {
     broken(fmt::format("invalid readings during the motion: {}", daemon::name_of(seen.why)),
-           "the finger leaves the sensor's range, or the sensor's beam is interrupted");
+           "the finger leaves the range of the sensor, or the beam of the sensor is interrupted");
   } else if (!has_moved(rest, seen, motion.model_mm)) {
-    broken(
-        text,
-        pressure_seen
-            ? "the pressure is present: check for a stuck sensor, a burst finger, or a line blocked behind "
-              "the valve"
-            : "no supply, a blocked line or a stuck sensor: move the finger by hand and watch the reading");
+    broken(text, pressure_seen ? "the pressure is present: check for a stuck sensor, a burst finger, or a "
+                                 "blocked air line between valve and finger"
+                               : "no supply pressure, a blocked air line or a stuck sensor: move the finger "
+                                 "by hand and watch the reading");
   } else if (moved_mm * motion.model_mm < 0) {
     broken(text, "the sensor's sign is wrong: calibrate the sensor");
   } else {
@@ -198,7 +200,8 @@ void judge_motion(const rig::RigFile& rig, std::size_t channel, const ChannelSam
   if (!known.valve.empty()) {
     findings.not_judged("valve " + of.name, known.valve);
   } else if (monitor.count == 0) {
-    findings.ok("valve " + of.name, "no pressure monitor: judged by the motion of the finger");
+    findings.ok("valve " + of.name,
+                "not measured, because the channel has no pressure monitor; see the motion of the finger");
   } else {
     pressure_seen = judge_valve(of, monitor, motion.command_kpa, findings);
     if (!pressure_seen && finger_waits.empty()) finger_waits = "see `valve " + of.name + "`";

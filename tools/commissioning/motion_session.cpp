@@ -170,7 +170,8 @@ std::string MotionSession::complaint() const {
 std::optional<MotionFailure> MotionSession::bus_failure() const {
   const control::FaultCode fault = line_->report().health.fault;
   if (fault == control::FaultCode::board_watchdog_tripped) {
-    return MotionFailure{FailureKind::bus, complaint() + ". The board has vented, so the motion has ended",
+    return MotionFailure{FailureKind::bus,
+                         complaint() + ". The board has vented the fingers, so the motion has ended",
                          drivers::BusStatus::watchdog_tripped};
   }
   const bool down = silent_cycles_ >= rig_.settings.faults.bus_down_cycles;
@@ -214,7 +215,7 @@ MotionFailure MotionSession::blind() const {
   const model::Validity validity = readings_[required_->channel].validity;
   const bool of_displacement = required_->displacement && validity != model::Validity::valid;
   return {FailureKind::blind,
-          fmt::format("the {} of `{}`: {} consecutive readings are not valid{}. No finger is moved without "
+          fmt::format("the {} of `{}`: {} consecutive readings are not valid{}. Fingers are moved only with "
                       "valid readings: check the cable of the sensor{}",
                       of_displacement ? "displacement sensor" : "pressure monitor",
                       rig_.settings.channels[required_->channel].name, blind_cycles_,

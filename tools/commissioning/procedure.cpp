@@ -65,7 +65,7 @@ Expected<double> ask_number(MotionSession& session, Operator& person, const std:
     if (const auto value = typed_number(*answer)) return *value;
     person.tell("`" + *answer + "` is not a number. Please enter a number such as 12.34");
   }
-  return tl::unexpected(Refusal{ExitCode::input_refused, "no number was given: " + question});
+  return tl::unexpected(Refusal{ExitCode::input_refused, "no number was entered: " + question});
 }
 
 /// Asks a question about a position. Enter confirms the requested position, a number states the actual
@@ -80,10 +80,10 @@ Expected<std::optional<double>> ask_position(MotionSession& session, Operator& p
     if (answer->substr(first) == "-") return std::optional<double>();
     if (const auto value = typed_number(*answer)) return std::optional<double>(*value);
     person.tell("`" + *answer +
-                "` is not a position. Press Enter if the target is there, type its actual position (mm), or "
-                "- to skip it");
+                "` is not a position. Press Enter if the target is at the position, enter the actual "
+                "position of the target (mm), or enter - to skip the position");
   }
-  return tl::unexpected(Refusal{ExitCode::input_refused, "no position was given: " + question});
+  return tl::unexpected(Refusal{ExitCode::input_refused, "no position was entered: " + question});
 }
 
 Expected<void> move_to(const rig::RigFile& rig, MotionSession& session, Operator& person,
@@ -140,7 +140,7 @@ std::optional<std::string> at_an_end(const Visit& visit, const drivers::InputWir
   const double slack = share_of_end * (wiring.valid_max - wiring.valid_min);
   if (visit.electrical > wiring.valid_min + slack && visit.electrical < wiring.valid_max - slack)
     return std::nullopt;
-  return fmt::format("saturated: the signal is at {:.4g} {}, an end of its valid range ({:g} to {:g})",
+  return fmt::format("saturated: the signal is at {:.4g} {}, the limit of its valid range ({:g} to {:g})",
                      visit.electrical, drivers::name_of(wiring.unit), wiring.valid_min, wiring.valid_max);
 }
 
@@ -159,8 +159,10 @@ Expected<Visit> visit_sensor(const rig::RigFile& rig, MotionSession& session, Op
   const std::string place = upper ? "second" : "first";
   const auto reference = ask_number(
       session, person,
-      settings.may_move ? fmt::format("gauge at the {} position, mm", place)
-                        : fmt::format("put the target at the {} position; gauge reading, mm", place));
+      settings.may_move
+          ? fmt::format("gauge at the {} position, mm", place)
+          : fmt::format("put the target of the sensor at the {} position, and enter the gauge reading, mm",
+                        place));
   if (!reference) return tl::unexpected(reference.error());
   const auto halves = average(session, settings);
   if (!halves) return tl::unexpected(halves.error());
@@ -277,10 +279,11 @@ Expected<std::vector<GaugeVisit>> read_positions(MotionSession& session, Operato
                                                  const std::vector<double>& positions_mm) {
   std::vector<GaugeVisit> visits;
   for (std::size_t i = 0; i < positions_mm.size(); ++i) {
-    const auto where = ask_position(session, person,
-                                    fmt::format("{} of {}: put the target at {:g} mm, then press Enter",
-                                                i + 1, positions_mm.size(), positions_mm[i]),
-                                    positions_mm[i]);
+    const auto where =
+        ask_position(session, person,
+                     fmt::format("{} of {}: put the target of the sensor at {:g} mm, then press Enter", i + 1,
+                                 positions_mm.size(), positions_mm[i]),
+                     positions_mm[i]);
     if (!where) return tl::unexpected(where.error());
     if (!*where) continue;
     const auto halves = average(session, settings);
@@ -297,7 +300,7 @@ Expected<std::vector<GaugeVisit>> read_positions(MotionSession& session, Operato
         (first.mean * static_cast<double>(first.count) + second.mean * static_cast<double>(second.count)) /
         count;
     visits.push_back({**where, mean, first.count + second.count});
-    person.tell(fmt::format("the sensor reads {:.5g} mm at {:.5g} mm", mean, **where));
+    person.tell(fmt::format("the sensor reads {:.5g} mm at the position {:.5g} mm", mean, **where));
   }
   return visits;
 }
@@ -345,7 +348,7 @@ Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, MotionSession
   DeadZoneResult result;
   result.by_pressure = channel.pressure_measured;
   result.highest_kpa = rest_kpa + ramp_share * span_kpa;
-  person.tell(fmt::format("a slow ramp to {:.4g} kPa, {:g} s", result.highest_kpa, settings.ramp_s));
+  person.tell(fmt::format("a slow ramp to {:.4g} kPa in {:g} s", result.highest_kpa, settings.ramp_s));
   std::vector<double> command;
   std::vector<double> response;
   const auto watch = [&](const std::vector<double>& commands, const std::vector<model::Reading>& readings) {
@@ -368,7 +371,8 @@ Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, MotionSession
     result.zone = find_dead_zone(command, response);
   }
   if (!result.zone)
-    return tl::unexpected(nonsense("dead zone: no signal followed the ramp. Check supply, line and sensor"));
+    return tl::unexpected(nonsense(
+        "dead zone: no signal followed the pressure ramp. Check the supply, the air line and the sensor"));
   result.zone->end *= side;
   return result;
 }

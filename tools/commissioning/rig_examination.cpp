@@ -21,7 +21,7 @@ constexpr double ms_per_s = 1e3;
 
 std::string advice_for_silence(const rig::RigFile& rig, drivers::BusStatus status) {
   if (std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board))
-    return "look at `events` of the rig file";
+    return "check `events` in the rig file";
   if (std::holds_alternative<drivers::IioSettings>(rig.board))
     return "compare `device` and `channel` in the rig file with the converters of this computer";
   return std::string(bus_advice(drivers::name_of(status)));
@@ -46,10 +46,11 @@ void judge_bus(const rig::RigFile& rig, const daemon::Histogram::Summary& times,
       fmt::format("{} exchanges: p50 {:.3g} ms, p99 {:.3g} ms, a cycle is {:.3g} ms", times.count,
                   median_s * ms_per_s, slow_s * ms_per_s, period_s * ms_per_s);
   if (median_s > period_s) {
-    findings.fail("bus time", text, "the bus is slower than the loop: lower rate_hz");
+    findings.fail("bus time", text, "the bus is slower than the control loop: lower rate_hz");
   } else if (slow_s > 0.8 * period_s) {
-    findings.warn("bus time", text,
-                  "late exchanges leave cycles without data: lower rate_hz, or find the cause of the delay");
+    findings.warn(
+        "bus time", text,
+        "because of late exchanges, some cycles have no data: lower rate_hz, or find the cause of the delay");
   } else {
     findings.ok("bus time", text);
   }
@@ -58,12 +59,13 @@ void judge_bus(const rig::RigFile& rig, const daemon::Histogram::Summary& times,
 std::string sensor_advice(model::Validity why) {
   switch (why) {
     case model::Validity::out_of_range:
-      return "target out of the sensor's range, a broken wire, or a wrong range setting: check the sensor's "
-             "display";
+      return "target outside the range of the sensor, a broken wire, or a wrong range setting: check the "
+             "display of the sensor";
     case model::Validity::sensor_error:
-      return "the sensor or its input card reports that it cannot measure: check target, window and supply";
+      return "the sensor or the input card reports that no measurement is possible: check the target, the "
+             "window and the supply of the sensor";
     default:
-      return "check the sensor's display and its wire";
+      return "check the display and the wire of the sensor";
   }
 }
 
@@ -88,7 +90,8 @@ void judge_displacement(const control::ChannelSettings& channel, const Sample& s
                   "the finger or the sensor has moved: inspect it, then calibrate the sensor");
   } else if (sample.lowest == sample.highest) {
     findings.warn(name, text + "; no variation",
-                  "very low noise, or a frozen sensor (hold mode, blocked beam): run with --move to decide");
+                  "very low noise, or a frozen sensor (hold mode, blocked beam): to distinguish them, run "
+                  "the command with --move");
   } else {
     findings.ok(name, text);
   }
@@ -102,23 +105,25 @@ void judge_rest(const control::ChannelSettings& channel, const drivers::ChannelW
   const double off = std::abs(sample.readback_kpa.mean - command_kpa);
   if (sample.readback_kpa.count > 0 && off > faults.readback_tolerance_kpa) {
     findings.fail("output " + channel.name,
-                  fmt::format("{:.2f} kPa were written, the board outputs {:.2f}", command_kpa,
+                  fmt::format("{:.2f} kPa were written, but the board outputs {:.2f} kPa", command_kpa,
                               sample.readback_kpa.mean),
-                  "another Modbus client writes too, the board has a latched trip or is in manual mode, or "
-                  "the scaling is wrong");
+                  "another Modbus client also writes to the board, the board has a latched trip or is in "
+                  "manual mode, or the scaling is wrong");
   }
   if (sample.pressure_kpa.count == 0) {
     if (wiring.pressure) {
-      findings.fail("pressure " + channel.name, "no reading of the pressure monitor is valid",
-                    "check its wire and its supply; compare `valid_v` or `valid_ma` with its signal");
+      findings.fail(
+          "pressure " + channel.name, "no reading of the pressure monitor is valid",
+          "check the wire and the supply of the monitor; compare `valid_v` or `valid_ma` with its signal");
     }
     return;
   }
   const std::string text = fmt::format("{} kPa at rest, noise {:.2f} kPa", fixed(sample.pressure_kpa.mean, 2),
                                        sample.pressure_kpa.deviation);
   if (std::abs(sample.pressure_kpa.mean - command_kpa) > 0.05 * span) {
-    findings.warn("pressure " + channel.name, text + fmt::format("; {:.2f} kPa were written", command_kpa),
-                  "the monitor is wrong, or the line does not vent: calibrate, or check the exhaust");
+    findings.warn(
+        "pressure " + channel.name, text + fmt::format("; {:.2f} kPa were written", command_kpa),
+        "the monitor is wrong, or the air line does not vent: calibrate the monitor, or check the exhaust");
   } else {
     findings.ok("pressure " + channel.name, text);
   }
@@ -128,14 +133,15 @@ void failed(const MotionFailure& failure, const rig::RigFile& rig, const std::st
             Findings& findings) {
   switch (failure.kind) {
     case MotionFailure::Kind::stopped:
-      return findings.fail(name, failure.text, "repeat the command and let it run to its end");
+      return findings.fail(name, failure.text, "repeat the command, and wait for its end");
     case MotionFailure::Kind::bus:
       return findings.fail(name, failure.text, advice_for_silence(rig, failure.status));
     case MotionFailure::Kind::blind:
-      return findings.fail(name, failure.text, "check the sensor's display and its wire");
+      return findings.fail(name, failure.text, "check the display and the wire of the sensor");
     case MotionFailure::Kind::beyond:
       return findings.fail(name, failure.text,
-                           "inspect the finger, calibrate the sensor, and compare its range with the limits");
+                           "inspect the finger, calibrate the sensor, and compare the range of the sensor "
+                           "with the displacement limits");
   }
 }
 
@@ -143,14 +149,14 @@ void failed(const MotionFailure& failure, const rig::RigFile& rig, const std::st
 void judge_clients(const drivers::Board& board, Findings& findings) {
   const unsigned clients = board.clients();
   if (clients > 1 && board.fed_by_readers()) {
-    findings.warn(
-        "clients",
-        fmt::format("the board counts {} clients, one of them is this command. The others feed its "
-                    "watchdog: the board does not vent while they send requests",
-                    clients),
-        "find the other program and disconnect it; the board may count a broken connection for some time");
+    findings.warn("clients",
+                  fmt::format("the board counts {} clients, one of them is this command. The other clients "
+                              "reset its watchdog, so the board does not vent while they send requests",
+                              clients),
+                  "find the other program and disconnect it from the board; the board may count a broken "
+                  "connection for some time");
   } else if (clients > 0) {
-    findings.ok("clients", fmt::format("the board counts {}, this command included", clients));
+    findings.ok("clients", fmt::format("the board counts {} (this command is one of them)", clients));
   }
 }
 
@@ -170,7 +176,7 @@ NotJudged known_of(const rig::RigFile& rig, std::span<const Crossing> crossings,
   NotJudged known;
   if (rig.wiring[channel].pressure && rest.pressure_kpa.count == 0)
     known.valve = "see `pressure " + name + "`";
-  if (is_crossed(crossings, Kind::monitors, channel)) known.valve = "the monitors are crossed";
+  if (is_crossed(crossings, Kind::monitors, channel)) known.valve = "the pressure monitors are crossed";
   if (valves) known.valve = "the valves are crossed";
   if (rest.displacement_mm.invalid > 0) known.finger = "see `sensor " + name + "`";
   if (is_crossed(crossings, Kind::sensors, channel)) known.finger = "the sensors are crossed";
@@ -233,29 +239,28 @@ void examine_description(const rig::RigFile& rig, const drivers::Board& board, F
   const std::string text = fmt::format("{}; a cycle is {:.3g} ms", budget.explanation, period_s * ms_per_s);
   if (budget.exchange_s > period_s && rig.accept_over_budget) {
     findings.warn("bus budget", text,
-                  "over the budget, which the rig file accepts: some cycles may have no exchange");
+                  "an exchange takes longer than a cycle, which the rig file accepts, so some cycles may "
+                  "have no exchange");
   } else if (budget.exchange_s > period_s) {
     findings.fail("bus budget", text,
                   fmt::format("lower rate_hz to {:.0f} or less", 0.9 / budget.exchange_s));
   } else if (budget.exchange_s > 0.8 * period_s) {
-    findings.warn("bus budget", text, "little time is left for a slow reply: lower rate_hz");
+    findings.warn("bus budget", text, "the cycle leaves little time for a slow reply: lower rate_hz");
   } else {
     findings.ok("bus budget", text);
   }
   if (rig.settings.safety.board_vents_when_silent && board.fed_by_readers()) {
-    findings.warn(
-        "watchdog",
-        "the board vents without communication, but only if no Modbus client sends requests: a client that "
-        "only "
-        "reads feeds the watchdog, too",
-        "let no other program connect to the board: query softgripd instead, or let only writes feed "
-        "the watchdog if the board can");
+    findings.warn("watchdog",
+                  "the board vents without communication, but only if no Modbus client sends requests: even "
+                  "a client that only reads resets the watchdog",
+                  "do not connect other programs to the board, but to softgripd. If the board supports this "
+                  "setting, let only writes reset the watchdog");
   } else if (rig.settings.safety.board_vents_when_silent) {
     findings.ok("watchdog", "the board vents if communication stops");
   } else {
     findings.warn(
         "watchdog",
-        fmt::format("the board does not vent without communication; the rig file accepts: \"{}\"",
+        fmt::format("the board does not vent without communication, and the rig file accepts this: \"{}\"",
                     rig.accept_no_watchdog),
         "set the board's watchdog and safe value, or keep a dump valve in the emergency-stop circuit");
   }
@@ -270,9 +275,10 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& cl
   }
   if (!move && may_hold_a_part(rig)) {
     findings.ok("board", board.describe() + " responds");
-    return findings.warn(
-        "sensors", "not read: an exchange would also write the rest pressures, and a part may still be held",
-        "take the part out, then repeat the command with --move");
+    return findings.warn("sensors",
+                         "the board was not read, because an exchange would also write the rest pressures, "
+                         "and the fingers may still hold a part",
+                         "remove the part, then repeat the command with --move");
   }
   const auto rest = session.sample(settings.look_s);
   if (!rest) {
@@ -314,10 +320,11 @@ void examine_gpio(const rig::RigFile& rig, Findings& findings) {
     const auto active = (*lines)->read(line.role);
     const bool stop = line.role == drivers::GpioRole::emergency_stop;
     if (!active) {
-      findings.fail(name, drivers::text_of(line) + ": cannot be read", "check the chip and its driver");
+      findings.fail(name, drivers::text_of(line) + ": cannot be read", "check the GPIO chip and its driver");
     } else if (stop && *active) {
-      findings.warn(name, drivers::text_of(line) + ": pressed",
-                    "release the emergency stop; if it is released, its wire is broken");
+      findings.warn(
+          name, drivers::text_of(line) + ": pressed",
+          "release the emergency stop; if the emergency stop is already released, its wire is broken");
     } else {
       findings.ok(name, drivers::text_of(line) + (stop      ? ": released"
                                                   : *active ? ": part present"

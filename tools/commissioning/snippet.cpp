@@ -57,7 +57,7 @@ std::string findings(const std::string& what, const Line& line, const std::strin
       "{},\n#   residuals [{}] {}, repeat spread {}\n",
       what, rounded(line.error, 4), unit, rounded(line.noise, 4), unit, residuals, unit,
       line.repeat_spread ? rounded(*line.repeat_spread, 4) + " " + unit
-                         : "not known (one visit to each point)");
+                         : "not known (each point was measured only once)");
 }
 
 std::string valve_line(const rig::RigFile& rig, std::size_t channel, const drivers::TwoPoints& points) {
@@ -132,11 +132,11 @@ std::string snippet(const rig::RigFile& rig, const Results& results) {
   }
   if (results.dead_zone) text += dead_zone_lines(*results.dead_zone, control::resting_kpa(settings.limits));
   const double share = share_of_valve(rig, channel);
-  text += fmt::format(
-      "# the limits use {:.0f} % of the valve's range{}\n", 100 * share,
-      share < least_share_of_valve
-          ? ": with less than a fifth, resolution and linearity suffer; use a valve with a smaller range"
-          : "");
+  text +=
+      fmt::format("# the limits use {:.0f} % of the valve's range{}\n", 100 * share,
+                  share < least_share_of_valve ? ": a share of less than 1/5 reduces the resolution and the "
+                                                 "linearity of the pressure; use a valve with a smaller range"
+                                               : "");
   return text;
 }
 

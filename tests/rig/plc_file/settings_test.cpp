@@ -56,9 +56,10 @@ TEST(PlcSettings, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(said_of("unit: 0.01 kPa", "unit: 0.01 bar")
                 .find("not a resolution (the physical value of one count of the register)"),
             std::string::npos);
-  EXPECT_NE(said_of("squeeze: squeeze_kpa", "squeeze: squeeze_mm").find("ends with `_kpa`"),
+  EXPECT_NE(said_of("squeeze: squeeze_kpa", "squeeze: squeeze_mm").find("must end with `_kpa`"),
             std::string::npos);
-  EXPECT_NE(said_of("number: 2", "number: 1").find("the recipe 1 already exists"), std::string::npos);
+  EXPECT_NE(said_of("number: 2", "number: 1").find("another recipe already has the number 1"),
+            std::string::npos);
   EXPECT_NE(said_of("address: 127.0.0.1 ", "address: localhost ").find("not a numeric address"),
             std::string::npos);
   EXPECT_NE(said_of("when_silent: stop", "when_silent: hope").find("vent"), std::string::npos);

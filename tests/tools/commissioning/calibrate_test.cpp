@@ -355,7 +355,8 @@ TEST_F(CalibrateTest, ReadsThePositionsOfAGaugeByHandAndNothingMoves) {
     EXPECT_NEAR(visit.reading_mm, board_->plant(0).displacement_mm(), 0.02);
     EXPECT_GT(visit.count, 100U);
   }
-  EXPECT_NE(person.asked[1].find("2 of 4: put the target at 10 mm"), std::string::npos) << person.asked[1];
+  EXPECT_NE(person.asked[1].find("2 of 4: put the target of the sensor at 10 mm"), std::string::npos)
+      << person.asked[1];
   EXPECT_EQ(board_->plant(0).pressure_kpa(), 0);
 }
 
@@ -414,7 +415,7 @@ TEST_F(CalibrateTest, TheSnippetIsReadByTheRigFilesReader) {
 TEST_F(CalibrateTest, TellsWhenLessThanAFifthOfTheValveIsUsed) {
   rig_.valves[0].range_max_kpa = 500;
   EXPECT_NEAR(share_of_valve(rig_, 0), 0.12, 1e-12);
-  EXPECT_NE(snippet(rig_, {"2026-11-20", 0, {}, {}, {}, {}}).find("less than a fifth"), std::string::npos);
+  EXPECT_NE(snippet(rig_, {"2026-11-20", 0, {}, {}, {}, {}}).find("less than 1/5"), std::string::npos);
 }
 
 }  // namespace

@@ -193,7 +193,7 @@ TEST_F(DoctorTest, AWatchdogThatReadersFeedIsWarnedOfAndOtherClientsAreFound) {
     examine_rig(rig_, board, time_.clock, time_.stop(), false, {}, findings_);
   };
   again(true, 0);
-  expect("watchdog", Verdict::warn, "a client that only reads feeds the watchdog");
+  expect("watchdog", Verdict::warn, "even a client that only reads resets the watchdog");
   EXPECT_EQ(finding("clients").name, "no clients");
   again(true, 1);
   expect("clients", Verdict::ok, "the board counts 1");
@@ -207,7 +207,7 @@ TEST_F(DoctorTest, AWatchdogThatReadersFeedIsWarnedOfAndOtherClientsAreFound) {
 TEST_F(DoctorTest, WithoutAWatchdogAPartThatMayBeHeldIsNotDropped) {
   rig_.settings.safety.board_vents_when_silent = false;
   examine(false);
-  expect("sensors", Verdict::warn, "a part may still be held");
+  expect("sensors", Verdict::warn, "the fingers may still hold a part");
   EXPECT_TRUE(time_.clock.now() < 2'000'000'000) << "no exchange with the board may take place";
 }
 

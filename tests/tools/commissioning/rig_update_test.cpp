@@ -149,7 +149,8 @@ TEST_F(RigUpdateTest, ALineFarFromTheOldOneIsDoubted) {
   const auto odd = doubts(rig_, results);
   ASSERT_EQ(odd.size(), 3U);
   EXPECT_EQ(odd[0],
-            "valve: where the line of the rig file gives 60 kPa, the new line gives 45 kPa, a difference of "
+            "valve: at the point where the calibration line in the rig file gives 60 kPa, the new line gives "
+            "45 kPa, a difference of "
             "25 % of the range");
   EXPECT_EQ(odd[1].rfind("pressure monitor: ", 0), 0U);
   EXPECT_EQ(odd[2].rfind("sensor: ", 0), 0U);
