@@ -34,8 +34,8 @@ std::string gains_in_words(const ControlStudy& study, const std::string& worse, 
 std::string verdict(const ControlStudy& study) {
   const double mismatch = study.options.mismatches.front();
   return "With model errors of up to " + significant(100 * mismatch) +
-         " %, the full inverse of the extended structure tracks better than the best PID alone by a factor "
-         "of " +
+         " %, the full inverse of the extended structure reduces the tracking error of the best PID alone by "
+         "a factor of " +
          gains_in_words(study, "pid", "full_extended", mismatch) +
          "; the published scheme cannot be computed.";
 }
@@ -43,7 +43,7 @@ std::string verdict(const ControlStudy& study) {
 sysid::Chart chart_of(const ControlStudy& study, double mismatch) {
   sysid::Chart chart;
   chart.x.label = "frequency [Hz]";
-  chart.y.label = "RMSE [mm], median and 90 % of the draws";
+  chart.y.label = "RMSE [mm]: median and 90 % interval of the simulated fingers";
   chart.x.logarithmic = chart.y.logarithmic = true;
   chart.height = 360;
   const auto add = [&](const char* id, Colour colour, bool dashed) {
@@ -100,19 +100,21 @@ sysid::Page control_page(const ControlStudy& study) {
       {{"Software", sysid::software_and_version()},
        {"Command", "softgrip study control --draws " + std::to_string(options.draws) + " --seed " +
                        std::to_string(options.seed)},
-       {"Reference", significant(options.mean_mm) + " ± " + significant(options.amplitude_mm) +
-                         " mm, or less if the finger cannot follow; stroke: twice the amplitude"},
+       {"Reference",
+        significant(options.mean_mm) + " ± " + significant(options.amplitude_mm) +
+            " mm, or less if the finger cannot follow this amplitude; stroke: twice the amplitude"},
        {"Loop",
         significant(options.rate_hz) + " Hz, noise " + significant(options.noise_mm) + " mm, 0 to 60 kPa"},
-       {"Gains", "the same tuner for all schemes: smallest RMSE on " + std::to_string(options.search_draws) +
-                     " other fingers, Ms at most " + significant(options.most_sensitivity)},
-       {"Fingers", std::to_string(options.draws) + " per figure, each parameter with its own error"},
+       {"Gains", "the gains of all schemes were tuned in one way: smallest RMSE on " +
+                     std::to_string(options.search_draws) + " other fingers, sensitivity peak Ms at most " +
+                     significant(options.most_sensitivity)},
+       {"Fingers", std::to_string(options.draws) + " for each result, each parameter with a separate error"},
        {"Time", significant(study.wall_s, 3) + " s"}});
   page.section("Results by scheme");
   for (const double each : options.mismatches) {
     page.figure({"tracking error by frequency " + significant(100 * each) + " percent error",
                  "Model errors of up to " + significant(100 * each) +
-                     " %: RMSE of the finger itself, not of its noisy reading.",
+                     " %: RMSE of the true displacement of the finger, not of the noisy reading.",
                  {{chart_of(study, each)}}});
   }
   page.list(
@@ -121,11 +123,12 @@ sysid::Page control_page(const ControlStudy& study) {
            gains_in_words(study, "pid", "full_extended", mismatch) + ".",
        "Plan for a finger that follows the published model, which has no inverse, compared with PID alone: " +
            gains_in_words(study, "pid_on_published", "planned_on_published", mismatch) + ".",
-       "Plan with the published structure, identified on the twin, compared with PID alone: " +
+       "Plan with the published structure, identified on the simulated rig, compared with PID alone: " +
            gains_in_words(study, "pid", "planned_identified", mismatch) + "."});
   page.section("Models of the controllers");
   page.paragraph(
-      "Both structures were identified from the twin's responses to tp1 and sp1 with 0.05 mm of noise. "
+      "Both structures were identified from the responses of the simulated rig to tp1 and sp1 with 0.05 mm "
+      "of noise. "
       "Published structure: RMSE " +
       fixed(study.identified_rmse_mm, 3) + " mm, beta/(alpha + 1/k0) " +
       significant(wrong_way_ratio(study.identified), 3) + ". With valve lag and dead time: RMSE " +

@@ -54,14 +54,12 @@ std::vector<PaperRow> paper_table(const PaperTableOptions& options) {
 
 const std::vector<std::string>& paper_table_remarks() {
   static const std::vector<std::string> remarks{
-      "The paper's pressures, rates, spans and data are in figures only; the signals here are this project's "
-      "own "
-      "of the same kinds. The columns show the same pattern, but their digits cannot be compared.",
-      "For a finger that follows the published model, only the noise remains, also on unseen signals. The "
-      "paper's "
-      "real finger had an error several times larger, and up to three times larger on unseen signals than on "
-      "TP1. "
-      "It has an effect that the published structure lacks.",
+      "The paper gives its pressures, rates, spans and data only in figures, so this study uses own signals "
+      "of the same kinds. The patterns of the columns can be compared, but not their digits.",
+      "For a finger that follows the published model, only the noise remains, even on signals that were not "
+      "fitted. The real finger of the paper had an error several times larger. On signals that were not "
+      "fitted, its error was up to three times larger than on TP1. The real finger has an effect that the "
+      "published structure lacks.",
       "An ordinary actuator behind lag and dead time shows the pattern of the paper's "
       "figures at "
       "a fraction of their size. The hidden latency explains the published parameters and the shape of the "

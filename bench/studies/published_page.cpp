@@ -81,9 +81,8 @@ void latency_section(sysid::Page& page, const PublishedStudy& study) {
       "0.1 "
       "to 0.4 Hz, noise " +
       significant(study.options.noise_mm) +
-      " mm, identified with the published structure, which has neither lag nor dead time. From 1 on the "
-      "fitted "
-      "model has an inverse response and no causal inverse.");
+      " mm, identified with the published structure, which has no lag and no dead time. If the fitted ratio "
+      "is 1 or more, the fitted model has an inverse response and no causal inverse.");
   sysid::Table table;
   table.caption = "Ratio: beta/(alpha + 1/k0). Published: ratio " + fixed(study.published_ratio, 2) +
                   ", tau2 0.60 s, k2 0.020 bar/mm, c2 0.012 bar s/mm; truth: k2 0.04, c2 0.016, tau2 0.4 s.";
@@ -102,13 +101,14 @@ void latency_section(sysid::Page& page, const PublishedStudy& study) {
                "The fitted ratio against the hidden latency.",
                {{ratio_chart(study)}}});
   page.paragraph(
-      "The choice of triangles matters: two choices within the same range give different ratios. For large "
+      "The ratio depends on the choice of triangles: two choices within one range of amplitude and frequency "
+      "give different ratios. For large "
       "ratios, the denominator alpha + 1/k0 approaches zero.");
   if (study.latency_log.size() > 0) {
     page.figure(
         {"fit to the longest latency",
-         "The longest latency: the structure without a valve fits it closely. A small error is no "
-         "evidence for the structure.",
+         "The longest latency: the structure without a valve fits this response closely, so a small error is "
+         "no evidence for the structure.",
          fit_charts(study.latency_log, study.latency_mm, "actuator behind the valve", "fitted model")});
   }
 }
@@ -118,8 +118,8 @@ void match_section(sysid::Page& page, const PublishedStudy& study) {
   page.paragraph(
       "The response of the published model to tp1, for several values of the unpublished parameter eta, is "
       "matched "
-      "by an actuator with beta at most 0.8 (alpha + 1/k0) behind lag and delay. The paper's own residual on "
-      "its TP1 is 0.194 mm.");
+      "by an actuator with beta at most 0.8 (alpha + 1/k0) behind lag and delay. The residual that the paper "
+      "reports on its signal TP1 is 0.194 mm.");
   sysid::Table table;
   table.header = {"eta [1/bar]", "RMSE [mm]", "on tp2, unseen [mm]", "span [mm]",
                   "lag [s]",     "delay [s]", "lag + delay [s]",     "beta / (alpha + 1/k0)"};
@@ -133,13 +133,13 @@ void match_section(sysid::Page& page, const PublishedStudy& study) {
   if (study.match_log.size() > 0) {
     page.figure(
         {"published response from an invertible actuator",
-         "The first row of the table, on the signal it was fitted to.",
+         "The first row of the table, on the signal to which the actuator was fitted.",
          fit_charts(study.match_log, study.match_mm, "published model", "invertible actuator + valve")});
   }
   page.paragraph(
-      "The model of the simulated rig (bench_twin) is such a match; against the published response "
-      "for eta = 2 /bar on this tp1 its RMSE is " +
-      fixed(study.twin_rmse_mm, 4) + " mm. Every parameter but k0 is free in the match.");
+      "The model of the simulated rig (bench_twin) is such an actuator. Its RMSE against the published "
+      "response to tp1 for eta = 2 /bar is " +
+      fixed(study.twin_rmse_mm, 4) + " mm. All parameters except k0 were fitted.");
 }
 
 void inverse_section(sysid::Page& page, const PublishedStudy& study) {
@@ -183,18 +183,19 @@ void inverse_section(sysid::Page& page, const PublishedStudy& study) {
                "approaches 1. Above 1, no inverse exists.",
                sysid::stacked(std::move(charts))});
   page.list(
-      {"Existence: the element alone has an inverse up to beta = alpha. The published element has "
-       "beta/alpha 2.43; on its first loading it falls by " +
+      {"Existence: the element alone has an inverse up to beta = alpha. The published element has beta/alpha "
+       "2.43; during the first loading, its output falls by " +
            fixed(study.falls_by_mm, 2) + " mm until " + fixed(study.falls_until_kpa, 1) + " kPa" +
            (std::isfinite(study.back_at_kpa)
-                ? " and is back where it began only at " + fixed(study.back_at_kpa, 1) + " kPa."
-                : " and does not come back below 60 kPa."),
-       "Explicit form: errors grow by beta/alpha from sample to sample until the bounded "
-       "hysteresis state stops them; it ends in an oscillation of tens of kPa.",
-       "Implicit form: up to beta = alpha it returns the pressure to rounding. Beyond, "
-       "several "
-       "pressures or none fit. It selects one, jumps, or stays at a bound of 0 to 60 kPa and reports this.",
-       "Controller: it checks the model before a start. bouc_wen of the published model: " +
+                ? " and returns to its initial value only at " + fixed(study.back_at_kpa, 1) + " kPa."
+                : " and does not return to its initial value below 60 kPa."),
+       "Explicit form: errors grow by beta/alpha from sample to sample until the bounded hysteresis state "
+       "stops this growth. The result is an oscillation of tens of kPa.",
+       "Implicit form: up to beta = alpha, this form returns the pressure to rounding. Above this limit, "
+       "several pressures or no pressure fit the displacement. The implicit form then selects one pressure, "
+       "jumps, or stays at a bound of 0 to 60 kPa and reports this.",
+       "Controller: before a start, the controller checks the model. Result for bouc_wen of the published "
+       "model: " +
            study.bouc_wen_refusal + ". full_model: " + study.full_model_refusal + "."});
 }
 
@@ -206,7 +207,7 @@ void paper_section(sysid::Page& page, const PublishedStudy& study) {
       "logs of two fingers, noise " +
       significant(study.options.noise_mm) + " mm.");
   sysid::Table table;
-  table.caption = "RMSE in mm; in brackets % of the log's span, which the paper does not give.";
+  table.caption = "RMSE in mm; in brackets: share of the span of the log [%], which the paper does not give.";
   table.header = {"signal", "the paper's finger", "finger = published model",
                   "finger = bench_twin (latency)"};
   table.numeric = {false, true, true, true};
@@ -232,10 +233,11 @@ sysid::Page published_page(const PublishedStudy& study) {
                    {"Searches", std::to_string(study.options.starts) + " per identification"},
                    {"Time", significant(study.wall_s, 3) + " s"}});
   page.paragraph(
-      "This is a fact about the structure and a hypothesis about the paper, whose data are not public. "
+      "These results are facts about the structure, but only a hypothesis about the paper, whose data are "
+      "not public. "
       "Zhang, "
       "Lu, "
-      "Huang, Feng, Actuators 2025, 14(4), 193; pressures read in bar.");
+      "Huang, Feng, Actuators 2025, 14(4), 193; the pressures of the paper are assumed to be in bar.");
   latency_section(page, study);
   match_section(page, study);
   inverse_section(page, study);

@@ -67,7 +67,7 @@ std::string published_text(const PublishedStudy& study) {
             cell(fixed(row.lag_s, 3), 10) + cell(fixed(row.delay_s, 3), 12) +
             cell(fixed(row.lag_s + row.delay_s, 3), 18) + cell(fixed(row.ratio, 3), 20) + "\n";
   }
-  text += "   bench_twin compared with the published response for eta = 2 /bar: RMSE " +
+  text += "   model bench_twin, compared with the published response for eta = 2 /bar: RMSE " +
           fixed(study.twin_rmse_mm, 4) + " mm\n";
   text +=
       "3. The inverse of the published Bouc-Wen element with other betas, for a sine of 0 to 60 kPa at 0.1 "
@@ -85,8 +85,8 @@ std::string published_text(const PublishedStudy& study) {
   text +=
       "   The published element falls by " + fixed(study.falls_by_mm, 2) + " mm until " +
       fixed(study.falls_until_kpa, 1) + " kPa" +
-      (std::isfinite(study.back_at_kpa) ? " and is back at 0 mm at " + fixed(study.back_at_kpa, 1) + " kPa"
-                                        : " and is not back at 0 mm below 60 kPa") +
+      (std::isfinite(study.back_at_kpa) ? " and returns to 0 mm at " + fixed(study.back_at_kpa, 1) + " kPa"
+                                        : " and does not return to 0 mm below 60 kPa") +
       ".\n   bouc_wen:   " + study.bouc_wen_refusal + "\n   full_model: " + study.full_model_refusal + "\n";
   text += paper_text(study.paper);
   return text + "seed " + std::to_string(study.options.seed) + ", " + significant(study.wall_s, 3) + " s\n";

@@ -111,7 +111,7 @@ class Baseline(bench.BenchTest):
 
     def test_a_contact_in_the_way_ends_it_and_leaves_nothing(self):
         done = self.commissioned(self.folder / "config/rig.yaml", expect=6)
-        self.assertRegex(done.stderr, r"the finger touched an object: it stopped at 1[2-5](\.\d)? mm")
+        self.assertRegex(done.stderr, r"the finger touched an object: the finger stopped at 1[2-5](\.\d)? mm")
         self.check_nothing_is_left()
 
     def test_a_finger_that_does_not_move_ends_it(self):

@@ -164,7 +164,7 @@ class Signals(bench.BenchTest):
         self.assertIn("not overwritten", self.export("run/run.csv", source="run/run.csv", expect=2).stderr)
         self.assertEqual((self.folder / "run/run.csv").read_bytes(), before)
         self.write("nothing.csv", "a,b\n1,2\n2,3\n")
-        self.assertIn("neither a log nor a series", self.export("x.csv", source="nothing.csv", expect=3).stderr)
+        self.assertIn("so it is not a log or a series", self.export("x.csv", source="nothing.csv", expect=3).stderr)
         self.assertFalse((self.folder / "x.csv").exists())
         self.assertTrue(self.export("-", "--format", "csv").stdout.startswith("time_s,left_"))
 

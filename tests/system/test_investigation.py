@@ -77,7 +77,7 @@ class Investigation(bench.BenchTest):
     def test_a_finger_that_touches_something_ends_it(self):
         rig = self.simulated("\n        object: {position_mm: 12, yielding: 0.1}")
         self.check(self.investigated("--rig", rig, "--rig-channel", "left"), "contact",
-                   r"the finger touched an object: it stopped at 1[2-5](\.\d)? mm, .* mm short of its free motion")
+                   r"the finger touched an object: the finger stopped at 1[2-5](\.\d)? mm, .* mm short of its free motion")
 
     def test_the_same_finger_with_a_free_way_is_not_stopped(self):
         told = self.investigated("--rig", self.simulated(""), "--rig-channel", "left", expect=None, timeout_s=850)

@@ -81,7 +81,7 @@ tl::expected<std::vector<SignalGroup>, ExitCode> read_signals(const std::string&
   problems.add({path,
                 {1, 1},
                 {},
-                "no column 'time_s' with rising times: neither a log nor a series",
+                "the file has no column 'time_s' with rising times, so it is not a log or a series",
                 "softgrip import converts the file to a log"});
   return tl::unexpected(refuse(problems));
 }

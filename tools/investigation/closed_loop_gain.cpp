@@ -183,14 +183,14 @@ std::vector<std::string> ClosedLoopGain::notes() const {
     notes.push_back(std::string("the ") + which +
                     (planned ? " model has no causal inverse, so its feedforward is planned before the run: "
                      : left_out.empty()
-                         ? " model has no feedforward, so its value is that of the PID alone: "
+                         ? " model has no feedforward, so its tracking error is that of the PID alone: "
                          : " model has no inverse as a whole, so its feedforward omits " + left_out + ": ") +
                     scheme.refused);
   };
   refused("recalibrated", recalibrated);
   refused("extended", extended);
   notes.push_back("median of " + std::to_string(rigs) +
-                  " simulated rigs: extended model, each parameter perturbed by up to " +
+                  " simulated rigs, which have the extended model with each parameter changed by up to " +
                   significant(100 * rig_scatter, 2) + " %");
   return notes;
 }

@@ -89,8 +89,8 @@ std::optional<std::string> touched(const sysid::Validation& predicted, const sys
   // fits the earlier logs has smaller errors without contact.
   const bool stopped = upper.slope() < 0.5 * lower.slope() && shortfall_mm > 0.1 * highest_mm;
   if (!stopped) return std::nullopt;
-  return "the finger touched an object: it stopped at " + significant(stopped_at_mm, 3) + " mm, " +
-         significant(shortfall_mm, 2) + " mm short of its free motion; remove the object and start again";
+  return "the finger touched an object: the finger stopped at " + significant(stopped_at_mm, 3) + " mm, " +
+         significant(shortfall_mm, 2) + " mm short of its free motion. Remove the object and start again";
 }
 
 }  // namespace softgrip::tools

@@ -66,9 +66,10 @@ tl::expected<void, NotPlayed> call(const std::string& command, const std::string
   const bool by_user =
       (WIFEXITED(status) && by_signal) || (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
   if (by_user) note_ending_signal(SIGINT);
-  if (by_signal) return stopped("the rig's command was stopped by a signal");
+  if (by_signal) return stopped("the command of --rig-command was stopped by a signal");
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    return failed("the rig's command failed with exit code " + std::to_string(WEXITSTATUS(status)));
+    return failed("the command of --rig-command failed with exit code " +
+                  std::to_string(WEXITSTATUS(status)));
   return {};
 }
 
@@ -114,7 +115,7 @@ tl::expected<ExperimentRig, std::string> experiment_rig(rig::RigFile rig, const 
   const auto& channels = result.rig.settings.channels;
   if (channel.empty() && channels.size() > 1)
     return tl::unexpected("the rig has " + std::to_string(channels.size()) +
-                          " channels: name one with --channel");
+                          " channels: select one with --channel");
   if (!channel.empty()) {
     const auto at = std::find_if(channels.begin(), channels.end(),
                                  [&](const control::ChannelSettings& c) { return c.name == channel; });
@@ -125,7 +126,7 @@ tl::expected<ExperimentRig, std::string> experiment_rig(rig::RigFile rig, const 
   if (control::resting_kpa(limits) != 0) {
     return tl::unexpected("channel '" + result.channel_name() + "' never " +
                           (limits.pressure_min_kpa > 0 ? "goes down to" : "rests at") +
-                          " 0 kPa, but experiments begin and end at this pressure");
+                          " 0 kPa, but experiments begin and end at 0 kPa");
   }
   result.simulated = std::holds_alternative<simulation::SimulatedBoardSettings>(result.rig.board);
   return result;
@@ -173,7 +174,7 @@ Player rig_player(ExperimentRig rig, Consent consent) {
              const std::string& folder) -> tl::expected<sysid::Log, NotPlayed> {
     if (!rig.simulated &&
         !consent(what_moves(experiment, "channel '" + rig.channel_name() + "' of " + rig.rig.name)))
-      return stopped("not allowed to move the rig");
+      return stopped("softgrip was not allowed to move the rig");
     return played_on(rig, "recording", sysid::sequence_yaml(experiment, rig.channel_name()), folder);
   };
 }
@@ -183,7 +184,7 @@ Player command_player(std::string command, double interval_s, Consent consent) {
              const sysid::NextExperiment& experiment,
              const std::string& folder) -> tl::expected<sysid::Log, NotPlayed> {
     if (!consent(what_moves(experiment, "the rig behind '" + command + "'")))
-      return stopped("not allowed to move the rig");
+      return stopped("softgrip was not allowed to move the rig");
     const std::string in = (fs::path(folder) / "command.csv").string();
     const std::string out = (fs::path(folder) / "log.csv").string();
     if (const auto written = write_file(in, command_csv(experiment.best->waveform, interval_s)); !written)
@@ -207,7 +208,7 @@ GaugeTaker command_gauge(std::string command, Consent consent) {
              const std::string& folder) -> tl::expected<sysid::GaugeFile, NotPlayed> {
     if (!consent("'" + command + "' will put the sensor's target at " + std::to_string(positions_mm.size()) +
                  " positions"))
-      return stopped("not allowed to check the sensor");
+      return stopped("softgrip was not allowed to check the sensor");
     const std::string in = (fs::path(folder) / "gauge_asked.csv").string();
     const std::string out = (fs::path(folder) / "gauge.csv").string();
     if (const auto written = write_file(in, sysid::positions_csv(positions_mm)); !written)

@@ -77,10 +77,11 @@ class Investigator {
         !written)
       return tl::unexpected(NotInvestigated{ExitCode::io, written.error()});
     if (result_.last.verdict == Verdict::unexplained)
-      return end(InvestigationEnd::unexplained, "an error remains that no cause of the library explains");
+      return end(InvestigationEnd::unexplained,
+                 "the extended model has an error that no cause of the library explains");
     if (result_.last.verdict == Verdict::partly_explained)
       return end(InvestigationEnd::unexplained,
-                 "besides the named causes, an error remains that no cause explains");
+                 "in addition to the named causes, an error remains that no cause of the library explains");
     if (result_.last.verdict != Verdict::ambiguous) return end(InvestigationEnd::settled, "");
     const auto& gauge_check = consequences.experiment.gauge_check;
     if (!consequences.experiment.best && gauge_check && options_.take_gauge)
@@ -118,12 +119,12 @@ class Investigator {
     const sysid::JudgedWaveform& best = *experiment.best;
     tell("playing " + best.waveform.name + ", " + significant(best.minutes, 2) +
          " minutes: " + significant(experiment.predicted_separation_sigma, 3) +
-         " standard deviations of separation are predicted");
+         " standard deviations is the predicted separation of the causes");
     auto log = options_.play(experiment, folder);
     if (!log) return end(log.error());
     if (options_.diagnosis.record.drive == sysid::Drive::measured && log->pressure_kpa.empty())
       return end(InvestigationEnd::failed,
-                 "the rig measured no pressure, but the measured pressure drives the model");
+                 "the rig did not measure the pressure, but the measured pressure is the input of the model");
     step.experiment = best.waveform.name;
     step.predicted_separation_sigma = experiment.predicted_separation_sigma;
     step.minutes = best.minutes;

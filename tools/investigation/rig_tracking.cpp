@@ -71,7 +71,7 @@ tl::expected<RigTracking, NotPlayed> track_on_rig(const ExperimentRig& rig, cons
                                                   const std::string& folder, const Consent& consent) {
   if (!rig.simulated && !consent("channel '" + rig.channel_name() + "' of " + rig.rig.name + " will track " +
                                  gain.reference() + " twice")) {
-    return tl::unexpected(NotPlayed{true, "not allowed to move the rig"});
+    return tl::unexpected(NotPlayed{true, "softgrip was not allowed to move the rig"});
   }
   const auto rmse = [&](const char* name, const model::Model& model,
                         const ClosedLoopScheme& scheme) -> tl::expected<double, NotPlayed> {

@@ -29,11 +29,12 @@ void add_log_options(CLI::App& command, LogInput& input) {
       ->check(CLI::IsMember({"command", "measured"}))
       ->capture_default_str();
   command
-      .add_option("--begin", input.begin,
-                  "Start state of logs: at rest, unknown (estimated), or determined from each log")
+      .add_option(
+          "--begin", input.begin,
+          "Initial state of the logs: at rest, unknown (then it is estimated), or determined from each log")
       ->check(CLI::IsMember({"auto", "rest", "unknown"}))
       ->capture_default_str();
-  command.add_flag("--held", input.held, "The command keeps its value until the next sample");
+  command.add_flag("--held", input.held, "Assume that the command is constant until the next sample");
 }
 
 RequiredUnit unit_of(const model::Model& model) {
@@ -61,7 +62,11 @@ tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std:
   sysid::Campaign campaign = sysid::read_campaign(paths, problems, options);
   for (const sysid::Log& log : campaign.logs) {
     if (input.drive == "measured" && log.pressure_kpa.empty()) {
-      problems.add({log.path, {1, 1}, {}, "no column 'pressure_kpa', which --drive measured needs", {}});
+      problems.add({log.path,
+                    {1, 1},
+                    {},
+                    "the log has no column 'pressure_kpa', but --drive measured requires this column",
+                    {}});
     }
   }
   if (!problems.empty()) {

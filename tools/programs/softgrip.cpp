@@ -22,7 +22,7 @@ int run(int argc, char** argv) {
   program.footer(
       "Exit codes: 0 done, 1 failed, 2 usage, 3 configuration or input refused, 4 I/O,\n"
       "5 refused by the daemon's state, 6 finished but the result is not acceptable.\n"
-      "Ctrl-C and other ending signals: the program cleans up and then ends by the same signal.");
+      "After Ctrl-C or another ending signal, the program cleans up and then ends by the same signal.");
 
   softgrip::ExitCode outcome = softgrip::ExitCode::done;
 #define SOFTGRIP_ADD(name) softgrip::tools::add_##name(program, outcome);

@@ -33,10 +33,11 @@ void add_options(CLI::App& program, Options& options) {
   program
       .add_option("--config", options.config, "Configuration file: addresses, access and the register map")
       ->capture_default_str();
-  program.add_option("--socket", options.socket, "Socket of the daemon; overrides the file");
-  program.add_option("--port", options.port, "Port; overrides the file; 0 selects a free port");
-  program.add_flag("--check", options.check, "Check the file, report its errors, and exit");
-  program.footer("Ready once 'listening on ADDRESS:PORT' is printed.");
+  program.add_option("--socket", options.socket, "Socket of the daemon; overrides the configuration file");
+  program.add_option("--port", options.port,
+                     "TCP port; overrides the configuration file; 0 selects a free port");
+  program.add_flag("--check", options.check, "Check the configuration file, report its errors, and exit");
+  program.footer("The server is ready when it has printed 'listening on ADDRESS:PORT'.");
 }
 
 /// Blocks the ending signals for the whole process and returns a descriptor that reports them.
@@ -73,7 +74,7 @@ ExitCode run(const Options& options) {
 int main(int argc, char** argv) {
   using namespace softgrip;
   try {
-    CLI::App program{"softgripd for PLCs and robot controllers: a Modbus TCP server in front of its socket.",
+    CLI::App program{"Modbus TCP server that connects PLCs and robot controllers to the socket of softgripd.",
                      "softgrip-plc"};
     plc::Options options;
     plc::add_options(program, options);

@@ -27,30 +27,36 @@ namespace {
 
 void add_options(CLI::App& program, Options& options) {
   program.set_version_flag("--version", std::string{"softgrip-rig "}.append(software_version()));
-  program.add_option("--model", options.models, "Model of the fingers: one file for all, or one per channel")
+  program
+      .add_option("--model", options.models,
+                  "Model of the fingers: one file for all channels, or one file for each channel")
       ->required();
   program
-      .add_option("--board", options.boards, "Board map: a file, or a name in config/boards; one per module")
+      .add_option("--board", options.boards,
+                  "Board map: a file, or a name in config/boards; give the option once for each module")
       ->capture_default_str();
   auto* tcp = program.add_option("--tcp", options.port,
-                                 "TCP port; 0 selects a free port [1502, or that of the rig file]");
+                                 "TCP port; 0 selects a free port [1502, or the port in the rig file]");
   program
       .add_option("--rtu", options.rtu,
-                  "Modbus RTU on this serial device; a path that does not exist becomes a pseudo-terminal")
+                  "Use Modbus RTU on this serial device; if the path does not exist, a pseudo-terminal is "
+                  "created there")
       ->excludes(tcp);
-  program.add_flag("--rtu-over-tcp", options.rtu_over_tcp, "Modbus RTU frames on the TCP port");
-  program.add_option("--baud", options.baud, "Baud rate of the line [9600, or that of the rig file]")
+  program.add_flag("--rtu-over-tcp", options.rtu_over_tcp, "Use Modbus RTU frames on the TCP port");
+  program
+      .add_option("--baud", options.baud, "Baud rate of the line [9600, or the baud rate in the rig file]")
       ->check(number_between(1200, 1000000));
   program.add_option("--format", options.format,
-                     "Format of the line: 8N1, 8E1, 8O1, 8N2, 8E2 [8N1, or that of the rig file]");
+                     "Format of the line: 8N1, 8E1, 8O1, 8N2, 8E2 [8N1, or the format in the rig file]");
   program
       .add_option("--turnaround-s", options.turnaround_s,
-                  "Response time of a module on the line [0, or that of the rig file]")
+                  "Response time of a module on the line [0, or the response time in the rig file]")
       ->check(number_between(0, 10));
   program.add_option("--bind", options.bind, "Numeric address to listen on")->capture_default_str();
   program.add_flag("--allow-network", options.allow_network,
                    "Allow an address that other computers can reach");
-  program.add_option("--unit", options.unit, "Unit id of the first module [1, or that of the rig file]");
+  program.add_option("--unit", options.unit,
+                     "Unit id of the first module [1, or the unit id in the rig file]");
   auto* channels =
       program.add_option("--channels", options.channels, "Number of fingers")->capture_default_str();
   program
@@ -61,7 +67,7 @@ void add_options(CLI::App& program, Options& options) {
                      "Object between the fingers: stone, screw or POSITION_MM[:YIELDING]");
   program
       .add_option("--object-out-at", options.object_out_at_s,
-                  "Remove the object this many seconds after the first command")
+                  "Time from the first command to the removal of the object")
       ->check(number_between(0, 86400));
   program.add_option("--faults", options.faults, "Schedule of faults (YAML)");
   program
@@ -82,12 +88,12 @@ void add_options(CLI::App& program, Options& options) {
       ->capture_default_str()
       ->check(number_between(0.1, 1000));
   program.add_option("--control", options.control,
-                     "Take control commands on this Unix socket ('-': standard input)");
+                     "Accept control commands on this Unix socket ('-': standard input)");
   program.footer(
       "Control commands: status, fault NAME, clear NAME, object out|back|stone|screw|POSITION_MM[:YIELDING], "
       "quit.\n"
-      "SIGUSR1 removes the object. Ready once 'listening on ADDRESS:PORT' or 'listening on DEVICE' is "
-      "printed.");
+      "SIGUSR1 removes the object. The emulator is ready when it has printed 'listening on ADDRESS:PORT' or "
+      "'listening on DEVICE'.");
 }
 
 /// Blocks the ending signals for the whole process and returns a descriptor that reports them.
@@ -166,8 +172,9 @@ ExitCode serve(const Options& options, const Setup& setup, simulation::Emulator&
 
 ExitCode run(const Options& options) {
   if (!modbus::is_loopback(options.bind) && !options.allow_network) {
-    return fail(ExitCode::usage, "other computers could reach " + options.bind +
-                                     ", and Modbus has no passwords: add --allow-network to allow it");
+    return fail(ExitCode::usage,
+                "other computers could reach " + options.bind +
+                    ", and Modbus has no passwords: to use this address, add --allow-network");
   }
   auto setup = make_setup(options);
   if (!setup) return setup.error();

@@ -97,7 +97,8 @@ tl::expected<Setup, ExitCode> setup_of_rig(const std::string& path) {
   if (!rig) return tl::unexpected{refuse(problems)};
   const auto* modbus = std::get_if<drivers::ModbusSettings>(&rig->board);
   if (modbus == nullptr) {
-    return tl::unexpected{fail(ExitCode::input_refused, path + ": this rig has no Modbus board to emulate")};
+    return tl::unexpected{fail(ExitCode::input_refused,
+                               path + ": this rig file has no Modbus board that softgrip-rig can emulate")};
   }
   Setup setup;
   for (const drivers::ModbusModuleSettings& module : modbus->modules) {

@@ -41,12 +41,16 @@ void add_options(CLI::App& program, Options& options) {
   options.config = tools::configuration_path("web.yaml");
   program.set_version_flag("--version", std::string{"softgrip-web "}.append(software_version()));
   program.add_option("--config", options.config, "Configuration file")->capture_default_str();
-  program.add_option("--socket", options.socket, "Socket of the daemon; overrides both sockets of the file");
-  program.add_option("--port", options.port, "Port; overrides the file; 0 selects a free port");
-  program.add_option("--recordings", options.recordings, "Folder of recordings; overrides the file");
-  program.add_flag("--operate", options.operate, "Allow every client to move the gripper; on loopback only");
-  program.add_flag("--check", options.check, "Check the file, report its errors, and exit");
-  program.footer("Ready once 'listening on http://ADDRESS:PORT/' is printed.");
+  program.add_option("--socket", options.socket,
+                     "Socket of the daemon; overrides both sockets of the configuration file");
+  program.add_option("--port", options.port,
+                     "TCP port; overrides the configuration file; 0 selects a free port");
+  program.add_option("--recordings", options.recordings,
+                     "Folder of recordings; overrides the configuration file");
+  program.add_flag("--operate", options.operate,
+                   "Allow every client to move the gripper; permitted only on loopback addresses");
+  program.add_flag("--check", options.check, "Check the configuration file, report its errors, and exit");
+  program.footer("The server is ready when it has printed 'listening on http://ADDRESS:PORT/'.");
 }
 
 /// Replaces settings of the file by the settings that the command line gives.
@@ -74,7 +78,9 @@ ExitCode run(const Options& options) {
   if (!settings) return tools::refuse(problems);
   put_in_place(options, *settings);
   if (options.operate && !modbus::is_loopback(settings->address))
-    return tools::fail(ExitCode::usage, "--operate is only for loopback: other addresses need a token");
+    return tools::fail(
+        ExitCode::usage,
+        "--operate is permitted only on loopback addresses; on other addresses, clients need a token");
   Tokens tokens;
   if (!settings->tokens.empty()) {
     auto loaded = Tokens::load(settings->tokens);
@@ -109,7 +115,7 @@ ExitCode run(const Options& options) {
 int main(int argc, char** argv) {
   using namespace softgrip;
   try {
-    CLI::App program{"softgripd for browsers and for Prometheus: an HTTP server in front of its socket.",
+    CLI::App program{"HTTP server that connects browsers and Prometheus to the socket of softgripd.",
                      "softgrip-web"};
     web::Options options;
     web::add_options(program, options);

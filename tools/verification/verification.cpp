@@ -120,8 +120,8 @@ class Verifier {
     }
     if (call_.empty())
       return missing(path +
-                     " does not contain the command that wrote it (key `call`): it was written by an older "
-                     "version or by an investigation");
+                     " does not contain the command that wrote this file (key `call`), because an older "
+                     "version or an investigation wrote the file");
     const bool writes_elsewhere = std::any_of(call_.begin(), call_.end(), [](const std::string& word) {
       return word.starts_with("--out") || word.starts_with("--figures");
     });
@@ -224,7 +224,7 @@ class Verifier {
     if (was && is) {
       compare_models("model.yaml", *was, *is, result_.comparison);
     } else {
-      result_.comparison.compare("model.yaml", std::string("is missing or broken"), "is there");
+      result_.comparison.compare("model.yaml", std::string("is missing or damaged"), "is there");
     }
   }
 

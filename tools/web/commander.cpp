@@ -58,7 +58,7 @@ tl::expected<Json, std::string> command_in(std::string_view body) {
   for (const auto& [key, value] : json.items()) {
     const bool of_start = key == "sequence" || key == "parameters";
     if (key != "command" && !(starts && of_start))
-      return tl::unexpected<std::string>{"unknown key in the body"};
+      return tl::unexpected<std::string>{"the body contains an unknown key"};
   }
   if (starts) {
     if (std::string wrong = check_start(json); !wrong.empty()) return tl::unexpected{std::move(wrong)};
@@ -71,7 +71,8 @@ tl::expected<std::uint64_t, Json> Commander::send(Json request, Nanoseconds now)
   const bool is_urgent = command == "stop" || command == "vent";
   const bool is_start = command == "start";
   if (waiting_.size() >= (is_urgent ? 2 * most_waiting : most_waiting))
-    return tl::unexpected<Json>{failure("busy", "too many commands wait for their responses")};
+    return tl::unexpected<Json>{
+        failure("busy", "too many commands are still waiting for a response of the daemon")};
   if (is_start && given_up_.size() >= most_waiting)
     return tl::unexpected<Json>{failure("busy", "the daemon has not confirmed the stops of earlier starts")};
   if (auto refusal = connect()) return tl::unexpected{std::move(*refusal)};
@@ -102,14 +103,13 @@ std::uint64_t Commander::send_numbered(Json request) {
 
 std::optional<Json> Commander::take_answer(std::uint64_t number, Nanoseconds now) {
   const auto found = waiting_.find(number);
-  if (found == waiting_.end()) return failure("no_answer", "this response is not expected");
+  if (found == waiting_.end()) return failure("no_answer", "the daemon sent a response without a request");
   Waiting& waiting = found->second;
   if (!waiting.answer && now > waiting.give_up) {
     end(waiting,
-        failure("no_answer",
-                waiting.start_id.empty()
-                    ? "the daemon does not respond"
-                    : "the daemon does not respond; softgrip-web stops this start after a reconnection"));
+        failure("no_answer", waiting.start_id.empty() ? "the daemon does not respond"
+                                                      : "the daemon does not respond; after a reconnection, "
+                                                        "softgrip-web stops the sequence of this start"));
   }
   std::optional<Json> answer = std::move(waiting.answer);
   if (answer) waiting_.erase(found);
@@ -197,11 +197,11 @@ void Commander::lose() {
   for (GivenUp& start : given_up_) start.stop = 0;
   for (auto& [number, waiting] : waiting_) {
     if (waiting.answer) continue;
-    end(waiting,
-        failure("no_answer",
-                waiting.start_id.empty()
-                    ? "the connection was lost before the response: check whether the command was executed"
-                    : "the connection was lost before the response; softgrip-web stops this start"));
+    end(waiting, failure("no_answer", waiting.start_id.empty()
+                                          ? "the connection to the daemon was lost before its response: "
+                                            "check if the command was executed"
+                                          : "the connection to the daemon was lost before its response; "
+                                            "softgrip-web stops the sequence of this start"));
   }
 }
 

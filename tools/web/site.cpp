@@ -90,7 +90,7 @@ Site::Site(const Settings& settings, Gate& gate, const LiveState& state, const O
     if (response.body.empty()) put_error(response, response.status, "not found");
   });
   engine_.set_exception_handler([](const Request&, Response& response, const std::exception_ptr&) {
-    put_error(response, 500, "the request could not be served");
+    put_error(response, 500, "the server could not handle the request");
   });
   add_page();
   add_sessions();
@@ -135,7 +135,7 @@ bool Site::need(Role role, Response& response) const {
     response.set_header("WWW-Authenticate", "Bearer");
     put_error(response, 401, "log in with a token first");
   } else {
-    put_error(response, 403, "read-only clients may not do that");
+    put_error(response, 403, "read-only clients may not send this request");
   }
   return false;
 }
@@ -219,10 +219,10 @@ std::string Site::metrics() const {
   metrics.sample(static_cast<double>(counts_.connections));
   metrics.family("softgrip_web_pages", gauge, "Open pages.");
   metrics.sample(static_cast<double>(counts_.followers));
-  metrics.family("softgrip_web_unsent_bytes", gauge, "Bytes that clients have not read yet.");
+  metrics.family("softgrip_web_unsent_bytes", gauge, "Bytes in responses that clients have not read yet.");
   metrics.sample(static_cast<double>(counts_.unsent));
   metrics.family("softgrip_web_turned_away_total", counter,
-                 "Connections that were refused, or closed for others.");
+                 "Connections that were refused, or closed in favour of other connections.");
   metrics.sample(static_cast<double>(counts_.turned_away));
   metrics.family("softgrip_web_answers_total", counter, "HTTP responses, by status.");
   for (const auto& [status, count] : counts_.answers)
@@ -259,7 +259,8 @@ void Site::show(const Request& request, Response& response) {
   }
   if (!reply_.disk->done()) return put_error(response, 503, disk_is_silent);
   const auto& file = reply_.disk->file();
-  if (!file) return put_error(response, 404, "the file does not exist or cannot be shown");
+  if (!file)
+    return put_error(response, 404, "the file does not exist, or files of this kind cannot be shown");
   replace_header(response, "Content-Security-Policy", recording_policy);
   const std::string type(content_type_of(name));
   if (file->size == 0) return response.set_content("", type);

@@ -78,8 +78,9 @@ TEST_F(Verification, AMissingOrAnotherLogIsRefusedWithItsHash) {
 
 TEST_F(Verification, AFolderThatDoesNotSayHowItWasMadeIsRefused) {
   replace("report/identify.json", "\"call\"", "\"called\"");
-  EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("does not contain the command that wrote it"),
-            std::string::npos);
+  EXPECT_NE(
+      verified(3)["missing"][0].get<std::string>().find("does not contain the command that wrote this file"),
+      std::string::npos);
   EXPECT_EQ(run("report --verify nowhere"), 3);
   EXPECT_EQ(run("report"), 2);
 }

@@ -15,7 +15,7 @@ namespace softgrip::web {
 namespace {
 
 constexpr std::size_t longest_file = 65536;
-constexpr const char* how_to_make = "`openssl rand -hex 24` creates one";
+constexpr const char* how_to_make = "to create a token, run `openssl rand -hex 24`";
 
 bool is_token_character(char character) {
   const auto within = [character](char first, char last) { return character >= first && character <= last; };
@@ -68,7 +68,7 @@ tl::expected<Tokens, std::string> Tokens::parse(std::string_view text) {
       return tl::unexpected{fmt::format("line {}: an earlier line contains the same token", number)};
     tokens.tokens_.push_back({role == "look" ? Role::look : Role::operate, std::string(token)});
   }
-  if (tokens.empty()) return tl::unexpected{fmt::format("there is no token; {}", how_to_make)};
+  if (tokens.empty()) return tl::unexpected{fmt::format("the token file contains no token; {}", how_to_make)};
   return tokens;
 }
 

@@ -31,9 +31,9 @@ constexpr Quantity quantities[] = {
     {"softgrip_squeeze_pascals", "squeeze_kpa", kpa_per_pa,
      "Gripping pressure: command minus free-motion pressure."},
     {"softgrip_model_residual_meters", "residual_mm", mm_per_m,
-     "Measured displacement minus the free motion of the running model."},
+     "Measured displacement minus the free-motion displacement of the model in use."},
     {"softgrip_model_residual_rms_meters", "health_rms_mm", mm_per_m,
-     "Root mean square of the residual. The model health depends on it."},
+     "Root mean square of the residual, which determines the model health."},
 };
 
 void tell_each(const Json& channels, MetricText& metrics, const auto& value_of) {
@@ -69,18 +69,19 @@ void tell_channels(const Json& channels, MetricText& metrics) {
       return number(channel, quantity.key) / quantity.units_per_base_unit;
     });
   }
-  metrics.family(
-      "softgrip_pressure_use_ratio", gauge,
-      "Distance of the command from the rest pressure, from 0 at rest to 1 at the limit on its side.");
+  metrics.family("softgrip_pressure_use_ratio", gauge,
+                 "Distance of the command from the rest pressure as a share of the distance to the pressure "
+                 "limit: 0 at rest, 1 at the limit.");
   tell_each(channels, metrics, pressure_use);
   metrics.family("softgrip_reading_valid", gauge, "1 while the displacement reading is valid.");
   tell_each(channels, metrics,
             [](const Json& channel) { return text(channel, "validity") == "valid" ? 1.0 : 0.0; });
-  metrics.family("softgrip_pressure_limited", gauge, "1 while a limit restricts the pressure.");
+  metrics.family("softgrip_pressure_limited", gauge,
+                 "1 while a limit of the rig or of the step restricts the pressure.");
   tell_each(channels, metrics,
             [](const Json& channel) { return member(channel, "limit").is_string() ? 1.0 : 0.0; });
   metrics.family("softgrip_model_health", gauge,
-                 "1 for the present health of the finger's running model, 0 for the others.");
+                 "1 for the present health state of the model in use of the finger, 0 for the other states.");
   tell_one_of(channels, metrics, "health", {"unknown", "healthy", "suspect", "unfit"});
 }
 

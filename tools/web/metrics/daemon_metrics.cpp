@@ -28,16 +28,16 @@ void tell_one(MetricText& metrics, std::string_view name, MetricText::Type type,
 void tell_state(const Json& status, MetricText& metrics) {
   metrics.family("softgrip_build_info", gauge, "Always 1: version of softgripd and name of the rig.");
   metrics.sample({{"version", status.value("version", "")}, {"rig", status.value("rig", "")}}, 1);
-  tell_one(metrics, "softgrip_simulated", gauge, "1 if there is no board and everything is simulated.",
-           flag(status, "simulated"));
+  tell_one(metrics, "softgrip_simulated", gauge,
+           "1 if the daemon uses a simulated board instead of a real board.", flag(status, "simulated"));
   tell_one(metrics, "softgrip_uptime_seconds", gauge, "Time since the daemon's start.",
            number(status, "time_s"));
-  metrics.family("softgrip_state", gauge, "1 for the present state of the rig, 0 for the others.");
+  metrics.family("softgrip_state", gauge, "1 for the present state of the rig, 0 for the other states.");
   const std::string state = status.value("state", "");
   for (const char* name : {"starting", "idle", "resynchronising", "running", "stopping", "faulted"})
     metrics.sample({{"state", name}}, state == name ? 1 : 0);
   metrics.family("softgrip_fault", gauge,
-                 "1 for the latched fault; if no fault is latched, there is no sample.");
+                 "1 for the latched fault. The metric is absent if no fault is latched.");
   if (const Json& fault = member(status, "fault"); fault.is_object()) {
     const std::string channel = fault.contains("channel") && fault["channel"].is_string()
                                     ? fault["channel"].get<std::string>()
@@ -54,8 +54,8 @@ void tell_lines(const Json& status, MetricText& metrics) {
   if (!lines.is_object()) return;
   tell_one(metrics, "softgrip_emergency_stop", gauge, "1 while the emergency stop is pressed.",
            flag(lines, "emergency_stop"));
-  tell_one(metrics, "softgrip_digital_lines_lost", gauge, "1 if the digital lines can no longer be read.",
-           flag(lines, "lost"));
+  tell_one(metrics, "softgrip_digital_lines_lost", gauge,
+           "1 if the daemon can no longer read the digital lines.", flag(lines, "lost"));
 }
 
 /// Writes a summary of the durations that the daemon has measured since its start.
@@ -91,7 +91,8 @@ void tell_bus(const Json& bus, MetricText& metrics) {
   tell_one(metrics, "softgrip_bus_exchanges_total", counter,
            "Exchanges with the board, successful and failed.", number(bus, "exchanges"));
   tell_one(metrics, "softgrip_bus_errors_total", counter,
-           "Exchanges with the board that failed, and failed attempts to connect.", number(bus, "failures"));
+           "Number of failed exchanges with the board and failed attempts to connect.",
+           number(bus, "failures"));
   tell_one(metrics, "softgrip_bus_sessions_total", counter, "Sessions that were opened with the board.",
            number(bus, "sessions"));
   tell_one(metrics, "softgrip_bus_overruns_total", counter, "Missed cycles of the bus.",

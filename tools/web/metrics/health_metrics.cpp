@@ -15,12 +15,13 @@ using enum MetricText::Type;
 
 void tell_health(const Json& health, MetricText& metrics) {
   if (!health.is_object()) return;
-  metrics.family("softgrip_health_timestamp_seconds", gauge, "Time of the last health result, since 1970.");
+  metrics.family("softgrip_health_timestamp_seconds", gauge,
+                 "Time of the last health result, in seconds since 1970-01-01 UTC.");
   metrics.sample(number(health, "made_unix_s"));
   const Json& shared = member(health, "shared");
   if (shared.is_array() && !shared.empty()) {
     metrics.family("softgrip_health_shared", gauge,
-                   "1 for every indicator that has changed equally at all fingers of the rig.");
+                   "1 for each indicator that has changed by the same amount at all fingers of the rig.");
     for (const Json& number : shared) {
       if (number.is_string()) metrics.sample({{"number", number.get<std::string>()}}, 1);
     }
@@ -28,7 +29,7 @@ void tell_health(const Json& health, MetricText& metrics) {
   const Json& fingers = member(health, "fingers");
   if (!fingers.is_array()) return;
   metrics.family("softgrip_health_state", gauge,
-                 "1 for the present health state of the finger, 0 for the others.");
+                 "1 for the present health state of the finger, 0 for the other states.");
   for (const Json& finger : fingers) {
     for (const char* state : {"learning", "steady", "alarm"})
       metrics.sample({{"channel", text(finger, "finger")}, {"state", state}},
