@@ -57,7 +57,8 @@ TEST(MonotonicClock, GoesOnWhileTheMachineSleeps) {
     clock.sleep_until(due);
     return clock.now() >= due ? 0 : 3;
   });
-  if (code == no_such_namespace) GTEST_SKIP() << "this user is not allowed to create a time namespace";
+  if (code == no_such_namespace)
+    GTEST_SKIP() << "the user of this test is not allowed to create a time namespace";
   EXPECT_EQ(code, 0);
 }
 

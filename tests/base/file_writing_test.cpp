@@ -47,7 +47,7 @@ TEST_F(FileWritingTest, AReplacedFileKeepsItsPermissions) {
   struct ::stat now {};
   ASSERT_EQ(::stat(path_.c_str(), &now), 0);
   EXPECT_EQ(now.st_mode & 07777U, 0640U);
-  EXPECT_EQ(count(), 1U) << "no other file remains";
+  EXPECT_EQ(count(), 1U) << "no temporary file remains in the folder";
 }
 
 TEST_F(FileWritingTest, ALinkStaysALink) {
@@ -72,7 +72,7 @@ TEST_F(FileWritingTest, AResultReplacesAFileAndKeepsItsPermissions) {
   struct ::stat now {};
   ASSERT_EQ(::stat(path_.c_str(), &now), 0);
   EXPECT_EQ(now.st_mode & 07777U, 0640U);
-  EXPECT_EQ(count(), 2U) << "no other file remains";
+  EXPECT_EQ(count(), 2U) << "no temporary file remains in the folder";
 }
 
 TEST_F(FileWritingTest, ANewFileHasThePermissionsThatTheUmaskLeaves) {
@@ -109,7 +109,7 @@ TEST_F(FileWritingTest, APrivateFileIsForItsOwnerAloneAndReplacesALink) {
   EXPECT_EQ(now.st_mode & 07777U, 0600U);
   EXPECT_EQ(text(folder_ / "kept.json"), "new");
   EXPECT_EQ(text(path_), "old");
-  EXPECT_EQ(count(), 2U) << "no other file remains";
+  EXPECT_EQ(count(), 2U) << "no temporary file remains in the folder";
   EXPECT_FALSE(write_private_file(Descriptor(), "kept.json", "newer"));
 }
 
@@ -158,7 +158,7 @@ TEST_F(FileWritingTest, AFullDiskLeavesTheOldFile) {
   EXPECT_FALSE(written);
   EXPECT_FALSE(created);
   EXPECT_EQ(text(path_), "old");
-  EXPECT_EQ(count(), 1U) << "no part of the new file remains";
+  EXPECT_EQ(count(), 1U) << "the failed write leaves no part of the new file";
 }
 
 TEST_F(FileWritingTest, AProcessThatIsKilledWhileItWritesLeavesTheOldFile) {

@@ -112,8 +112,8 @@ TEST(ParallelFor, ALoopWithinTheLastItemTakesTheThreadThatIsIdle) {
       const auto until = std::chrono::steady_clock::now() + 20s;
       while (!found && std::chrono::steady_clock::now() < until) found = side_by_side();
     });
-    EXPECT_TRUE(found) << (caller_works ? "the caller worked while a helper was idle"
-                                        : "a helper worked while the caller waited");
+    EXPECT_TRUE(found) << (caller_works ? "the calling thread worked while a helper thread was idle"
+                                        : "a helper thread worked while the calling thread waited");
   }
 }
 

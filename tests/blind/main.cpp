@@ -228,7 +228,7 @@ int run(const Arguments& a) {
     return 0;
   }
   if (a.commands.empty() && a.gauge.empty() && (a.out.empty() || a.truth.empty()))
-    throw std::invalid_argument("--out and --truth are needed");
+    throw std::invalid_argument("the options --out and --truth are required");
   const blind::Base base = scattered(a.seed);
   const blind::Sensor sensor;
   constexpr double working_kpa = 60;

@@ -173,7 +173,7 @@ TEST_F(CheckFolder, AndToTheChannelsOfOneThatCouldBeRead) {
   const rig::CheckReport report = check();
   EXPECT_TRUE(says(report, "`pressure_max_kpa` must be a number")) << report.problems.format();
   EXPECT_FALSE(says(report, "goes to 90 mm"))
-      << "a motion of channel left cannot be checked without its limits";
+      << "without limits of channel left, a motion of this channel cannot be checked";
   EXPECT_TRUE(says(report, "goes to 80 mm, channel 'right'")) << report.problems.format();
 }
 

@@ -199,7 +199,8 @@ TEST_F(Converters, OfOneNameAreRefusedWithBothAndTheirPlaceInTheFile) {
 TEST_F(Converters, AreChosenByAddressByNodeAndByPath) {
   EXPECT_EQ(problems_of("1-0060", "1-0061"), "");
   EXPECT_EQ(problems_of("iio:device1", (root_ / "hardware/1-0061").string()), "");
-  EXPECT_EQ(problems_of("1-0070", "1-0071"), "") << "addresses of another computer are not checked";
+  EXPECT_EQ(problems_of("1-0070", "1-0071"), "")
+      << "device addresses of another computer are not checked on this computer";
 }
 
 TEST_F(Converters, AHeartbeatCountsAsAWatchdogIfEveryValveRestsWithoutPower) {
@@ -359,9 +360,9 @@ TEST(RestPressure, IsComparedWithTheValveThatHasNoPower) {
                                   {"on_power_loss: vents", "on_power_loss: vents, on_power_loss_kpa: -80"}})
           .find("goes to -80 kPa, but the rest pressure is -40 kPa"),
       std::string::npos)
-      << "the limits do not apply to a valve without power";
+      << "the pressure limits do not apply to a valve without power";
   EXPECT_NE(warning("vacuum/rig.yaml", {holds}).find("holds its last pressure"), std::string::npos);
-  EXPECT_EQ(warning("rig.yaml", {holds}), "") << "the file states no rest pressure";
+  EXPECT_EQ(warning("rig.yaml", {holds}), "") << "the rig file does not state a rest pressure";
   Problems problems;
   EXPECT_FALSE(
       edited("rig.yaml", {{"on_power_loss: vents", "on_power_loss: holds, on_power_loss_kpa: 5"}}, problems)

@@ -21,7 +21,7 @@ std::string open_at_end(const std::string& text) {
 TEST(Brackets, ThoseThatAreNotClosedAreOpen) {
   EXPECT_EQ(open_at_end("a: [1, 2\nb: 3\n"), "[1:4");
   EXPECT_EQ(open_at_end("a: {b: [1, 2}\n"), "{1:4 [1:8")
-      << "a closing bracket of the other kind does not close the bracket";
+      << "`}` does not close `[`, and `]` does not close `{`";
   EXPECT_EQ(open_at_end("- [1, [2], {c: 3\n"), "[1:3 {1:12");
   EXPECT_EQ(open_at_end("a: [1, 2]\nb: {c: [3]}\n"), "");
 }

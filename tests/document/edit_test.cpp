@@ -64,7 +64,7 @@ TEST_F(EditTest, AKeyIsAddedToAMapOfLines) {
 
 TEST_F(EditTest, WhatItDoesNotUnderstandItDoesNotChange) {
   EXPECT_FALSE(edit.add_key(entry(1, "valve").value, "is_kpa", "[1, 2]"))
-      << "the edit is refused because the last value is a list on several lines";
+      << "the change is refused because the last value is a list on several lines";
   EXPECT_FALSE(edit.replace_numbers(entry(0, "sensor").value, {"1", "2"}))
       << "the edit is refused because the value is a map and not a list";
   EXPECT_FALSE(edit.replace_numbers(*below(&entry(0, "sensor").value, {"at_v"}), {"1"}));

@@ -14,7 +14,7 @@ TEST(UnitAtEnd, IsTheProjectsOwn) {
   EXPECT_EQ(unit_at_end("s"), "") << "\"s\" alone is a name and not a unit";
   EXPECT_EQ(unit_at_end("delay_ms"), "") << "ms is not a unit of the project";
   EXPECT_EQ(unit_at_end("per_s"), "s");
-  EXPECT_EQ(unit_at_end("mm_per_s"), "s") << "a key needs a word before its unit";
+  EXPECT_EQ(unit_at_end("mm_per_s"), "s") << "a key requires a word before its unit";
   EXPECT_EQ(unit_at_end(""), "");
 }
 

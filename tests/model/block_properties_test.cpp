@@ -116,7 +116,7 @@ TEST(EveryBlock, RestsAfterReset) {
       chain.step(1.0, 60, still);
       chain.reset(command_kpa);
       ASSERT_NEAR(chain.step(tick_s, command_kpa, still), rest_mm, 1e-9)
-          << "reset() must discard the history of the block";
+          << "reset() must delete the stored history of the block";
     }
   });
 }

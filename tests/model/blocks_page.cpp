@@ -67,7 +67,7 @@ void write_block(std::ostream& out, const BlockDescriptor& descriptor) {
   out << "\n### `" << info.id << "`: " << info.title << "\n\n" << info.meaning << "\n\n";
   out << "    " << info.equation << "\n\n";
   out << "Acts on: " << what_it_does(info.kind) << ". In the feedforward: " << how_undone(info.inverse) << "."
-      << (info.repeatable ? " A chain may contain it more than once." : "") << "\n\n";
+      << (info.repeatable ? " A chain may contain this block more than once." : "") << "\n\n";
   out << "| key | unit | default | allowed | no effect at | meaning |\n|---|---|---|---|---|---|\n";
   for (const ParameterSpec& spec : descriptor.parameters) write_parameter(out, spec);
   for (const ParameterSpec& spec : descriptor.repeated) write_parameter(out, spec);

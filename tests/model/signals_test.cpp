@@ -63,7 +63,8 @@ TEST(Signals, TrianglesAndSinusoidsShareTheirPeaks) {
       last = value;
     }
     EXPECT_EQ(peaks.size(), 10u);
-    EXPECT_EQ(std::set<int>(peaks.begin(), peaks.end()).size(), 5u) << "a cycle has 5 different amplitudes";
+    EXPECT_EQ(std::set<int>(peaks.begin(), peaks.end()).size(), 5u)
+        << "one cycle of the signal has 5 different amplitudes";
   }
 }
 

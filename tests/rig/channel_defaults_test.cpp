@@ -91,7 +91,7 @@ TEST_F(ChannelDefaultsTest, WhatAChannelSaysItselfCountsKeyByKey) {
   const control::ChannelSettings& right = rig->settings.channels[1];
   EXPECT_EQ(right.feedforward.kind, control::FeedforwardKind::none);
   EXPECT_EQ(right.limits.pressure_max_kpa, 40);
-  EXPECT_EQ(right.limits.slew_up_kpa_per_s, 300) << "the value comes from channel_defaults";
+  EXPECT_EQ(right.limits.slew_up_kpa_per_s, 300) << "the value must be that of channel_defaults";
   EXPECT_EQ(rig->wiring[1].displacement.scaling, (drivers::TwoPoints{0, 45, 10, -5}));
   EXPECT_EQ(rig->wiring[1].displacement.valid_max, 9.9);
   EXPECT_EQ(rig->settings.channels[0].limits.pressure_max_kpa, 60);

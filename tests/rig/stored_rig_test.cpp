@@ -55,7 +55,7 @@ TEST(StoredRig, ADamagedFileIsAProblem) {
   document::Problems problems;
   EXPECT_FALSE(read_stored_rig(files, problems));
   EXPECT_FALSE(problems.empty());
-  EXPECT_FALSE(read_stored_rig({}, problems)) << "a stored rig without files is refused";
+  EXPECT_FALSE(read_stored_rig({}, problems)) << "a stored rig that contains no files is refused";
 }
 
 }  // namespace

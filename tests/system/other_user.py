@@ -11,7 +11,7 @@ import time
 import bench
 
 NOBODY = 65534
-NEEDS_ROOT = "only root can become another user"
+NEEDS_ROOT = "only root can run this test as another user"
 
 
 def board_name(port):

@@ -33,8 +33,8 @@ tl::expected<ExperimentRig, ExitCode> rig_to_move(const std::string& path, const
   if (rig->simulated) return std::move(*rig);
   if (!yes && ::isatty(STDIN_FILENO) == 0) {
     return tl::unexpected(fail(ExitCode::usage,
-                               "this command moves a rig, and without a terminal it cannot ask for a "
-                               "confirmation: allow the motion with --yes"));
+                               "this command moves a rig, which cannot be confirmed without a terminal: "
+                               "allow the motion with --yes"));
   }
   if (daemon_runs(rig->rig.socket.path))
     return tl::unexpected(fail(ExitCode::state_refused, stop_the_daemon));

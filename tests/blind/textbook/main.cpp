@@ -49,7 +49,7 @@ struct Arguments {
 double rate(const std::string& value) {
   const double rate_hz = std::stod(value);
   if (rate_hz != 50 && rate_hz != 100 && rate_hz != 200 && rate_hz != 400)
-    throw std::invalid_argument("--rate-hz is one of 50, 100, 200, 400");
+    throw std::invalid_argument("--rate-hz must be one of 50, 100, 200, 400");
   return rate_hz;
 }
 
@@ -209,7 +209,8 @@ int run(const Arguments& a) {
     textbook::probe(a.probe);
     return 0;
   }
-  if (a.out.empty() || a.truth.empty()) throw std::invalid_argument("--out and --truth are needed");
+  if (a.out.empty() || a.truth.empty())
+    throw std::invalid_argument("the options --out and --truth are required");
   const auto& makes = textbook::makes();
   const textbook::World world =
       textbook::draw_world(a.make.empty() ? makes[a.seed % makes.size()] : a.make, a.seed);

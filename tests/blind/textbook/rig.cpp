@@ -53,7 +53,7 @@ Arguments arguments(int argc, char** argv) {
     else
       throw std::invalid_argument("unknown option " + key);
   }
-  if (argc % 2 == 0) throw std::invalid_argument("every option has a value");
+  if (argc % 2 == 0) throw std::invalid_argument("every option requires a value");
   if (a.fingers < 1 || a.fingers > most_fingers) throw std::invalid_argument("1 to 4 fingers");
   return a;
 }
@@ -90,7 +90,7 @@ class Rig {
       : plants_(static_cast<std::size_t>(fingers), Plant(world)),
         mapping_(modbus_mapping_new(0, 0, registers, 0)),
         random_(seed) {
-    if (!mapping_) throw std::runtime_error("no memory for the registers");
+    if (!mapping_) throw std::runtime_error("there is not enough memory for the Modbus registers");
   }
 
   modbus_mapping_t* mapping() const { return mapping_.get(); }
@@ -139,7 +139,7 @@ int port_of(int socket) {
   sockaddr_in address{};
   socklen_t size = sizeof address;
   if (getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size) != 0)
-    throw std::runtime_error("the socket has no name");
+    throw std::runtime_error("the address of the socket cannot be read");
   return ntohs(address.sin_port);
 }
 

@@ -82,10 +82,11 @@ std::string table() {
 TEST(Faults, TheManualSaysWhatTheCodeSays) {
   std::ifstream file(SOFTGRIP_SOURCE_DIR "/docs/reference/faults.md");
   const std::string manual((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  EXPECT_NE(manual.find(table()), std::string::npos) << "the table in docs/reference/faults.md should read:\n"
-                                                     << table();
+  EXPECT_NE(manual.find(table()), std::string::npos)
+      << "the table in docs/reference/faults.md must be equal to this table:\n"
+      << table();
   EXPECT_NE(manual.find(refusal_table()), std::string::npos)
-      << "the table of refusals in docs/reference/faults.md should read:\n"
+      << "the table of refusals in docs/reference/faults.md must be equal to this table:\n"
       << refusal_table();
 }
 

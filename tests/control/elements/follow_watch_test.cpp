@@ -22,7 +22,8 @@ TEST(FollowWatch, WhatStaysIsHeldAndWhatGoesOnHasChanged) {
   EXPECT_TRUE(held_after(5, 0));
   EXPECT_TRUE(held_after(5, 0.4)) << "the finger moves by only 40 % of the model's motion";
   EXPECT_FALSE(held_after(5, 0.7));
-  EXPECT_FALSE(held_after(-3, 0.7)) << "the finger follows enough, also on the way down";
+  EXPECT_FALSE(held_after(-3, 0.7))
+      << "the finger follows the model sufficiently, also while the pressure falls";
 }
 
 TEST(FollowWatch, BeforeTheModelHasMovedNobodyKnows) {

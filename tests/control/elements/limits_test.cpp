@@ -32,7 +32,8 @@ TEST(Limits, ACeilingIsKeptAndGoneToAtTheSlewLimit) {
   EXPECT_FALSE(capped.saturated || capped.slewing);
   EXPECT_DOUBLE_EQ(limit(typical, 30, 30, 0.005, 20).command_kpa, 28)
       << "the command falls by at most 400 kPa/s";
-  EXPECT_EQ(limit(typical, 30, 0, 1, -5).command_kpa, 0) << "the command is never below the range";
+  EXPECT_EQ(limit(typical, 30, 0, 1, -5).command_kpa, 0)
+      << "the command is never below the permitted pressure range";
   EXPECT_FALSE(limit(typical, 24, 20, 0.05, 25).capped);
 }
 
@@ -76,7 +77,7 @@ constexpr LimitSettings vacuum{-40, 60, 200, 400, -30, 25, 0.5, 0};
 TEST(Limits, RestIsZeroOrTheNearestEndOfTheRange) {
   LimitSettings limits = typical;
   EXPECT_EQ(resting_kpa(limits), 0);
-  EXPECT_EQ(resting_kpa(vacuum), 0) << "the rest pressure is not the full vacuum";
+  EXPECT_EQ(resting_kpa(vacuum), 0) << "the rest pressure of this channel is not full vacuum";
   limits.pressure_min_kpa = 5;
   EXPECT_EQ(resting_kpa(limits), 5);
   limits.pressure_min_kpa = -80;
@@ -89,10 +90,12 @@ TEST(Limits, RestIsZeroOrTheNearestEndOfTheRange) {
 TEST(Limits, NoFurtherFromRestThanABoundAndOnItsSide) {
   EXPECT_EQ(no_further(0, 20, 12), 12);
   EXPECT_EQ(no_further(0, 5, 12), 5);
-  EXPECT_EQ(no_further(0, -5, 12), 0) << "a bound above rest allows no pressure below rest";
+  EXPECT_EQ(no_further(0, -5, 12), 0)
+      << "a bound above the rest pressure permits no pressure below the rest pressure";
   EXPECT_EQ(no_further(0, -20, -12), -12);
   EXPECT_EQ(no_further(0, -5, -12), -5);
-  EXPECT_EQ(no_further(0, 5, -12), 0) << "a bound below rest allows no pressure above rest";
+  EXPECT_EQ(no_further(0, 5, -12), 0)
+      << "a bound below the rest pressure permits no pressure above the rest pressure";
   EXPECT_EQ(no_further(10, 4, 0), 4);
   EXPECT_EQ(no_further(10, 12, 0), 10);
   EXPECT_EQ(no_further(0, -20, infinity), -20);
@@ -106,7 +109,8 @@ TEST(Limits, WithoutAUsableLastCommandItBeginsAtRest) {
 TEST(Limits, ACeilingDoesNotEvacuate) {
   EXPECT_EQ(limit(vacuum, 30, 1, 1, -20).command_kpa, 0)
       << "the command falls to the rest pressure, but not below it";
-  EXPECT_EQ(limit(vacuum, 30, -10, 1, -20).command_kpa, 0) << "the way back to rest is not limited";
+  EXPECT_EQ(limit(vacuum, 30, -10, 1, -20).command_kpa, 0)
+      << "the return to the rest pressure is not limited";
   EXPECT_EQ(limit(vacuum, 0, -30, 1, -20).command_kpa, 0);
   EXPECT_FALSE(limit(vacuum, 0, -30, 1, -20).capped);
 }

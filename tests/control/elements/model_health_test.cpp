@@ -145,7 +145,8 @@ TEST(ModelHealth, ACusumOfThePlainResidualWouldAlarmFarMoreOften) {
       ++intervals;
     }
   }
-  EXPECT_LT(intervals / 100, 200) << "at the stated false-alarm rate the mean would be 2000 intervals";
+  EXPECT_LT(intervals / 100, 200)
+      << "without a change, the stated false-alarm rate would give a mean of 2000 intervals between alarms";
 }
 
 TEST(ModelHealth, FindsAnAgeingFinger) {
@@ -176,7 +177,7 @@ TEST(ModelHealth, ALargeResidualIsUnfitAndSaysSoOnce) {
   EXPECT_NEAR(health.rms_mm(), 4, 1e-9);
   for (int i = 0; i < 1000; ++i) health.observe(2.5);
   EXPECT_EQ(health.state(), HealthState::unfit)
-      << "the model becomes healthy again only below 0.7 of the bound";
+      << "the model becomes healthy again only if the residual falls below 0.7 of the bound";
   for (int i = 0; i < 40000; ++i) health.observe(0);
   EXPECT_EQ(health.state(), HealthState::healthy);
 }

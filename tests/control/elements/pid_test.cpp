@@ -84,7 +84,7 @@ TEST(Pid, AntiWindupForgetsHowLongTheCommandWasCut) {
     SCOPED_TRACE(share);
     const double none = recovery_s(AntiWindup::none, share, 2, limits);
     EXPECT_GT(recovery_s(AntiWindup::none, share, 8, limits), none + 3)
-        << "the saturation in this case is too short to be a test";
+        << "the command is saturated for too short a time in this case to test the anti-windup";
     for (const AntiWindup anti_windup : {AntiWindup::conditional, AntiWindup::back_calculation}) {
       const double soon = recovery_s(anti_windup, share, 2, limits);
       EXPECT_NEAR(recovery_s(anti_windup, share, 8, limits), soon, 0.05);

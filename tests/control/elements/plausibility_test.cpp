@@ -60,7 +60,8 @@ TEST(Plausibility, AnOldReadingIsStale) {
 TEST(Plausibility, AJumpIsNotBelievedUntilTheFingerCouldHaveMadeIt) {
   Channel channel;
   EXPECT_EQ(channel.next(5), Validity::valid);
-  EXPECT_EQ(channel.next(6.4), Validity::valid) << "the allowed change is 200 mm/s for 5 ms plus the margin";
+  EXPECT_EQ(channel.next(6.4), Validity::valid)
+      << "the permitted change of the reading is 200 mm/s for 5 ms plus the margin";
   EXPECT_EQ(channel.next(12), Validity::jumped);
   EXPECT_EQ(channel.next(6.4), Validity::valid) << "a single spike is not a fault";
   EXPECT_EQ(channel.next(12), Validity::jumped);
@@ -92,9 +93,9 @@ TEST(Plausibility, ALivelySensorThatRepeatsItselfStandsStillAndIsFrozenWhereTheF
       moved_mm = std::min(3.0, 0.05 * i);
       valid += channel.next(5.005, 20, tick_ns, 5 + moved_mm) == Validity::valid;
       EXPECT_FALSE(i < 10 && channel.judge.stands_still())
-          << "within the first 50 ms no reading stands still";
+          << "within the first 50 ms no reading counts as constant";
       EXPECT_FALSE(i == 30 && channel.judge.stands_still() != lively)
-          << "after 150 ms only the reading of a noisy sensor stands still";
+          << "after 150 ms only the reading of a sensor that normally has noise counts as constant";
     }
     EXPECT_EQ(valid, lively ? 100 : 200)
         << "a frozen reading is valid for 0.5 s, which are 100 ticks of 5 ms";

@@ -83,7 +83,7 @@ TEST(ActuatorInverse, FollowedByTheChainItIsTheIdentity) {
     highest = std::max(highest, solution.pressure_kpa);
   }
   EXPECT_LT(worst, 1e-9);
-  EXPECT_GT(highest, 15) << "the reference is too easy";
+  EXPECT_GT(highest, 15) << "the reference requires at most 15 kPa, so this test is too easy";
 }
 
 // Computes the pressure for a displacement. Tests all exponents and numbers of branches, random states, both
@@ -199,7 +199,7 @@ TEST(ActuatorInverse, TheExplicitMultiplicativeInverseDiverges) {
   for (int k = 0; k < 34; ++k) published.step(0.01);
   EXPECT_GT(published.p_kpa, 50);
   for (int k = 0; k < 40; ++k) published.step(0.009);
-  EXPECT_FALSE(std::abs(published.p_kpa) < 1e6) << "the reference is 1 um lower";
+  EXPECT_FALSE(std::abs(published.p_kpa) < 1e6) << "the reference is 1 um below the previous reference";
 
   // For bench_twin, beta/alpha is 0.81. The iteration converges, but each tick removes only a fifth of the
   // remaining error, so the result lags on a ramp.

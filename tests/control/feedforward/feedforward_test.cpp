@@ -282,7 +282,7 @@ TEST(FullModelFeedforward, AJumpOfTheReferenceDoesNotRing) {
       query.time_s = k * tick_s;
       const double planned = feedforward.step(query).pressure_kpa;
       ASSERT_LE(std::abs(planned - command), slew * tick_s * (1 + 1e-9))
-          << "the command moves no further than the limits allow";
+          << "the command changes by no more than the slew limits permit";
       command = planned;
       finger.step(0, command);
       finger.step(tick_s, command);
@@ -368,7 +368,7 @@ TEST(FullModelFeedforward, AJumpInMotionDoesNotKick) {
     before = last;
     last = command;
   }
-  EXPECT_LT(worst, 0.5) << "change [kPa] of the command's step between two ticks";
+  EXPECT_LT(worst, 0.5) << "change of the command between two ticks [kPa]";
 }
 
 TEST(BoucWenFeedforward, InvertsTheElementAlone) {

@@ -75,11 +75,12 @@ TEST_F(PlannedFeedforwardTest, GoesFromThePressureThatIsThereOverToItsPlan) {
     const double expected = on_plan(plan);
     const FeedforwardStep now = step();
     const double left = now.pressure_kpa - expected;
-    EXPECT_LE(std::abs(left), std::abs(difference) + 1e-9) << "the distance to the plan only decreases";
+    EXPECT_LE(std::abs(left), std::abs(difference) + 1e-9)
+        << "the distance between command and plan never increases";
     EXPECT_FALSE(now.out_of_reach);
     difference = left;
   }
-  EXPECT_NEAR(difference, 0, 1e-9) << "the command is on the plan after " << fade_s << " s";
+  EXPECT_NEAR(difference, 0, 1e-9) << "the command equals the plan after " << fade_s << " s";
 }
 
 TEST_F(PlannedFeedforwardTest, WhatTheFingerShowsMoreThanItsModelIsTakenOffAtTheSettledGain) {
@@ -141,7 +142,7 @@ TEST_F(PlannedFeedforwardTest, ClocksThatDifferByARoundingFollowTheSamePlan) {
     query_.plan_origin_s = rounding_s;
     enter(20);
     EXPECT_NEAR(step().pressure_kpa, 20, 1e-6);
-    EXPECT_NEAR(step_for(fade_s).pressure_kpa, 20, 1e-6) << "the command is on its plan";
+    EXPECT_NEAR(step_for(fade_s).pressure_kpa, 20, 1e-6) << "the command equals the plan";
   }
 }
 
@@ -154,7 +155,7 @@ TEST_F(PlannedFeedforwardTest, SaysWhatIsOutOfReach) {
   std::fill(plan.displacement_mm.begin(), plan.displacement_mm.end(), 5.19);
   EXPECT_FALSE(step().out_of_reach);
   std::fill(plan.displacement_mm.begin(), plan.displacement_mm.end(), 5.21);
-  EXPECT_TRUE(step().out_of_reach) << "the error that the plan predicts is above the limit";
+  EXPECT_TRUE(step().out_of_reach) << "the error that the plan predicts is larger than the limit";
   query_.plan = nullptr;
   reference_.start(0, 25);
   query_.offset_mm = -10;

@@ -38,8 +38,8 @@ TEST(RegulatorInverse, BringsThePressureWhereItIsWantedThroughOverlapAndIntegral
     furthest_kpa = std::max(furthest_kpa, std::abs(command_kpa - next_kpa));
   }
   EXPECT_LT(worst_kpa, 5e-3);
-  EXPECT_GT(furthest_kpa, 1)
-      << "the command must differ from the pressure to compensate lag, overlap and integral";
+  EXPECT_GT(furthest_kpa, 1) << "the command must differ from the pressure to compensate lag, overlap and "
+                                "integral action of the regulator";
 }
 
 TEST(RegulatorInverse, GoesOnFromWhereTheRegulatorStands) {
@@ -60,7 +60,7 @@ TEST(RegulatorInverse, AsksForNoMoreThanAPortOpens) {
   const double reached_kpa = inverse.advance(command_kpa);
   EXPECT_LT(reached_kpa, 40);
   EXPECT_NEAR(held(valve, 100), reached_kpa, 1e-9)
-      << "even a command of 100 kPa moves the pressure no further in this tick";
+      << "even a command of 100 kPa would not change the pressure more in this tick";
 }
 
 // While the pressure is constant, the command must not jump between the edges of the overlap, because this

@@ -155,7 +155,8 @@ TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
   const PressurePlan plan = Planner(twin, slow, tick_s).plan(reference, 0, reference.end_s());
   const double before = plan.displacement_mm[static_cast<std::size_t>(std::lround(6.0 / plan.step_s))];
   EXPECT_GT(before, 5.2) << "the plan starts before the step because the slew limit is too low for the step";
-  EXPECT_LT(plan.miss_mm(9.5), 0.05) << "the error 3.4 s after the step is below 0.5 % of the step";
+  EXPECT_LT(plan.miss_mm(9.5), 0.05)
+      << "the tracking error 3.4 s after the step of the reference is below 0.5 % of the step";
 }
 
 // The reference goes down to 0 mm faster than the creep recovers. No finger can follow this reference, and

@@ -269,7 +269,7 @@ TEST(Prepare, WhatAParameterBreaksIsToldAtTheParameter) {
   ASSERT_TRUE(read({}));
   EXPECT_TRUE(prepare(*read({}), settings, problems)) << "the requested value is within the limits";
   check_ranges(*read({}), settings, problems);
-  ASSERT_EQ(problems.size(), 2U) << "one error per channel";
+  ASSERT_EQ(problems.size(), 2U) << "each channel must cause one error";
   EXPECT_EQ(problems.list()[0].at.line, 3);
   EXPECT_NE(
       problems.list()[0].message.find(

@@ -54,21 +54,23 @@ steps:
                              problems);
   ASSERT_TRUE(sequence) << problems.format();
   const auto& steps = sequence->steps;
-  EXPECT_EQ(steps[0].on_contact, OnContact::hold) << "a step without on_fail holds at a contact";
+  EXPECT_EQ(steps[0].on_contact, OnContact::hold)
+      << "a step without on_fail must hold the pressure at a contact";
   EXPECT_TRUE(std::isinf(steps[0].bounds.squeeze_max_kpa) && std::isinf(steps[0].bounds.pressure_max_kpa));
-  EXPECT_EQ(steps[1].on_contact, OnContact::fail) << "a step with on_fail fails at a contact";
+  EXPECT_EQ(steps[1].on_contact, OnContact::fail) << "a step with on_fail must fail at a contact";
   EXPECT_EQ(steps[2].on_contact, OnContact::fail);
   EXPECT_EQ(steps[2].on_fail, OnFail::carry_on);
   EXPECT_EQ(steps[2].retries, 2U);
   EXPECT_EQ(steps[2].bounds.pressure_max_kpa, 30);
   EXPECT_EQ(steps[3].squeeze.by_kpa, 4);
   EXPECT_EQ(steps[3].squeeze.speed_kpa_per_s, 6);
-  EXPECT_EQ(steps[3].bounds.squeeze_max_kpa, 4) << "the bound is the final gripping pressure";
+  EXPECT_EQ(steps[3].bounds.squeeze_max_kpa, 4)
+      << "the pressure bound of the step is its final gripping pressure";
   EXPECT_TRUE(std::isinf(steps[4].hold_s));
   EXPECT_EQ(steps[4].bounds.squeeze_max_kpa, 3);
   EXPECT_EQ(steps[5].on_contact, OnContact::grip);
   EXPECT_EQ(steps[6].on_contact, OnContact::hold);
-  EXPECT_EQ(steps[7].on_contact, OnContact::ignore) << "an experiment continues at a contact";
+  EXPECT_EQ(steps[7].on_contact, OnContact::ignore) << "an experiment must continue at a contact";
 }
 
 TEST(SequenceFile, EveryKeyArrives) {

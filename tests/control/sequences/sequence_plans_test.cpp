@@ -83,8 +83,8 @@ TEST(SequencePlans, EveryMoveToADisplacementHasOneWithinTheLimits) {
     const LimitSettings& limits = settings.channels[0].limits;
     const PreparedSequence pick = example_sequence("pick_stone", settings);
     ASSERT_EQ(pick.steps.size(), 4U);
-    EXPECT_EQ(pick.steps[2].plan_of(0), nullptr) << "a hold continues the plan of the grip";
-    EXPECT_EQ(pick.steps[3].plan_of(0), nullptr) << "a release by pressure has no plan";
+    EXPECT_EQ(pick.steps[2].plan_of(0), nullptr) << "a hold step continues the plan of the grip step";
+    EXPECT_EQ(pick.steps[3].plan_of(0), nullptr) << "a release step with a target pressure has no plan";
     for (const std::size_t k : {0U, 1U}) {
       const PressurePlan* plan = pick.steps[k].plan_of(0);
       ASSERT_NE(plan, nullptr);
@@ -99,7 +99,7 @@ TEST(SequencePlans, EveryMoveToADisplacementHasOneWithinTheLimits) {
     }
     const double grip_to_end_s = pick.steps[1].plan_of(0)->step_s *
                                  static_cast<double>(pick.steps[1].plan_of(0)->pressure_kpa.size() - 1);
-    EXPECT_GT(grip_to_end_s, 5) << "the plan of the grip lasts until the end of the hold";
+    EXPECT_GT(grip_to_end_s, 5) << "the plan of the grip step lasts until the end of the hold step";
   }
 }
 
@@ -311,7 +311,7 @@ TEST(SequencePlans, AFingerThatStandsOffItsModelArrivesAllTheSame) {
     ASSERT_TRUE(rig.run_until(State::running, 12));
     const Motion motion = watch(rig, 5);
     EXPECT_LT(motion.jump_kpa, 0.5)
-        << "the command has no larger step than noise and the planned motion cause";
+        << "the command has no step that is larger than noise and planned motion explain";
     EXPECT_LT(motion.worst_mm, 1.5 + 0.8);
     EXPECT_NEAR(rig.plant_mm(0) + 1.5, 15, 0.15);
   }
@@ -345,7 +345,7 @@ TEST(SequencePlans, AStartFromAnotherDisplacementIsBumplessAndBetterThanPidAlone
     const Motion alone = from_half_way(rig_with(model, FeedforwardKind::none, gains), model);
     std::printf("%s: worst %.2f mm, with PID alone %.2f mm\n", model, planned.worst_mm, alone.worst_mm);
     EXPECT_LT(planned.jump_kpa, 0.5)
-        << "the command has no larger step than noise and the planned motion cause";
+        << "the command has no step that is larger than noise and planned motion explain";
     EXPECT_LT(planned.worst_mm, alone.worst_mm);
   }
 }
@@ -360,7 +360,8 @@ TEST(SequencePlans, BackingOffIsBumpless) {
     rig.request(Request::Kind::start, &pick);
     ASSERT_TRUE(rig.run_until_step(1, 10));
     const Motion motion = watch(rig, 8);
-    EXPECT_LT(motion.jump_kpa, 0.6) << "10 mm/s need about 0.2 kPa per tick; the rest is sensor noise";
+    EXPECT_LT(motion.jump_kpa, 0.6)
+        << "a speed of 10 mm/s requires about 0.2 kPa per tick; the remaining change is sensor noise";
     EXPECT_LT(motion.worst_mm, 2);
   }
 }

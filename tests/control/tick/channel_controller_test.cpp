@@ -263,7 +263,8 @@ TEST(ChannelController, ResynchronisingFollowsAFingerThatIsNotWhereTheModelIs) {
   rig.input.demand.mode = Mode::hold;
   rig.tick();
   const double off = rig.last.residual_mm;
-  EXPECT_GT(std::abs(off), 0.3) << "the model started without the creep of the finger";
+  EXPECT_GT(std::abs(off), 0.3)
+      << "at the start, the state of the model does not include the creep of the finger";
   rig.input.resynchronise = true;
   int ticks = 0;
   while (!rig.tick().synchronised && ticks < 1000) ++ticks;
@@ -300,7 +301,8 @@ TEST(ChannelController, ModelHealthSeesAFingerThatChanged) {
   touching.track(reference);
   touching.input.free_motion = false;
   touching.run(33);
-  EXPECT_EQ(touching.last.health, HealthState::unknown) << "an object is not a fault of the model";
+  EXPECT_EQ(touching.last.health, HealthState::unknown)
+      << "contact with an object is not an error of the model";
 }
 
 TEST(ChannelController, SlippedTicksAreCaughtUp) {

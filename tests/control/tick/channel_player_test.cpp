@@ -95,10 +95,10 @@ TEST(ChannelPlayer, ATouchCountsFromRestUpward) {
   player.reset();
   player.begin(move, nullptr, 0, touching_under(-20, -25));
   for (int i = 1; i <= 20; ++i) (void)player.tick(0.01 * i, touching_under(-20 + i, -25));
-  EXPECT_FALSE(player.stopped_by_contact()) << "the pressure is still below rest";
+  EXPECT_FALSE(player.stopped_by_contact()) << "the pressure is still below the rest pressure";
   EXPECT_EQ(player.take_contact(), std::nullopt);
   for (int i = 21; i <= 24; ++i) (void)player.tick(0.01 * i, touching_under(-20 + i, 1));
-  EXPECT_TRUE(player.stopped_by_contact()) << "the pressure is above rest";
+  EXPECT_TRUE(player.stopped_by_contact()) << "the pressure is above the rest pressure";
   EXPECT_EQ(player.take_contact(), OnContact::hold);
 }
 

@@ -88,10 +88,10 @@ TEST_F(ContactTest, AMoveStaysWithItsFirstTouchUnlessToldOtherwise) {
   SimulatedRig rig(settings);
   rig.stone(6);
   play(rig, move);
-  EXPECT_EQ(contacts(rig, OnContact::hold), 2U) << "one contact per finger";
+  EXPECT_EQ(contacts(rig, OnContact::hold), 2U) << "each finger reports one contact";
   rig.run(3);
   EXPECT_LT(squeeze_kpa(rig), curve.squeeze_for_kpa(settings.detection.margin_mm) + 1.5)
-      << "the pressure above the contact pressure is removed";
+      << "the controller removes the pressure above the contact pressure";
   EXPECT_GT(squeeze_kpa(rig), 0.5) << "the contact remains";
   EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U);
 }
@@ -104,7 +104,7 @@ TEST_F(ContactTest, AMoveMayGoOnWithTheGripAtOnce) {
   start(rig, pick);
   ASSERT_TRUE(rig.run_until_step(1, 20));
   EXPECT_EQ(contacts(rig, OnContact::grip), 1U);
-  EXPECT_LT(rig.plant_mm(1), 8) << "the other finger begins the grip at its present position";
+  EXPECT_LT(rig.plant_mm(1), 8) << "the finger without contact begins the grip at its present position";
   ASSERT_TRUE(rig.run_until(State::idle, 60));
 }
 
@@ -233,7 +233,7 @@ TEST_F(ContactTest, WhatIsHeldMayBeMoved) {
   rig.stone(12);
   play(rig, carry);
   EXPECT_EQ(rig.result(0), GripResult::holding);
-  EXPECT_NEAR(rig.board_kpa(0), 35, 1e-6) << "the step requests this pressure";
+  EXPECT_NEAR(rig.board_kpa(0), 35, 1e-6) << "this pressure is the target of the step";
 }
 
 TEST_F(ContactTest, ASpringIsFollowedUntilItPressesBack) {
@@ -263,7 +263,7 @@ TEST_F(ContactTest, WhatSlipsAwayIsSearchedForAndNotChased) {
   }
   EXPECT_EQ(rig.result(0), GripResult::no_part);
   EXPECT_LT(most_mm, pick.steps[1].step.target.value + 1)
-      << "the finger moves no further than the step requests";
+      << "the finger does not move beyond the target of the step";
 }
 
 TEST_F(ContactTest, TheBoundHoldsWhileAHeldPartCreeps) {

@@ -139,7 +139,8 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
   EXPECT_LE(cycles, fault.bound_cycles);
   EXPECT_EQ(rig.output().first_fault.code, fault.code);
   const double at_latch_kpa = rig.output().channels[0].command_kpa;
-  EXPECT_NEAR(at_latch_kpa, before_kpa, 10) << "the command moved for a few cycles at most";
+  EXPECT_NEAR(at_latch_kpa, before_kpa, 10)
+      << "the command changed for at most a few cycles before the fault";
   if (phase.step >= 0) {
     EXPECT_EQ(rig.result(0), GripResult::error);
   }
@@ -224,7 +225,7 @@ TEST_F(SingleFault, CyclesAreCountedOneByOne) {
   EXPECT_EQ(
       ticks_until_fault([](SimulatedRig& rig) { rig.fault[0].validity = model::Validity::sensor_error; }),
       settings.faults.invalid_reading_cycles + 1)
-      << "the tick uses the reading of the previous tick";
+      << "the controller uses the reading of the previous tick";
 }
 
 // One correct readback must reset the count of deviating readbacks to 0.
@@ -271,7 +272,7 @@ TEST_F(SingleFault, AFingerThatStillHasPressureAtTheStartIsGivenTimeToDeflate) {
   EXPECT_EQ(rig.output().state, State::idle);
   rig.run(1);
   EXPECT_EQ(rig.output().first_fault.code, FaultCode::pressure_not_followed)
-      << "the time to deflate after the start is limited";
+      << "after the start, the fault is suppressed only for a limited time of deflation";
 }
 
 TEST_F(SingleFault, AStutteringWireDoesNotHideABurstLine) {
@@ -351,12 +352,13 @@ TEST_F(SingleFault, TheFirstFaultIsKeptAndLaterOnesAreTold) {
   rig.fault[0].validity = model::Validity::sensor_error;
   ASSERT_TRUE(rig.run_until(State::faulted, 1));
   rig.run(0.5);
-  EXPECT_GT(rig.board_kpa(0), 20) << "the settings require that this fault holds the pressure";
+  EXPECT_GT(rig.board_kpa(0), 20) << "the settings of this rig require that the fault holds the pressure";
   rig.emergency_stop = true;
   rig.run(1);
   EXPECT_EQ(rig.output().first_fault.code, FaultCode::sensor_error);
   EXPECT_EQ(rig.count(Event::Kind::fault_latched), 2U);
-  EXPECT_EQ(rig.board_kpa(0), 0) << "a later fault can change a hold to a vent, but not a vent to a hold";
+  EXPECT_EQ(rig.board_kpa(0), 0)
+      << "a second fault can change the reaction from hold to vent, but not from vent to hold";
 }
 
 TEST_F(SingleFault, AcknowledgingIsRefusedWhileTheCauseIsThere) {
@@ -408,7 +410,7 @@ TEST_F(SingleFault, AHoldSurvivesAReconnectionOnlyWhereTheBoardHoldsToo) {
     rig.run(2);
     EXPECT_NEAR(rig.board_kpa(0), at_reconnection_kpa, 1) << "a reconnection moves no finger";
     EXPECT_EQ(rig.count(Event::Kind::fault_latched), 1U)
-        << "readings that became old during a bus fault are not a second fault";
+        << "readings that become too old during a bus fault must not cause a second fault";
   }
 }
 
@@ -428,10 +430,10 @@ TEST_F(SingleFault, ALaterFaultDoesAsThePhaseOfTheFirstSays) {
   rig.fault[1].validity = model::Validity::sensor_error;
   rig.run(1);
   EXPECT_EQ(rig.count(Event::Kind::fault_latched), 2U);
-  EXPECT_NEAR(rig.board_kpa(0), held_kpa, 1) << "a held part remains held";
+  EXPECT_NEAR(rig.board_kpa(0), held_kpa, 1) << "the fingers must continue to hold the part";
   rig.emergency_stop = true;
   rig.run(1);
-  EXPECT_LT(rig.board_kpa(0), 1) << "the emergency stop has its own safe action";
+  EXPECT_LT(rig.board_kpa(0), 1) << "the emergency stop has a separate safe action";
 }
 
 TEST_F(SingleFault, NamesItsFingerUntilItIsAcknowledged) {
@@ -445,7 +447,7 @@ TEST_F(SingleFault, NamesItsFingerUntilItIsAcknowledged) {
   rig.fault[1].validity.reset();
   rig.fault[0].validity = model::Validity::out_of_range;
   rig.run(0.1);
-  EXPECT_EQ(rig.output().first_fault.channel, 1) << "the first fault remains latched";
+  EXPECT_EQ(rig.output().first_fault.channel, 1) << "the first fault remains latched after the second fault";
   EXPECT_EQ(rig.output().cause.code, FaultCode::reading_out_of_range)
       << "another fault now prevents the acknowledgement";
   EXPECT_EQ(rig.output().cause.channel, 0);

@@ -89,7 +89,7 @@ TEST_F(GripCycle, AStonePulledOutDuringHoldIsPartLostWithinTwoReverifications) {
   EXPECT_EQ(rig.result(0), GripResult::part_lost);
   ASSERT_TRUE(rig.run_until(State::idle, 20));
   EXPECT_EQ(rig.result(0), GripResult::part_lost)
-      << "the result is latched: the release does not overwrite it";
+      << "the grip result is latched, so the release does not overwrite the result";
   rig.run(1);
   EXPECT_EQ(rig.result(0), GripResult::part_lost);
   rig.request(Request::Kind::acknowledge);
@@ -274,7 +274,7 @@ steps:
   }
   ASSERT_EQ(begun_s.size(), 2U);
   EXPECT_GT(begun_s[1] - low_since_s, 0.7)
-      << "the finger settles for settle_s at the start pressure before it tries again";
+      << "before the next attempt, the finger settles for settle_s at the start pressure";
 }
 
 TEST_F(GripCycle, AFingerThatCannotArriveEndsWithErrorAtTheTimeout) {

@@ -56,7 +56,7 @@ TEST_F(HealthInFreeMotionTest, APartThatAStopLeavesInTheFingersRaisesNoAlarm) {
   rig.run(1);
   rig.request(Request::Kind::stop);
   ASSERT_TRUE(rig.run_until(State::idle, 5));
-  ASSERT_GT(rig.output().channels[0].command_kpa, 5) << "the finger is still held";
+  ASSERT_GT(rig.output().channels[0].command_kpa, 5) << "a part still holds the finger";
   rig.run(30);
   EXPECT_FALSE(unfit(rig));
 }
@@ -74,8 +74,8 @@ TEST_F(HealthInFreeMotionTest, NorDoesOneThatAFaultLeavesThere) {
   rig.run(0.5);
   rig.request(Request::Kind::acknowledge);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
-  ASSERT_GT(rig.output().channels[0].command_kpa, 5) << "the finger is still held";
-  ASSERT_NE(rig.result(0), GripResult::holding) << "no grip result reports the held finger";
+  ASSERT_GT(rig.output().channels[0].command_kpa, 5) << "a part still holds the finger";
+  ASSERT_NE(rig.result(0), GripResult::holding) << "no grip result reports that a part holds the finger";
   rig.run(30);
   EXPECT_FALSE(unfit(rig));
 }

@@ -60,7 +60,8 @@ TEST_F(Outputs, WhatTheBusHasTakenBackIsGoneAtOnceAndStaysSo) {
     EXPECT_EQ(rig.output().state, State::faulted);
     EXPECT_EQ(rig.output().first_fault.code, said);
     EXPECT_EQ(command(rig), 0);
-    EXPECT_EQ(rig.output().channels[0].safe_kpa, 0) << "the bus must write 0 kPa if the loop falls silent";
+    EXPECT_EQ(rig.output().channels[0].safe_kpa, 0)
+        << "the bus must write 0 kPa if the control loop sends no commands";
     rig.bus_fault = FaultCode::none;
     rig.outputs_kpa.clear();
     rig.run(0.5);

@@ -154,7 +154,8 @@ TEST_F(Requests, AStopOfOneStartEndsThatOneAlone) {
   ASSERT_TRUE(rig.run_until(State::running, 5));
   rig.request({Request::Kind::stop, 8, nullptr, 6});
   rig.tick();
-  EXPECT_EQ(rig.output().state, State::running) << "the stop request referred to another start";
+  EXPECT_EQ(rig.output().state, State::running)
+      << "the stop request named a start other than the running one";
   const auto refused = std::ranges::find(rig.events, Event::Kind::request_refused, &Event::kind);
   ASSERT_NE(refused, rig.events.end());
   EXPECT_EQ(refused->request, 8U);
@@ -187,7 +188,7 @@ TEST_F(Requests, AStopOfOneStartThatPassesItKeepsItFromBeginning) {
   EXPECT_TRUE(refused(7));
   rig.request({Request::Kind::start, 8, &pick});
   rig.tick();
-  EXPECT_EQ(rig.output().state, State::resynchronising) << "no stop request referred to this start";
+  EXPECT_EQ(rig.output().state, State::resynchronising) << "no stop request named the running start";
   EXPECT_FALSE(refused(8));
 }
 
@@ -283,7 +284,7 @@ TEST_F(Requests, AHeldFingerMustBeAtRestToo) {
     ASSERT_EQ(rig.output().state, State::resynchronising);
   }
   rig.fault[0].offset_mm = 0;
-  EXPECT_TRUE(rig.run_until(State::running, 1)) << "the person has stopped shaking the finger";
+  EXPECT_TRUE(rig.run_until(State::running, 1)) << "the disturbance of the finger has ended";
 }
 
 TEST_F(Requests, AGripThatNeedsTheModelIsNotStartedWhereTheModelIsFarOff) {
@@ -301,7 +302,8 @@ TEST_F(Requests, AGripThatNeedsTheModelIsNotStartedWhereTheModelIsFarOff) {
   EXPECT_NEAR(why->value, 1.5 * settings.detection.margin_mm, 0.1);
   const PreparedSequence track = example_sequence("track_sine", settings);
   rig.request(Request::Kind::start, &track);
-  EXPECT_TRUE(rig.run_until(State::running, 2)) << "a tracking sequence does not need the model";
+  EXPECT_TRUE(rig.run_until(State::running, 2))
+      << "a sequence with only track steps starts even if the finger deviates from its model";
 }
 
 TEST_F(Requests, LeavingTheLoopIsSafeInEveryPhase) {

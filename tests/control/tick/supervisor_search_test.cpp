@@ -97,7 +97,7 @@ class SupervisorSearch : public testing::Test {
     std::string broken = judge(before, supervisor, tick, outputs, events);
     if (tick.sequence_ends && supervisor.state() == State::running) {
       supervisor.sequence_ended(SequenceEnd::done, OnFail::release, tick.phase, events);
-      if (may_rise(supervisor.state())) broken = "a sequence that has ended runs on";
+      if (may_rise(supervisor.state())) broken = "a sequence that has ended continues";
     }
     return broken;
   }
@@ -117,33 +117,36 @@ class SupervisorSearch : public testing::Test {
     const bool halts = tick.request == Kind::vent || (stops && may_rise(before));
     const bool undisturbed = tick.fault == FaultCode::none && !tick.interlock_open;
     if (tick.of_start == another_start && undisturbed && before == State::running && after != before)
-      return "a stop of another start ends this one";
-    if (tick.fault != FaultCode::none && after != State::faulted) return "a fault that is due does not latch";
+      return "a stop request that names another start ends the running sequence";
+    if (tick.fault != FaultCode::none && after != State::faulted)
+      return "a fault whose condition is fulfilled is not latched";
     if (halts && may_rise(after)) return "motion continues after a stop or a vent";
     if (tick.request == Kind::vent && supervisor.venting() != all && after != State::idle)
-      return "a vent is refused";
+      return "a vent request is refused";
     if (outputs.release && after == State::running && supervisor.sequence() == nullptr)
-      return "a release without a sequence";
+      return "the release state occurs without a sequence";
     if (tick.request == Kind::release && before == State::resynchronising && may_rise(after))
       return "motion continues after a release";
     if (after == State::resynchronising && before != after && !started)
-      return "a motion that was not requested";
+      return "a motion begins without a request";
     if (after == State::running && before != after && before != State::resynchronising)
-      return "a motion without a check of the rest position";
+      return "a motion begins without a check of the rest position";
     if (outputs.begin != nullptr && after != State::running)
-      return "a sequence is played in a state in which none runs";
+      return "a sequence runs in a state in which no sequence may run";
     if (started && (tick.interlock_open || !tick.bus_good || !tick.all_ready) && tick.request == Kind::start)
-      return "a start that should have been refused";
+      return "a start is accepted that must be refused";
     if (before == State::faulted && after != State::faulted && !acknowledged)
       return "a fault disappears without an acknowledgement";
     if (acknowledged && tick.cause_present) return "a fault is acknowledged while its cause is present";
-    if (may_rise(after) && supervisor.sequence() == nullptr) return "motion without a sequence";
-    if (!may_rise(after) && supervisor.sequence() != nullptr) return "a sequence without motion";
+    if (may_rise(after) && supervisor.sequence() == nullptr)
+      return "the state permits motion, but no sequence runs";
+    if (!may_rise(after) && supervisor.sequence() != nullptr)
+      return "a sequence runs, but the state permits no motion";
     if (tick.request != Kind::none && answers == 0 && !outputs.acknowledged_by)
-      return "a request that is not answered";
+      return "a request gets no response";
     if (after == State::faulted && (tick.fault == FaultCode::board_watchdog_tripped) &&
         supervisor.venting() != all)
-      return "an output that the board has vented is held";
+      return "the controller holds an output that the board has already vented";
     if (after == State::faulted && supervisor.venting_on_leaving(tick.phase) != supervisor.venting())
       return "the shutdown changes the safe action of a fault";
     return {};
@@ -173,7 +176,7 @@ TEST_F(SupervisorSearch, NoStateThatCanBeReachedBreaksAPromise) {
                             << static_cast<int>(tick.rest) << " to " << name_of(to.state());
       if (seen.insert(bytes_of(to)).second) open.push_back(to);
     }
-    ASSERT_LT(seen.size(), 100'000U) << "the states are not discrete";
+    ASSERT_LT(seen.size(), 100'000U) << "the number of different states is too large for a complete search";
   }
   std::printf("%zu states, %zu steps\n", seen.size(), steps);
   EXPECT_GT(seen.size(), 20U);

@@ -31,7 +31,8 @@ TEST_F(UnsteadyTest, IsToldOnceAndSoIsItsEnd) {
   EXPECT_EQ(rig.count(Event::Kind::reading_steady), 0U);
   EXPECT_TRUE(rig.output().channels[0].unsteady);
   EXPECT_FALSE(rig.output().channels[1].unsteady);
-  EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U) << "the settings do not define this as a fault";
+  EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U)
+      << "with these settings, an unsteady reading is not a fault";
   rig.run(4);
   EXPECT_EQ(rig.count(Event::Kind::reading_steady), 1U);
 }

@@ -139,7 +139,7 @@ TEST_F(VacuumRig, AReleaseToAPressureGoesNoFurtherThanRest) {
   ASSERT_TRUE(rig.start_until_step(release, 1));
   while (rig.output().state == State::running) {
     rig.tick();
-    ASSERT_LE(command(rig), 0) << "the command does not cross rest";
+    ASSERT_LE(command(rig), 0) << "the command does not cross the rest pressure";
   }
   EXPECT_EQ(command(rig), 0);
 }
@@ -177,7 +177,7 @@ TEST_F(VacuumRig, TouchAndSqueezeBelowRestAreRefused) {
            {"pressure: {points: [{time_s: 0, pressure_kpa: -20}, {time_s: 1, pressure_kpa: 5}]", 5}}) {
     EXPECT_EQ(below(step + ", on_contact: hold"), highest_kpa < 0) << step;
     EXPECT_FALSE(below(step + ", on_contact: ignore")) << step;
-    EXPECT_FALSE(below(step)) << step << ": this value is the default";
+    EXPECT_FALSE(below(step)) << step << ": without on_contact, the step must not be refused";
   }
 }
 

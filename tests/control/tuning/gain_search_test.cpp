@@ -32,7 +32,7 @@ TEST(GainSearch, ACoarseGridLooksAtFewerPointsAndFindsTheBowlToo) {
   search.coarseness = 1;
   (void)search_gains(cost, search);
   EXPECT_EQ(evaluations, 30 + 3)
-      << "30 points of the grid and 3 points of the simplex around the best of them";
+      << "30 points of the grid, and 3 points of the simplex around the best point of the grid";
   evaluations = 0;
   search.coarseness = 5;
   (void)search_gains(cost, search);
@@ -49,8 +49,7 @@ TEST(GainSearch, EndsWhereAllCornersAreAlike) {
         return 1.0;
       },
       {0, 0, 0}, 1, {.iterations = 1000, .done_share = 1e-3});
-  EXPECT_EQ(evaluations, 3)
-      << "the search ends after the first simplex because no point is better than another";
+  EXPECT_EQ(evaluations, 3) << "the search ends after the first simplex because all points are equally good";
   EXPECT_EQ(found, (GainPoint{0, 0, 0}));
 }
 

@@ -141,7 +141,7 @@ std::string follow(std::span<const Step> path) {
     bus.step(clock.now());
     clock.advance(period);
     if (board.output_kpa > before_kpa + 1e-9 && (!may_rise || trips > 0))
-      return "the output rises without permission";
+      return "an output rises although motion is inhibited";
     return {};
   };
   for (int i = 0; i < 4; ++i) {
@@ -172,9 +172,10 @@ std::string follow(std::span<const Step> path) {
     if (!controller.runs) may_rise = false;
     if (const std::string broken = exchange(); !broken.empty()) return broken;
   }
-  if (controller.heard != shared.bus.value().health.inhibit) return "the loop did not receive the reason";
+  if (controller.heard != shared.bus.value().health.inhibit)
+    return "the control loop did not receive the reason for the inhibited motion";
   shared.bus.fetch();
-  if (shared.bus.value().health.fault != FaultCode::none) return "the fault of the bus never ends";
+  if (shared.bus.value().health.fault != FaultCode::none) return "the bus fault never ends";
   return {};
 }
 

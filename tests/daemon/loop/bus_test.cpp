@@ -276,7 +276,7 @@ TEST_F(VacuumBusTest, OutputsThatTheBoardDidNotConfirmAreTheNearerToRest) {
   command(3, 0, true);
   step(bus);
   EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 0)
-      << "the output may be on either side of rest, so only the rest pressure is safe";
+      << "the output may be above or below the rest pressure, so only the rest pressure is safe";
 }
 
 /// If a board fails repeatedly for the same reason, the event log must contain this reason only once.
@@ -305,14 +305,14 @@ TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
       clock_.advance(60'000'000'000);
       step();
     }
-    EXPECT_TRUE(failures().empty()) << "the reason has not changed";
+    EXPECT_TRUE(failures().empty()) << "the reason for the failure has not changed";
     board_.said = refusal.c_str();
     for (int i = 0; i < 5; ++i) {
       clock_.advance(60'000'000'000);
       step();
     }
     EXPECT_EQ(failures(), (std::vector<std::string>{"again: " + refusal}))
-        << "the complete text of a new reason is reported once";
+        << "the complete text of a new failure reason is reported once";
     board_.next_exchange = BusStatus::ok;
     board_.next_connect = BusStatus::ok;
     clock_.advance(60'000'000'000);
@@ -352,7 +352,8 @@ TEST_F(BusTest, ASessionIsToldOfOnceTheBoardHasAnsweredInIt) {
     clock_.advance(60 * ns_per_s);
     step();
   }
-  EXPECT_EQ(told(), (Told{{Kind::connected, BusStatus::ok}})) << "an exception is also a response";
+  EXPECT_EQ(told(), (Told{{Kind::connected, BusStatus::ok}}))
+      << "a Modbus exception also counts as a response";
   board_.next_exchange = BusStatus::ok;
   step();
   EXPECT_EQ(told(), (Told{{Kind::recovered, BusStatus::ok}}));
@@ -536,8 +537,8 @@ TEST_F(BusTest, OutputsFoundNearerToRestAreNotWrittenBack) {
   EXPECT_EQ(last_written(), 5);
   command(12, 0, false, shared_.bus.value().health.inhibit);
   step();
-  EXPECT_EQ(last_written(), 5)
-      << "the loop knows the fault, but its command is further from rest than the output";
+  EXPECT_EQ(last_written(), 5) << "the control loop knows the fault, but its command is further from the "
+                                  "rest pressure than the output";
   command(4, 0, false, shared_.bus.value().health.inhibit);
   step();
   EXPECT_EQ(last_written(), 4);
@@ -588,7 +589,7 @@ TEST_F(BusTest, WhatTheBoardSaidOnceIsReportedAndNothingRisesUntilTheLoopHasHear
     board_.next_exchange = said;
     step();
     EXPECT_EQ(shared_.bus.value().health.connected, said == BusStatus::write_refused)
-        << "only a new session clears a watchdog trip";
+        << "only a new session with the board clears a watchdog trip";
     EXPECT_EQ(fault(), fault_of(said));
     board_.next_exchange = BusStatus::ok;
     const double outputs_kpa = said == BusStatus::watchdog_tripped ? 0 : 12;

@@ -136,7 +136,7 @@ class WatchedTicks {
 };
 
 TEST(LoopRules, TheHookSeesAnAllocation) {
-  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers have their own allocator";
+  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "with sanitizers, the program uses a different allocator";
   allocations.store(0);
   armed = true;
   // The volatile pointer prevents that the compiler removes the calls of malloc() and free().
@@ -147,7 +147,7 @@ TEST(LoopRules, TheHookSeesAnAllocation) {
 }
 
 TEST(LoopRules, NoTickAllocates) {
-  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers have their own allocator";
+  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "with sanitizers, the program uses a different allocator";
   const auto parts = make_parts(true);
   parts->rig.recorder.mode = rig::RecorderSettings::Mode::off;
   const auto sequence = testing::example_sequence(parts->rig, "pick_stone.yaml");
@@ -286,7 +286,7 @@ int verdict() {
   const long call = forbidden_call.load();
   if (call == -1) return clean;
   if (call == -2) return no_filter;
-  std::fprintf(stderr, "system call %ld in the loop's thread\n", call);
+  std::fprintf(stderr, "system call %ld in the thread of the control loop\n", call);
   return forbidden;
 }
 

@@ -208,7 +208,7 @@ TEST(LoopThread, CyclesThatWereSleptThroughAreSlipsAndToldToTheController) {
   parts.shared.shutdown_requested.store(true);
   loop.join();
   EXPECT_GE(parts.loop_statistics.overruns_woken_late.value(), 100U);
-  EXPECT_LE(parts.loop_statistics.ticks.value(), 10U) << "missed ticks must not be made up";
+  EXPECT_LE(parts.loop_statistics.ticks.value(), 10U) << "the loop must not repeat missed ticks";
   EXPECT_EQ(parts.service.snapshot().first_fault.code, FaultCode::cycles_lost);
 }
 

@@ -126,7 +126,7 @@ TEST(TripleBuffer, IsWholeHoweverOftenTheWriterPublishesDuringACopy) {
 
 TEST(TripleBuffer, TheSameInterruptionTearsAWrongCell) {
   EXPECT_TRUE(whole_when_interrupted<TwoSlots<TornValue>>(1))
-      << "the error is visible only if the writer publishes twice during a copy";
+      << "a data race is detected only if the writer publishes twice while the reader copies";
   EXPECT_FALSE(whole_when_interrupted<TwoSlots<TornValue>>(2));
 }
 

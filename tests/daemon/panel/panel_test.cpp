@@ -174,7 +174,7 @@ TEST_F(PanelTest, PressureThatStaysOnMakesTheLampBlinkThatIsOn) {
   EXPECT_TRUE(is_on(GpioRole::ready_lamp));
   shared_.under_pressure.store(true);
   EXPECT_NEAR(static_cast<double>(lit(GpioRole::ready_lamp)), 3.5, 1);
-  EXPECT_FALSE(is_on(GpioRole::fault_lamp)) << "there is no fault";
+  EXPECT_FALSE(is_on(GpioRole::fault_lamp)) << "the daemon must report no fault";
   EXPECT_TRUE(is_on(GpioRole::enable)) << "the pressure that holds the part must remain";
   shared_.state.store(control::State::faulted);
   EXPECT_NEAR(static_cast<double>(lit(GpioRole::fault_lamp)), 3.5, 1);
@@ -223,7 +223,7 @@ TEST_F(PanelTest, TheEmergencyStopAlwaysDropsTheEnable) {
   terminals_.set(GpioRole::emergency_stop, true);
   run(0.03);
   EXPECT_FALSE(is_on(GpioRole::enable))
-      << "the enable output must not wait for the loop, which still reports idle";
+      << "the enable output must not wait for the control loop, which still reports the state idle";
 }
 
 TEST_F(PanelTest, ALoopThatHangsDropsTheEnableAndMayNotGoOn) {
@@ -235,9 +235,10 @@ TEST_F(PanelTest, ALoopThatHangsDropsTheEnableAndMayNotGoOn) {
   run(0.1, false);
   EXPECT_FALSE(is_on(GpioRole::enable));
   EXPECT_TRUE(is_on(GpioRole::fault_lamp));
-  EXPECT_TRUE(shared_.inputs.lost.load()) << "the loop must find a fault if it continues";
+  EXPECT_TRUE(shared_.inputs.lost.load()) << "the control loop must detect a fault when it continues";
   run(0.02);
-  EXPECT_TRUE(shared_.inputs.lost.load()) << "the report must remain until the loop has latched the fault";
+  EXPECT_TRUE(shared_.inputs.lost.load())
+      << "the report of the panel must remain until the control loop has latched the fault";
   shared_.state.store(control::State::faulted);
   run(0.02);
   EXPECT_FALSE(shared_.inputs.lost.load());
@@ -405,7 +406,7 @@ TEST_F(PanelOfDaemon, StartsFaultedAndMovesOnlyAfterReleaseAndAcknowledgement) {
   ASSERT_TRUE(until_state("idle")) << "the rig must remain idle";
   end();
   EXPECT_TRUE(outcome_.safe_state_confirmed);
-  EXPECT_FALSE(terminals_.level(GpioRole::enable)) << "the enable output is off after the end";
+  EXPECT_FALSE(terminals_.level(GpioRole::enable)) << "the enable output is off after the end of the daemon";
   EXPECT_FALSE(terminals_.level(GpioRole::ready_lamp));
 }
 

@@ -25,7 +25,7 @@ TripInput cleared() {
 TEST(TripInput, IsTrippedUntilItWasSteadilyClear) {
   TripInput input(debounce);
   EXPECT_TRUE(input.tripped());
-  EXPECT_EQ(input.due(), 0) << "the level must be read at once";
+  EXPECT_EQ(input.due(), 0) << "the level of the input must be read immediately";
   input.level(false, 1 * ms);
   EXPECT_TRUE(input.tripped());
   EXPECT_EQ(input.due(), 6 * ms);
@@ -69,8 +69,7 @@ TEST(TripInput, SeesAPressThatWasOverBeforeAnybodyLooked) {
   TripInput input = cleared();
   input.edge(true, 20 * ms);
   input.edge(false, 26 * ms);
-  EXPECT_TRUE(input.tripped())
-      << "according to the kernel's times of the edges the input was pressed for 6 ms";
+  EXPECT_TRUE(input.tripped()) << "according to the edge times of the kernel, the input was pressed for 6 ms";
 }
 
 TEST(TripInput, TripsOnAContactThatOnlyChatters) {
@@ -83,7 +82,8 @@ TEST(TripInput, TripsOnAContactThatOnlyChatters) {
     now += 2 * ms;
     input.level(pressed, now);
   }
-  EXPECT_LE(now, 30 * ms + 2 * ms) << "at most twice the debounce time and one reading";
+  EXPECT_LE(now, 30 * ms + 2 * ms)
+      << "the detection takes at most twice the debounce time plus one reading interval";
 }
 
 TEST(TripInput, NeedsNoEdges) {

@@ -228,7 +228,7 @@ TEST_F(RecorderTest, TriesAgainWithTheNextSequenceAMinuteAfterTheDiskRefused) {
   settings_.directory = "/proc/softgrip";
   event(Event::Kind::sequence_started, 0, 7);
   ticks(10, State::running);
-  EXPECT_EQ(log_.since(0, 100).size(), 1U) << "the failure is reported once, not for every row";
+  EXPECT_EQ(log_.since(0, 100).size(), 1U) << "the write failure is reported once, not for every row";
   settings_.directory = temporary_.path();
   ticks(6100, State::idle);
   event(Event::Kind::sequence_started, 0, 7);

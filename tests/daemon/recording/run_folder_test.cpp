@@ -110,7 +110,7 @@ TEST(RunFolder, RunJsonIsTheOldOneOrTheNewOne) {
     EXPECT_FALSE(folder->replace_json("{\"a\":1,\"b\":2}"));
   }
   EXPECT_EQ(text_of(temporary.path() + "/run.json"), "{\"a\":1}");
-  EXPECT_EQ(files_in(temporary.path()), 2U) << "no incomplete file remains";
+  EXPECT_EQ(files_in(temporary.path()), 2U) << "a failed write leaves no incomplete file";
   EXPECT_TRUE(folder->healthy());
   EXPECT_FALSE(folder->error().empty());
 }

@@ -38,10 +38,11 @@ TEST(BoardLock, OneMasterPerBoardUnderWhateverSpelling) {
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().find("modbus ::1 port 40502 unit 1"), std::string::npos) << second.error();
   EXPECT_NE(second.error().find("process " + std::to_string(getpid())), std::string::npos) << second.error();
-  EXPECT_TRUE(BoardLock::take(rig_at("::1", 40503))) << "a board at another port has its own lock";
-  EXPECT_TRUE(BoardLock::take(rig_at("::1", 40502, 2))) << "another unit behind a gateway has its own lock";
+  EXPECT_TRUE(BoardLock::take(rig_at("::1", 40503))) << "boards at different ports have different locks";
+  EXPECT_TRUE(BoardLock::take(rig_at("::1", 40502, 2)))
+      << "different units behind one gateway have different locks";
   *first = BoardLock();
-  EXPECT_TRUE(BoardLock::take(rig_at("::1", 40502))) << "the lock was released";
+  EXPECT_TRUE(BoardLock::take(rig_at("::1", 40502))) << "the lock must be free after its holder has ended";
 }
 
 TEST(BoardLock, AnAddressWithinTheOtherFamilyIsTheSameBoard) {
@@ -151,7 +152,7 @@ std::function<bool()> another_user_on(const std::string& board, int backlog) {
 }
 
 TEST(BoardLock, AnotherUsersClaimDoesNotCountAndIsSaid) {
-  if (::geteuid() != 0) GTEST_SKIP() << "only root can become another user";
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can run this test as another user";
   const rig::RigFile rig = rig_at("127.0.0.1", 40511);
   for (const int backlog : {-1, 0, 5}) {
     const Holder other(another_user_on("modbus 127.0.0.1 port 40511 unit 1", backlog));

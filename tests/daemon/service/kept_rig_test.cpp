@@ -44,7 +44,7 @@ TEST_F(KeptRig, IsTheRigThatRanWhateverBecameOfTheFiles) {
   ASSERT_TRUE(kept) << kept.error();
   for (const char* file : {"rig_tcp.yaml", "boards/adam-6024.yaml", "models/bench_twin.yaml"}) halve(file);
   document::Problems problems;
-  ASSERT_FALSE(rig::load_rig(path_, problems)) << "the halved files are invalid";
+  ASSERT_FALSE(rig::load_rig(path_, problems)) << "files that are cut in half are invalid";
   const auto again = kept_rig(path_);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->name, rig.name);
@@ -75,7 +75,7 @@ TEST_F(KeptRig, TheLastRunCounts) {
 TEST_F(KeptRig, BelongsToItsRigFile) {
   ASSERT_TRUE(keep_rig(load(path_)));
   EXPECT_TRUE(kept_rig(folder_.path() + "/config/../config/./rig_tcp.yaml"))
-      << "the other notation refers to the same path";
+      << "a different notation of the path refers to the same rig file";
   EXPECT_FALSE(kept_rig(folder_.path() + "/config/rig_rtu.yaml"));
   forget_rig(path_);
   EXPECT_FALSE(kept_rig(path_));

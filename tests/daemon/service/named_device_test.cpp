@@ -48,11 +48,12 @@ TEST(NamedDevice, AConverterByItsNameOrItsFolderAndOnlyTheOutputsThatAreWritten)
             (std::vector<std::string>{"out_voltage2_raw", "out_voltage0_raw", "out_voltage0_powerdown"}));
   const auto inputs = named_device(rig, "iio:device0");
   ASSERT_TRUE(inputs);
-  EXPECT_TRUE(inputs->written.empty()) << "every user may read the inputs, so no file is written";
+  EXPECT_TRUE(inputs->written.empty())
+      << "every user may read the input attributes, so the list of written attributes is empty";
   EXPECT_FALSE(named_device(rig, "iio:device2"));
   EXPECT_FALSE(named_device(rig, "iio:device3"));
   std::ofstream(root.path() + "/iio:device2/name") << "dac7578\n";
-  EXPECT_FALSE(named_device(rig, "iio:device1")) << "a name that two converters share is ambiguous";
+  EXPECT_FALSE(named_device(rig, "iio:device1")) << "the name of two converters is ambiguous";
 }
 
 TEST(NamedDevice, OtherDevicesAreNone) {

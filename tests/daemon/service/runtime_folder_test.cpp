@@ -55,7 +55,7 @@ TEST_F(RuntimeFolderTest, APlaceThatOthersCanChangeIsPassedOver) {
 }
 
 TEST_F(RuntimeFolderTest, AnotherUsersPlaceIsPassedOver) {
-  if (::geteuid() != 0) GTEST_SKIP() << "only root can give a folder away";
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can change the owner of a folder";
   fs::create_directory(place_);
   ASSERT_EQ(::chown(place_.c_str(), 65534, 65534), 0);
   const auto opened = RuntimeFolder::open({place_});
@@ -84,7 +84,7 @@ TEST_F(RuntimeFolderTest, AFileThatIsNotItsOwnIsRefusedAndStays) {
     EXPECT_FALSE(mine.get(name, 1000)) << name;
   }
   ASSERT_TRUE(mine.put("link", "new"));
-  EXPECT_FALSE(fs::is_symlink(place_ + "/link")) << "the link is replaced, not followed";
+  EXPECT_FALSE(fs::is_symlink(place_ + "/link")) << "the symbolic link is replaced and not followed";
   std::string text;
   std::ifstream(victim) >> text;
   EXPECT_EQ(text, "precious");
@@ -110,7 +110,7 @@ TEST_F(RuntimeFolderTest, KnowsWhetherANameIsStillTheFile) {
   mine.remove("a");
   EXPECT_FALSE(mine.still_names("a", file->get()));
   ASSERT_TRUE(mine.lock_file("a"));
-  EXPECT_FALSE(mine.still_names("a", file->get())) << "the name now refers to another file";
+  EXPECT_FALSE(mine.still_names("a", file->get())) << "the file name now refers to another file";
 }
 
 TEST_F(RuntimeFolderTest, OnlyFoldersInRunEndWithTheMachine) {

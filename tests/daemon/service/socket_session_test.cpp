@@ -94,7 +94,7 @@ TEST_F(SocketSession, AStopThatNamesAStartEndsThatOneAlone) {
     EXPECT_EQ(stop_of(key, value)["error"]["refusal"]["name"], "named_start_not_running") << key << value;
   }
   EXPECT_EQ(status()["sequence"]["ended"], nullptr) << "none of these stop requests refers to this start";
-  EXPECT_EQ(start("cell/1")["error"]["code"], "bad_request") << "the id is already in use";
+  EXPECT_EQ(start("cell/1")["error"]["code"], "bad_request") << "this start id is already in use";
   EXPECT_EQ(stop_of("start_id", "cell/1")["ok"], true);
   ASSERT_TRUE(until_state("idle"));
   EXPECT_EQ(status()["sequence"]["ended"], "stopped");

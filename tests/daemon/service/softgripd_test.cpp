@@ -246,7 +246,8 @@ TEST_F(SoftgripdTest, RefusesWithTheExitCodesOfTheManual) {
   };
   EXPECT_EQ(code({}), 2);
   EXPECT_EQ(code({"--config", rig, "--fly"}), 2);
-  EXPECT_EQ(code({"--config", rig, "--virtual-time"}), 2) << "virtual time needs an end of the run";
+  EXPECT_EQ(code({"--config", rig, "--virtual-time"}), 2)
+      << "in virtual time, softgripd requires an end of the run";
   EXPECT_EQ(code({"--help"}), 0);
   EXPECT_EQ(code({"--version"}), 0);
   EXPECT_EQ(code({"--config", rig, "--check"}), 0);

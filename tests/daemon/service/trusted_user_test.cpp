@@ -58,7 +58,7 @@ TEST(TrustedUser, APeerOfThisUserCounts) {
 }
 
 TEST(TrustedUser, APeerOfAnotherUserDoesNotCount) {
-  if (::geteuid() != 0) GTEST_SKIP() << "only root can become another user";
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can run this test as another user";
   const auto peer = peer_as(nobody);
   ASSERT_TRUE(peer);
   EXPECT_EQ(peer->user, nobody);

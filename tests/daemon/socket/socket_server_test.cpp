@@ -224,14 +224,14 @@ TEST_F(SocketServerTest, TheLongestSilentOnesMakeRoom) {
   clients.push_back(connect_to(settings_.path));
   turn();
   EXPECT_NE(received(clients[1]).value_or("").find("too_many_clients"), std::string::npos)
-      << "the client that never sent a line loses its place first";
+      << "the client that never sent a line is disconnected first";
   turn(1, 6 * ns_per_s);
   send_text(clients[3], "hello\n");
   turn();
   clients.push_back(connect_to(settings_.path));
   turn();
   EXPECT_NE(received(clients[0]).value_or("").find("too_many_clients"), std::string::npos)
-      << "the client that was silent for the longest time loses its place";
+      << "the client that sent nothing for the longest time is disconnected";
   EXPECT_EQ(received(clients[2]), "");
   EXPECT_EQ(received(clients[3]), "");
 }
@@ -250,14 +250,14 @@ TEST_F(SocketServerTest, AClientThatKeepsItsPlaceIsDisplacedByNobody) {
   send_text(clients.back(), "hello\n");
   turn();
   EXPECT_NE(received(clients[1]).value_or("").find("too_many_clients"), std::string::npos)
-      << "the silent client that has no reason to keep its place loses it";
+      << "a silent client that does not receive events is disconnected";
   keeps_.insert(4);
   turn(1, 60 * ns_per_s);
   const Descriptor late = connect_to(settings_.path);
   send_text(late, "and I\n");
   turn();
   EXPECT_NE(received(late).value_or("").find("too_many_clients"), std::string::npos)
-      << "all places are in use, so the new client is refused with a message";
+      << "the largest number of clients is connected, so the new client is refused with a message";
   for (const std::size_t i : {0UL, 2UL, 3UL})
     EXPECT_EQ(received(clients[i]), "") << i << " is still connected";
   const Descriptor urgent = connect_to(settings_.path);
@@ -372,7 +372,7 @@ TEST_F(SocketServerTest, AClientThatDoesNotReadIsNotReadEitherAndThenDropped) {
     send_text(client, "more\n");
     turn(1);
   }
-  EXPECT_LT(lines_.size(), 100U) << "further requests wait in the client's own buffer";
+  EXPECT_LT(lines_.size(), 100U) << "further requests of a client wait in the buffer of this client";
   EXPECT_EQ(server().clients(), 1U);
   turn(11, ns_per_s);
   EXPECT_EQ(server().clients(), 0U);
@@ -389,7 +389,7 @@ TEST_F(SocketServerTest, WhatAClientHasSentAtOnceWaitsAsLongAsItTakesNoAnswers) 
   for (int i = 0; i < 100; ++i) questions += "more\n";
   send_text(client, questions);
   turn(50);
-  EXPECT_EQ(server().clients(), 1U) << "the queue of the other client would be too long";
+  EXPECT_EQ(server().clients(), 1U) << "for the slow client, the queue would be too long";
   const std::size_t before = lines_.size();
   EXPECT_LT(before, 5U);
   for (int i = 0; i < 20; ++i) {

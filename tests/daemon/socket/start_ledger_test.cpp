@@ -26,7 +26,7 @@ TEST(StartLedger, WhatAStopHasNamedBeforeItCameIsForbidden) {
   EXPECT_FALSE(ledger.is_forbidden("a"));
   ledger.forbid("a");
   EXPECT_TRUE(ledger.is_forbidden("a"));
-  EXPECT_FALSE(ledger.is_forbidden("")) << "a start without an id is never forbidden";
+  EXPECT_FALSE(ledger.is_forbidden("")) << "a start without an id is always permitted";
 }
 
 TEST(StartLedger, TheOldestGoButForTheOneThatRuns) {

@@ -47,7 +47,7 @@ TEST_F(UnderPressure, WhatStaysOnIsNamedWithTheCommandThatEndsIt) {
             "Fingers are pressurised: right 36.0 kPa. `softgrip release` vents them; a held part drops.");
   snapshot_.state = State::faulted;
   set(33, 36);
-  EXPECT_EQ(json()["command"], "softgrip vent") << "release is refused in this state";
+  EXPECT_EQ(json()["command"], "softgrip vent") << "a release request is refused in this state";
   EXPECT_NE(json()["text"].get<std::string>().find("left 33.0 kPa, right 36.0 kPa"), std::string::npos);
 }
 

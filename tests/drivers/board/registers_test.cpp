@@ -47,7 +47,7 @@ TEST(Registers, SwappedBytes) {
   EXPECT_EQ(words, (std::array<std::uint16_t, 2>{0x0000, 0xc0bf}));
   for (const WordOrder order : {WordOrder::high_first_bytes_swapped, WordOrder::low_first_bytes_swapped}) {
     encode(-2, RegisterKind::int16, order, words);
-    EXPECT_EQ(words[0], 0xfeff) << "the order of the bytes is also changed for a single register";
+    EXPECT_EQ(words[0], 0xfeff) << "the setting changes the order of the bytes even in a single register";
     EXPECT_EQ(decode(std::array<std::uint16_t, 1>{0x3412}, RegisterKind::uint16, order), 0x1234);
   }
 }

@@ -221,7 +221,7 @@ TEST_F(Libgpiod, RefusesALineBehindTheLast) {
   EXPECT_EQ(beyond.line, 1U);
   EXPECT_EQ(beyond.message, "the chip `gpiochip0` has no line 6");
   EXPECT_EQ(beyond.hint, "the lines of this chip have the numbers 0 to 5");
-  EXPECT_FALSE(chips()[0].lines[0].used) << "the other lines are released";
+  EXPECT_FALSE(chips()[0].lines[0].used) << "after a failed request, all other lines are released";
 }
 
 TEST_F(Libgpiod, RefusesAnInputThatIsAnOutput) {

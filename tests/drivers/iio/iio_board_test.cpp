@@ -183,7 +183,7 @@ TEST_F(IioBoardTest, AnOutputThatIsSwitchedOffIsSwitchedOnAfterItsNumberWasWritt
   IioBoard board(settings_);
   ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
   EXPECT_EQ(get("iio:device1/out_voltage0_powerdown"), "1")
-      << "the output must stay off while it still has its old value";
+      << "the output must stay off while its register still has the old value";
   EXPECT_EQ(exchange(board, 110, 10), BusStatus::write_refused);
   EXPECT_EQ(get("iio:device1/out_voltage0_powerdown"), "1");
   BusStatus status = BusStatus::disconnected;

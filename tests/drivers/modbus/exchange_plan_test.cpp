@@ -101,7 +101,7 @@ TEST(ExchangePlan, TheCountOfClientsIsReadByWhatWritesTheOutputs) {
   map.watchdog.clients = BoardWatchdog::ClientCount{.function = 3, .address = 2};
   const ExchangePlan beside = plan_exchange(map, test::two_fingers(false));
   EXPECT_EQ(beside.reads, (std::vector<ReadStep>{{3, 0, 3}}))
-      << "the register is next to the inputs, so no further request is needed";
+      << "the register is adjacent to the inputs, so no additional request is required";
   EXPECT_EQ(beside.clients, (Slot{0, 2}));
   map.watchdog.clients = BoardWatchdog::ClientCount{.function = 4, .address = 40};
   EXPECT_EQ(plan_exchange(map, test::two_fingers(false)).reads,

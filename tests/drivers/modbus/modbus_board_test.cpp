@@ -182,7 +182,8 @@ TEST_F(ModbusBoardTest, ACommandBeyondTheOutputsRangeIsReportedAndItsEndWritten)
   EXPECT_EQ(exchange(-1, 10), BusStatus::write_refused);
   EXPECT_EQ(server_.holding(10), 0);
   EXPECT_EQ(readings_[0].sequence, 1U) << "readings change only if the status is ok";
-  EXPECT_EQ(exchange(100, 0), BusStatus::ok) << "the limits themselves are allowed: " << board_->detail();
+  EXPECT_EQ(exchange(100, 0), BusStatus::ok)
+      << "a command that equals a limit is permitted: " << board_->detail();
 }
 
 TEST_F(ModbusBoardTest, ACommandThatIsNoNumberWritesNothing) {
@@ -342,7 +343,7 @@ TEST_F(WatchdogTest, ATripIsReportedAndNotClearedByExchanging) {
   ASSERT_EQ(exchange(10, 10), BusStatus::ok);
   trip();
   for (int i = 0; i < 3; ++i) EXPECT_EQ(exchange(10, 10), BusStatus::watchdog_tripped);
-  EXPECT_EQ(server_.holding(10), 0) << "outputs remain safe until the next connection";
+  EXPECT_EQ(server_.holding(10), 0) << "outputs remain at their safe values until the next connection";
   EXPECT_EQ(server_.coil(32), 1);
   EXPECT_EQ(readings_[0].sequence, 1U);
 }
@@ -415,7 +416,7 @@ TEST_F(WatchdogTest, ABoardThatRefusesWritesWhileTrippedIsToldByItsFlag) {
   (void)server_.take_requests();
   ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
   for (const auto& request : server_.take_requests()) {
-    EXPECT_NE(request.function, 6) << "the setup could end the trip before the outputs are written";
+    EXPECT_NE(request.function, 6) << "the setup writes could clear the trip before the outputs are written";
   }
   ASSERT_EQ(exchange(5, 5), BusStatus::ok) << board_->detail();
   int set_up = 0;

@@ -66,7 +66,7 @@ TEST_F(TwoModules, OutputsAreReachedThoughTheInputsAreGone) {
   EXPECT_EQ(exchange(40, 60), BusStatus::disconnected);
   EXPECT_NE(std::string(board_->detail()).find("'in'"), std::string::npos) << board_->detail();
   ASSERT_EQ(board_->connect(generous), BusStatus::ok)
-      << "a connection requires a response of the output module only";
+      << "for a connection, only the output module must respond";
   EXPECT_EQ(exchange(0, 0), BusStatus::disconnected);
   EXPECT_EQ(server_.holding(0), 0) << "a board without a watchdog must also receive the rest pressures";
   EXPECT_EQ(server_.holding(1), 0);

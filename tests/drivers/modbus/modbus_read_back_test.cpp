@@ -46,7 +46,7 @@ TEST_F(ModbusBoardTest, ARefusedExchangeNamesTheOutputsThatItHasFound) {
     server.input_[11] = server.holding_[11];
   });
   EXPECT_EQ(exchange(40, 60), BusStatus::write_refused);
-  EXPECT_TRUE(std::isnan(board_->found_kpa(0))) << "the output is as written";
+  EXPECT_TRUE(std::isnan(board_->found_kpa(0))) << "the output equals the written value";
   EXPECT_NEAR(board_->found_kpa(1), 20, 0.1);
   writes = false;
   EXPECT_EQ(exchange(40, 20), BusStatus::ok);
@@ -67,7 +67,8 @@ TEST_F(ModbusBoardTest, WhatSomebodyElseWritesIsNoticedWithinEightExchanges) {
   EXPECT_LE(until_noticed, 8);
   EXPECT_NE(std::string(board_->detail()).find("channel 'right': another client"), std::string::npos)
       << board_->detail();
-  EXPECT_EQ(server_.holding_[11], 0) << "the output must not be overwritten before a decision";
+  EXPECT_EQ(server_.holding_[11], 0)
+      << "the output must not be overwritten before it is known if another client wrote it";
   EXPECT_EQ(exchange(0, 0), BusStatus::ok);
 }
 
@@ -81,7 +82,7 @@ TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsNotTakenForSomebodyElsesWriti
     ASSERT_EQ(exchange(10, 10), BusStatus::ok) << board_->detail();
     server_.ignore_writes(true);
     ASSERT_NE(exchange(50, 10), BusStatus::overwritten)
-        << "an exchange that begins with a reading finds the correct output";
+        << "an exchange that begins with a read request finds the correct output";
     for (int i = 0; i < 16 + first; ++i) ASSERT_EQ(exchange(50, 10), BusStatus::write_refused) << i;
     server_.ignore_writes(false);
   }
@@ -109,7 +110,7 @@ TEST_F(ModbusBoardTest, SomebodyElseIsToldApartFromARefusedWriteAfterTheFirstGoo
   ASSERT_EQ(exchange(50, 70), BusStatus::ok);
   server_.set_holding(11, 0);
   EXPECT_EQ(exchange(50, 70), BusStatus::overwritten)
-      << "this exchange must begin with a reading of the outputs";
+      << "this exchange must begin with a read request for the outputs";
 }
 
 TEST_F(ModbusBoardTest, AnExchangeThatReadsFirstAsksNoMoreThanTheOthers) {
@@ -168,7 +169,8 @@ TEST_F(ModbusBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
   server_.ignore_writes(true);
   ASSERT_EQ(exchange(50, 10), BusStatus::ok)
       << "the read-back may still show the command of the previous exchange";
-  EXPECT_EQ(exchange(50, 10), BusStatus::write_refused) << "the read-back may lag by one exchange only";
+  EXPECT_EQ(exchange(50, 10), BusStatus::write_refused)
+      << "the read-back value may lag by at most one exchange";
 }
 
 }  // namespace

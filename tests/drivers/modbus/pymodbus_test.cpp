@@ -115,7 +115,7 @@ class PymodbusTest : public testing::Test {
  protected:
   void SetUp() override {
     ASSERT_NE(server_.port(), 0)
-        << "is python3-pymodbus installed (with python3-serial and python3-serial-asyncio)?";
+        << "check if python3-pymodbus, python3-serial and python3-serial-asyncio are installed";
     document::Problems problems;
     const auto map = rig::load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/adam-6024.yaml", problems);
     ASSERT_TRUE(map.has_value()) << problems.format();
@@ -183,7 +183,8 @@ TEST_F(PymodbusTest, Function23) {
   ModbusBoard board(settings_);
   server_.set("holding", 0, {0x40a0, 0, 0x40c0, 0, 0, 0, 0, 0, 0x3f80, 0, 0x4000, 0});
   ASSERT_EQ(board.connect(generous), BusStatus::ok) << board.detail();
-  EXPECT_EQ(server_.writes(), (Json{{"holding", 265, {200}}})) << "the setup writes of the map";
+  EXPECT_EQ(server_.writes(), (Json{{"holding", 265, {200}}}))
+      << "the board must receive the setup writes of the board map";
   ASSERT_EQ(board.exchange(std::array{12.5, 50.0}, readings_, generous), BusStatus::ok) << board.detail();
   EXPECT_EQ(server_.writes(), (Json{{"holding", 256, {0x3fa0, 0, 0x40a0, 0}}}));
   EXPECT_DOUBLE_EQ(readings_[0].displacement_mm, 20);
@@ -271,7 +272,7 @@ TEST(PymodbusOnALine, AUnitThatIsNotThereIsSilent) {
   EXPECT_EQ(board.connect(500ms), BusStatus::timed_out) << board.detail();
   settings.modules[0].unit = 1;
   ModbusBoard there(settings);
-  ASSERT_EQ(board.connect(1ms), BusStatus::timed_out) << "the line is free again";
+  ASSERT_EQ(board.connect(1ms), BusStatus::timed_out) << "the failed connection must release the serial line";
   ASSERT_EQ(there.connect(generous), BusStatus::ok) << there.detail();
   std::array<Reading, 2> readings;
   ASSERT_EQ(there.exchange(std::array{12.5, 50.0}, readings, generous), BusStatus::ok) << there.detail();

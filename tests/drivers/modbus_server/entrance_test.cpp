@@ -77,10 +77,11 @@ TEST_F(EntranceTest, RestsWhileNoDescriptorIsFree) {
   constexpr Nanoseconds now = ns_per_s;
   EXPECT_FALSE(entrance_.accept(now));
   EXPECT_TRUE(entrance_.short_of_descriptors());
-  EXPECT_FALSE(would_wake(now + Entrance::rest - 1)) << "the client is still in the queue";
+  EXPECT_FALSE(would_wake(now + Entrance::rest - 1))
+      << "the waiting client is still in the queue of the listener";
   EXPECT_TRUE(would_wake(now + Entrance::rest));
   EXPECT_FALSE(entrance_.accept(now + Entrance::rest));
-  EXPECT_FALSE(would_wake(now + Entrance::rest)) << "the entrance accepts no client during the new pause";
+  EXPECT_FALSE(would_wake(now + Entrance::rest)) << "the listener accepts no client during the new pause";
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &usual_), 0);
   EXPECT_TRUE(entrance_.accept(now + 2 * Entrance::rest));
   EXPECT_FALSE(entrance_.short_of_descriptors());

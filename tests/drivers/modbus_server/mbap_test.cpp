@@ -12,8 +12,9 @@ TEST(RequestStream, CutsOneRequestWhateverTheChunks) {
     RequestStream stream;
     std::optional<Request> request;
     for (std::size_t i = 0; i < read_four.size(); i += chunk) {
-      EXPECT_FALSE(request) << "the request is complete too early if it arrives in chunks of " << chunk
-                            << " bytes";
+      EXPECT_FALSE(request)
+          << "the server regards the request as complete too early if the request arrives in chunks of "
+          << chunk << " bytes";
       stream.append(std::span(read_four).subspan(i, std::min(chunk, read_four.size() - i)));
       request = stream.next();
     }

@@ -68,12 +68,14 @@ TEST_F(RegistersTest, ReadWriteWritesFirst) {
 }
 
 TEST_F(RegistersTest, RefusesAddressesThatAreNotThere) {
-  EXPECT_EQ(ask({0x03, 0, 3, 0, 2}), (Bytes{0x83, illegal_address})) << "the range exceeds the table";
-  EXPECT_EQ(ask({0x03, 0xff, 0xff, 0, 2}), (Bytes{0x83, illegal_address})) << "the address wraps around";
+  EXPECT_EQ(ask({0x03, 0, 3, 0, 2}), (Bytes{0x83, illegal_address}))
+      << "the requested range exceeds the register table";
+  EXPECT_EQ(ask({0x03, 0xff, 0xff, 0, 2}), (Bytes{0x83, illegal_address}))
+      << "the end of the requested range exceeds the largest address";
   EXPECT_EQ(ask({0x04, 0, 12, 0, 1}), (Bytes{0x84, illegal_address}));
   EXPECT_EQ(ask({0x06, 0, 0, 0, 1}), (Bytes{0x86, illegal_address})) << "the register is read-only";
   EXPECT_EQ(ask({0x10, 0, 1, 0, 2, 4, 0, 1, 0, 2}), (Bytes{0x90, illegal_address}))
-      << "one of the registers is read-only";
+      << "one register of the requested range is read-only";
   EXPECT_EQ(registers.holding(2), 0) << "a refused write changes nothing";
   EXPECT_EQ(ask({0x17, 0, 9, 0, 1, 0, 2, 0, 1, 2, 0, 1}), (Bytes{0x97, illegal_address}));
   EXPECT_EQ(registers.holding(2), 0) << "a refused read-write writes nothing";

@@ -68,7 +68,7 @@ TEST(BoardHabits, ABoardThatIgnoresWhatComesFirstIsReachedBehindItsSettleTime) {
   while (clock.now() - before < 1'000'000'000) {
     ASSERT_EQ(unsettled.board.connect(generous), BusStatus::ok);
     ASSERT_EQ(unsettled.exchange(0, deadline), BusStatus::timed_out)
-        << "without a settle time the board must not respond";
+        << "without a settle time, the board must not respond to the first request";
   }
   std::get<drivers::TcpAddress>(settings.links[0]).habits.settle_s = 0.4;
   Client settled(settings);
@@ -141,7 +141,8 @@ TEST(BoardHabits, RtuFramesOverTcp) {
   EXPECT_EQ(client.readings[0].validity, model::Validity::valid);
   EXPECT_NE(client.board.describe().find("RTU frames"), std::string::npos);
   settings.modules[0].unit = 9;
-  EXPECT_EQ(Client(settings).board.connect(deadline), BusStatus::timed_out) << "there is no unit 9";
+  EXPECT_EQ(Client(settings).board.connect(deadline), BusStatus::timed_out)
+      << "the board has no unit with id 9";
   EXPECT_NEAR(rig.stop().modules()[0].output(0), 2, 1e-3) << "output voltage [V]";
 }
 

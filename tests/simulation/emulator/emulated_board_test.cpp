@@ -55,7 +55,7 @@ TEST(EmulatedBoard, ShowsHowManyClientsItHasWhereTheMapHasARegisterForIt) {
   EmulatedBoard silent(map);
   silent.count_clients(2);
   EXPECT_EQ(silent.answer(0, Bytes{0x04, 0, 30, 0, 1}).pdu, (Bytes{0x84, 2}))
-      << "the register does not exist";
+      << "the requested register does not exist";
   for (const std::uint8_t function : {std::uint8_t{3}, std::uint8_t{4}}) {
     map.watchdog.clients = drivers::BoardWatchdog::ClientCount{.function = function, .address = 30};
     EmulatedBoard board(map);
@@ -92,9 +92,9 @@ TEST(EmulatedBoard, WatchdogVentsAndSaysSo) {
   EXPECT_TRUE(board.tripped());
   EXPECT_EQ(board.output(0), 0);
   EXPECT_EQ(read_one(board, second, 0x04, 10), 0) << "the read-back shows the actual output";
-  EXPECT_TRUE(board.tripped()) << "a read resets the timer but clears no trip";
+  EXPECT_TRUE(board.tripped()) << "a read request resets the watchdog timer but does not clear a trip";
   board.answer(second, write_outputs(1000, 1000));
-  EXPECT_FALSE(board.tripped()) << "without a clearing write in the map, any write clears the trip";
+  EXPECT_FALSE(board.tripped()) << "if the board map has no clearing write, any write clears the trip";
   EXPECT_GT(board.output(0), 2);
 }
 

@@ -153,7 +153,8 @@ TEST_F(EmulatorTest, AStuckSensorOfOneChannelSticks) {
   command(emulator, second, 50);
   keep_alive(emulator, 2 * second);
   EXPECT_EQ(reading_mm(emulator, 2 * second, 1), before_mm);
-  EXPECT_GT(reading_mm(emulator, 2 * second, 0), before_mm + 3) << "the other sensor still measures";
+  EXPECT_GT(reading_mm(emulator, 2 * second, 0), before_mm + 3)
+      << "the sensor without the fault still measures";
   emulator.clear("stuck", 2 * second);
   emulator.advance(2 * second + millisecond);
   EXPECT_GT(reading_mm(emulator, 2 * second + millisecond, 1), before_mm + 3);
@@ -176,7 +177,7 @@ TEST_F(EmulatorTest, ASensorOutOfRangeShowsTheUpperEndAndItsStatus) {
   emulator.advance(millisecond);
   EXPECT_NEAR(reading_mm(emulator, millisecond, 0), 45, 0.01);
   EXPECT_EQ(ask(emulator, millisecond, {0x04, 0, 20, 0, 1}).pieces.at(0).bytes.back(), 1)
-      << "the status must be 1, above the range";
+      << "the input status must be 1, which means above the range";
 }
 
 TEST_F(EmulatorTest, LinesBlockAndLeak) {

@@ -83,7 +83,8 @@ TEST(FaultsFile, SaysWhatIsWrongAndWhere) {
 
 TEST(FaultSchedule, FollowsTheClockFromTheFirstCommand) {
   FaultSchedule schedule(accepted("faults:\n  - {name: a, kind: no_reply, at_s: 2, for_s: 1}\n"));
-  EXPECT_FALSE(schedule.advance(100 * second)) << "the clock does not run before start()";
+  EXPECT_FALSE(schedule.advance(100 * second))
+      << "the clock of the fault schedule does not run before start()";
   schedule.start(100 * second);
   schedule.start(101 * second);
   EXPECT_EQ(schedule.next_change(), 102 * second);
@@ -93,7 +94,7 @@ TEST(FaultSchedule, FollowsTheClockFromTheFirstCommand) {
   EXPECT_EQ(schedule.next_change(), 103 * second);
   EXPECT_TRUE(schedule.advance(103 * second));
   EXPECT_FALSE(schedule.active(0));
-  EXPECT_FALSE(schedule.next_change()) << "the fault occurs once";
+  EXPECT_FALSE(schedule.next_change()) << "the fault must occur only once";
 }
 
 TEST(FaultSchedule, TriggersAndClearsByName) {
@@ -121,7 +122,7 @@ TEST(FaultSchedule, EndsWithItsLastReply) {
   EXPECT_FALSE(schedule.active(0));
   schedule.trigger("a", 0);
   schedule.count_reply(0);
-  EXPECT_TRUE(schedule.active(0)) << "after another trigger the count of responses starts again";
+  EXPECT_TRUE(schedule.active(0)) << "after a second trigger, the count of responses starts again at 0";
 }
 
 }  // namespace

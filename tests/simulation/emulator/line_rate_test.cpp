@@ -60,7 +60,7 @@ class LineRate : public testing::TestWithParam<Rate> {};
 
 TEST_P(LineRate, IsWithinATenthOfTheBudget) {
   const RealTime real_time;
-  if (!real_time.granted()) GTEST_SKIP() << "needs the right to real-time priority";
+  if (!real_time.granted()) GTEST_SKIP() << "this test requires the right to real-time priority";
   test::RunningRigSettings settings;
   settings.wire = Wire::rtu;
   settings.line.baud = GetParam().baud;

@@ -84,7 +84,8 @@ TEST(Plant, AnObjectStopsTheFingerAndLetsItGoAgain) {
   held.set_object(std::nullopt);
   settle(free, 40, 1);
   settle(held, 40, 1);
-  EXPECT_NEAR(held.displacement_mm(), free.displacement_mm(), 1e-9) << "the removed object has no effect";
+  EXPECT_NEAR(held.displacement_mm(), free.displacement_mm(), 1e-9)
+      << "an object that was removed has no effect";
 }
 
 TEST(Plant, AModelThatHasAContactOfItsOwnKeepsIt) {
@@ -106,7 +107,7 @@ TEST(Plant, LineFaults) {
   settle(plant, 30, 2);
   plant.set_fault(LineFault{.kind = LineFault::Kind::blocked, .share = 0});
   settle(plant, 0, 2);
-  EXPECT_NEAR(plant.pressure_kpa(), 30, 1e-6) << "a blocked line keeps its pressure";
+  EXPECT_NEAR(plant.pressure_kpa(), 30, 1e-6) << "a blocked air line keeps the pressure of the finger";
   EXPECT_EQ(plant.held_command_kpa(), 0);
   plant.set_fault(LineFault{});
   settle(plant, 0, 2);
