@@ -28,7 +28,7 @@ int main(int count, char** arguments) try {
     ++different;
     std::printf("%-32s %10.4g %10.4g %s\n", a.name.c_str(), a.value, b.value, a.unit.c_str());
   }
-  std::printf("%d of %zu parameters differ\n", different, one.parameters.size());
+  std::printf("%d of %zu parameters differ between the two fingers\n", different, one.parameters.size());
 } catch (const std::exception& error) {
   std::fprintf(stderr, "compare_fingers: %s\n", error.what());
   return 1;

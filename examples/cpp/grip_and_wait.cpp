@@ -26,14 +26,14 @@ class Daemon {
   void send(const std::string& request) const {
     const std::string line = request + "\n";
     if (::send(socket_, line.data(), line.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(line.size()))
-      throw std::runtime_error("the connection is lost");
+      throw std::runtime_error("the connection to softgripd is lost");
   }
   std::string line() {
     std::size_t end = 0;
     while ((end = received_.find('\n')) == std::string::npos) {
       char bytes[4096];
       const ssize_t count = ::read(socket_, bytes, sizeof bytes);
-      if (count <= 0) throw std::runtime_error("the connection is lost");
+      if (count <= 0) throw std::runtime_error("the connection to softgripd is lost");
       received_.append(bytes, static_cast<std::size_t>(count));
     }
     const std::string line = received_.substr(0, end);

@@ -86,7 +86,7 @@ class BlocksInWorld final : public Guest {
       const bool runs = daemon->service.runs(*started.request);
       if (started.left) started.waited = disturbed ? 0 : started.waited + passed;
       if (runs && started.confirmed)
-        breaks(ends_with_block, "the daemon has confirmed the stop, but the sequence is running");
+        breaks(ends_with_block, "the daemon has confirmed the stop, but the sequence is still running");
       if (runs && started.waited > block_end_bound)
         breaks(ends_with_block, "the sequence is running 2 s after its stop was sent");
       const daemon::Service::Ending& ending = daemon->service.last_ending();

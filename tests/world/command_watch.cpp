@@ -59,15 +59,16 @@ void CommandWatch::sent(const Json& line, const std::optional<Block>& cause, Nan
 }
 
 void CommandWatch::execute(const std::string& name, const std::optional<Block>& cause, std::uint64_t id) {
-  if (!cause || cause->command < 0) return check(false, asked_before, "no master has commanded it");
+  if (!cause || cause->command < 0) return check(false, asked_before, "no master has requested this command");
   Command& asked = commands_[static_cast<std::size_t>(cause->command)];
   check(plc::command_of(static_cast<plc::CommandCode>(asked.code)) == name, asked_before,
         "the executed command differs from the requested one");
   check(!asked.executed, executed_once, "a command is executed again");
-  check(!asked.read_as_refused, true_end, "a command is executed that was read as refused");
+  check(!asked.read_as_refused, true_end, "a command was read as refused, but is executed");
   check(asked.code != start_code || cause->halts == halts_, outlives_nothing,
         "the block of the start is older than a stop or a vent");
-  check(asked.code != start_code || !owed_, reaction_kept, "a start is executed before the reaction");
+  check(asked.code != start_code || !owed_, reaction_kept,
+        "a start is executed before the reaction to a silent master");
   if (asked.code == vent_code) ++halts_;
   asked.executed = true;
   ++executed_;
@@ -100,7 +101,7 @@ void CommandWatch::gateway_died() {
 
 void CommandWatch::read_refused(int command) {
   Command& asked = commands_[static_cast<std::size_t>(command)];
-  check(!asked.executed || asked.over, true_end, "a command is read as refused that was executed");
+  check(!asked.executed || asked.over, true_end, "a command was executed, but is read as refused");
   asked.read_as_refused = true;
 }
 
@@ -108,7 +109,7 @@ void CommandWatch::read_accepted(std::uint16_t code, std::uint16_t counter) {
   const bool executed = std::any_of(commands_.begin(), commands_.end(), [&](const Command& asked) {
     return asked.executed && asked.counter == counter && asked.code == code;
   });
-  check(executed, true_end, "a command is read as accepted that was not executed");
+  check(executed, true_end, "a command was not executed, but is read as accepted");
 }
 
 void CommandWatch::beat(Nanoseconds now) {

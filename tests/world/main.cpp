@@ -117,9 +117,9 @@ void explain(const Library& library, std::uint64_t seed, const WorldResult& fail
   again.incidents = shrink(library, seed, failed, options);
   again.trace = true;
   const WorldResult result = run_world(library, seed, again);
-  std::string text =
-      fmt::format("seed {}: {}\n  {}{}\n  {} incidents; these alone cause the violation:\n", seed,
-                  failed.violation->invariant, of_tool(options.tool), failed.shape, failed.incidents.size());
+  std::string text = fmt::format(
+      "seed {}: {}\n  {}{}\n  {} incidents; the following incidents alone cause the violation:\n", seed,
+      failed.violation->invariant, of_tool(options.tool), failed.shape, failed.incidents.size());
   for (const Incident& incident : *again.incidents) text += "    " + text_of(incident) + "\n";
   text += "  end of the trace:\n";
   const std::size_t shown = std::min<std::size_t>(result.trace.size(), options.trace ? 100000 : 25);
@@ -143,7 +143,7 @@ Sum run_share(const Library& library, const Options& options, unsigned job) {
     const WorldResult result = run_world(library, seed, world);
     add(sum, world.tool, result);
     if (options.twice && run_world(library, seed, world).fingerprint != result.fingerprint) {
-      fmt::print("seed {}: two runs differ\n", seed);
+      fmt::print("seed {}: two runs with this seed differ\n", seed);
       ++sum.failed;
     }
     if (result.violation) {
@@ -180,7 +180,7 @@ Sum run_jobs(const Library& library, const Options& options) {
   for (unsigned job = 0; job < options.jobs; ++job) {
     Sum one;
     if (read(ends[job], &one, sizeof one) != sizeof one) {
-      fmt::print("a job ended before its worlds\n");
+      fmt::print("a process ended before all of its worlds were simulated\n");
       one = {};
       one.failed = 1;
     }
@@ -201,7 +201,9 @@ bool tell_tools(const Options& options, const Sum& sum) {
     fmt::print("{}: {} worlds, {} violated; {} calls, {} with a result; {} pauses, {} gaps, {} faults\n",
                tool_names[i], worlds, failed, met.calls, met.results, met.pauses, met.gaps, met.faults);
     const bool whole = met.whole() || worlds < enough_worlds;
-    if (!whole) fmt::print("{}: one of these counts is 0, so these worlds do not test it\n", tool_names[i]);
+    if (!whole)
+      fmt::print("{}: one of these counts is 0, so these simulated worlds do not test this event\n",
+                 tool_names[i]);
     eventful = eventful && whole;
   }
   if (options.tool == all_tools && options.count >= turns.size() * enough_worlds) {
@@ -214,17 +216,18 @@ int run(int argc, char** argv) {
   Options options;
   std::vector<std::string> known(tool_names.begin(), tool_names.end());
   known.emplace_back(all_tools);
-  CLI::App app("Simulates whole rigs, one per seed, and checks the invariants of docs/reliability.md");
+  CLI::App app("Simulates one complete rig for each seed and checks the invariants of docs/reliability.md");
   app.add_option("--first", options.first, "First seed")->capture_default_str();
   app.add_option("--count", options.count, "Number of seeds")->capture_default_str();
   app.add_option("--jobs", options.jobs, "Processes")->capture_default_str();
-  app.add_option("--tool", options.tool, "Program in the world; tools: one after another")
+  app.add_option("--tool", options.tool, "Program that runs in the world; `tools`: each tool in turn")
       ->check(CLI::IsMember(known))
       ->capture_default_str();
-  app.add_option("--seconds", options.length_s, "Simulated seconds per world")->capture_default_str();
+  app.add_option("--seconds", options.length_s, "Simulated time of each world [s]")->capture_default_str();
   app.add_flag("--trace", options.trace, "With --count 1: print all events");
   app.add_flag("--twice", options.twice, "Run each seed twice and compare the results");
-  app.add_flag("--habits", options.habits, "Every seed has a board with habits, not one in 5");
+  app.add_flag("--habits", options.habits,
+               "Give every seed a board with unusual habits, instead of one seed in 5");
   app.add_flag("--stop", options.stop_at_first, "Stop at the first violation");
   CLI11_PARSE(app, argc, argv);
   const Library library = load_library();

@@ -280,8 +280,9 @@ void Monitor::passed(Nanoseconds now, const Excuse& excuse, std::span<const doub
   }
   if (vent_waits_ && *vent_waits_ > vent_bound + nanoseconds(slowest_s))
     violate(now, "a vent is carried out in time",
-            fmt::format("outputs are not at rest {:.3f} s of undisturbed time after the request",
-                        seconds(*vent_waits_)));
+            fmt::format(
+                "{:.3f} s of undisturbed time after the request, the outputs are not at the rest pressure",
+                seconds(*vent_waits_)));
   if (trip_untold_) *trip_untold_ += duration;
   if (trip_untold_ && *trip_untold_ > trip_bound)
     violate(now, "a watchdog that has tripped is a fault", "no fault was latched");

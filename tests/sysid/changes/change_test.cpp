@@ -94,7 +94,7 @@ TEST(Change, ASensorWithLittleNoiseAtTheEndOfItsRangeHasNoOutliers) {
       ++all;
     }
   }
-  ASSERT_GT(2 * at_end, all) << "more than half of the readings are at the limit";
+  ASSERT_GT(2 * at_end, all) << "more than half of the readings are at the saturation limit of the sensor";
   const auto d = diagnose_change(humming(logs_of({}, 1)), later);
   ASSERT_TRUE(d) << d.error();
   ASSERT_FALSE(d->causes.empty());
@@ -365,9 +365,10 @@ TEST(Change, TheJsonHasTheKeysOfEveryDiagnosis) {
   EXPECT_LT(json["heldout_rmse_mm"]["extended"], json["heldout_rmse_mm"]["as_given"]);
   const auto& reading = json["readings"][0];
   EXPECT_GT(reading["whitened_loss"]["before"], reading["whitened_loss"]["left"]);
-  EXPECT_EQ(reading["misfit"], reading["whitened_loss"]) << "misfit is the deprecated name";
+  EXPECT_EQ(reading["misfit"], reading["whitened_loss"]) << "misfit is the deprecated name of whitened_loss";
   EXPECT_TRUE(reading["unexplained"].is_boolean());
-  EXPECT_EQ(reading["structure_left"], reading["unexplained"]) << "structure_left is the deprecated name";
+  EXPECT_EQ(reading["structure_left"], reading["unexplained"])
+      << "structure_left is the deprecated name of unexplained";
 }
 
 TEST(Change, ThePageSaysWhatToDoAndShowsTheMisfit) {

@@ -67,7 +67,7 @@ TEST(Regulator, SlowSamplesNeedNoFinerSteps) {
     std::vector<double> fine_at_samples_kpa;
     for (std::size_t i = 0; i < slow.size(); ++i) fine_at_samples_kpa.push_back(fine_kpa[i * parts]);
     EXPECT_LT(rms(coarse_kpa, fine_at_samples_kpa), 0.005 * slow.largest_kpa)
-        << "the difference must be below the resolution of a valve";
+        << "the difference between the pressures must be below the resolution of a valve";
   }
 }
 

@@ -24,7 +24,8 @@ TEST(Veto, EachConditionRejects) {
   claim.size = Interval{-29, -27};
   EXPECT_EQ(veto_of(claim), Veto::size_beyond_range);
   claim.size = Interval{8, 12};
-  EXPECT_EQ(veto_of(claim), Veto::none) << "a size within the range is possible";
+  EXPECT_EQ(veto_of(claim), Veto::none)
+      << "an effect with a size within the range of the signal must be accepted";
   claim.size.reset();
   EXPECT_EQ(veto_of(claim), Veto::none);
   claim = sound();

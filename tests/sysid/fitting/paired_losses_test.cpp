@@ -34,11 +34,12 @@ TEST(WinningShare, CountsTiesHalf) {
 TEST(IsMissed, WhereEveryDrawOfBlocksSaysSoAndItIsWorthSomething) {
   const BlockLosses with(12, 1.0), without(12, 1.5);
   EXPECT_TRUE(is_missed(without, with, 0.4, 1));
-  EXPECT_FALSE(is_missed(without, with, 0.6, 1)) << "the difference is smaller than 0.6";
-  EXPECT_FALSE(is_missed(with, without, 0.4, 1)) << "the first losses are smaller";
+  EXPECT_FALSE(is_missed(without, with, 0.6, 1)) << "the mean difference of the losses is smaller than 0.6";
+  EXPECT_FALSE(is_missed(with, without, 0.4, 1)) << "the losses of the first model are smaller";
   BlockLosses by_one_block = with;
   by_one_block.front() = 13;
-  EXPECT_FALSE(is_missed(by_one_block, with, 0.4, 1)) << "a single block causes the mean difference of 1";
+  EXPECT_FALSE(is_missed(by_one_block, with, 0.4, 1))
+      << "a single block causes the complete mean difference of 1";
 }
 
 TEST(MeanLogRatio, OneBlockThatWentAstrayDoesNotOutweighTheOthers) {
@@ -70,9 +71,10 @@ TEST(LossDifference, ComesWithItsStandardError) {
 
 TEST(IsClearlyLess, InTheMeanOrInMostBlocks) {
   EXPECT_TRUE(is_clearly_less({1, 1, 1, 1}, {2, 2, 4, 4}));
-  EXPECT_TRUE(is_clearly_less({1, 1, 1, 30}, {2, 2, 2, 90})) << "one block has a large loss in both cases";
+  EXPECT_TRUE(is_clearly_less({1, 1, 1, 30}, {2, 2, 2, 90})) << "one block has a large loss with both models";
   EXPECT_FALSE(is_clearly_less({1, 2, 3, 4}, {1, 2, 3, 4}));
-  EXPECT_FALSE(is_clearly_less({1, 1, 1, 90}, {2, 2, 2, 30})) << "the mean loss is larger";
+  EXPECT_FALSE(is_clearly_less({1, 1, 1, 90}, {2, 2, 2, 30}))
+      << "the mean loss of the second model is larger";
   EXPECT_FALSE(is_clearly_less({1, 3, 1, 3}, {3, 1, 3, 1.5}));
 }
 

@@ -92,7 +92,7 @@ TEST(EstimatedStart, UsesNoReadingBehindTheFirst) {
         EXPECT_EQ(estimated_start(finger, other), start) << finger.name << ' ' << first;
         other.reading_mm[samples_for_start(record) - 1] += 1;
         EXPECT_NE(estimated_start(finger, other), start)
-            << "the estimate must use the last of the first readings";
+            << "the estimate must use the last reading of the initial interval";
       }
     }
   }

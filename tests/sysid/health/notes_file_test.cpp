@@ -19,7 +19,7 @@ TEST(NotesFile, ComesInTheOrderOfItsDates) {
   ASSERT_TRUE(notes) << problems.format();
   ASSERT_EQ(notes->size(), 2U);
   EXPECT_EQ(notes->front().finger, "left");
-  EXPECT_EQ(notes->front().action, "finger replaced") << "read from the deprecated key";
+  EXPECT_EQ(notes->front().action, "finger replaced") << "the action must be read from the deprecated key";
   EXPECT_EQ(notes->back().action, "sensors clamped again");
   EXPECT_EQ(notes->back().finger, "");
 }

@@ -71,7 +71,7 @@ TEST(Lvm, WhatDiffersOrIsCutOffIsNamed) {
   std::string rows = "0\t1\t2\n0,5\n";
   for (int i = 1; i < 50; ++i) rows += std::to_string(i) + "\t3\t4\n";
   EXPECT_FALSE(read_lvm("t.lvm", header("One") + section("12:00:00", rows), {}, many));
-  EXPECT_EQ(many.format(), short_line.format()) << "only the short line is a problem";
+  EXPECT_EQ(many.format(), short_line.format()) << "only the line with too few cells must be reported";
   EXPECT_FALSE(is_lvm("LabVIEW Measurement\nx\n"));
 }
 

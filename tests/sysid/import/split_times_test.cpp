@@ -23,7 +23,8 @@ std::vector<double> combined(const TableColumn& seconds, const TableColumn& rest
   is_one_time = columns[0].is_part_of_time;
   EXPECT_EQ(notes.size(), is_one_time ? 1U : 0U);
   EXPECT_EQ(columns[1].unit, is_one_time ? "s" : "");
-  EXPECT_EQ(columns[1].name, seconds.name) << "the column keeps its name, because options refer to this name";
+  EXPECT_EQ(columns[1].name, seconds.name)
+      << "the combined column must keep its original name, because options refer to this name";
   return columns[1].values;
 }
 

@@ -83,17 +83,19 @@ TEST(CommandBefore, WithoutMeasuredPressureTheDisplacementShowsFromWhichEndItCam
 
 TEST(CommandBefore, WithoutMeasuredPressureALogThatShowsNoStepHasNone) {
   EXPECT_FALSE(pressure_before_kpa(unmeasured(begun_at_a_step(60))))
-      << "the finger is at rest when the log begins";
+      << "the finger is at rest at the start of the log, so no sample must be added";
   Log creeping = unmeasured(begun_at_a_step(60));
   for (std::size_t i = 0; i < creeping.size(); ++i)
     creeping.displacement_mm[i] -= 1.5 * std::exp(-interval_s * static_cast<double>(i));
-  EXPECT_FALSE(pressure_before_kpa(creeping)) << "creep of 12 % of the span is no step";
+  EXPECT_FALSE(pressure_before_kpa(creeping))
+      << "creep of 12 % of the span must not count as a response to a step of the command";
   Log brief = unmeasured(begun_at_a_step(7));
   for (std::size_t i = 19; i < brief.size(); ++i) brief.pressure_command_kpa[i] = 20;
   EXPECT_FALSE(pressure_before_kpa(brief)) << "the command is held for 19 samples only";
   Log lowest = unmeasured(begun_at_a_step(7));
   for (double& command : lowest.pressure_command_kpa) command = 120 - command;
-  EXPECT_FALSE(pressure_before_kpa(lowest)) << "the displacement rises, and the first command is the lowest";
+  EXPECT_FALSE(pressure_before_kpa(lowest))
+      << "the displacement rises although the first command is the lowest of the log";
   Log unread = unmeasured(begun_at_a_step(7));
   for (double& reading : unread.displacement_mm) reading = std::nan("");
   EXPECT_FALSE(pressure_before_kpa(unread));
@@ -108,7 +110,7 @@ TEST(CommandBefore, OnlyTheHoldOfTheFirstCommandCounts) {
   Log log = begun_at_a_step(7);
   for (std::size_t i = 1; i < log.size(); ++i) log.pressure_command_kpa[i] = i < 100 ? 10 : 60;
   EXPECT_FALSE(pressure_before_kpa(log))
-      << "60 kPa was held for one sample, so the pressure did not reach it";
+      << "the command was 60 kPa for only one sample, so the pressure did not reach 60 kPa";
 }
 
 TEST(CommandBefore, IsASampleWithoutReadings) {

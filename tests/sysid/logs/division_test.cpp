@@ -58,7 +58,7 @@ TEST(Division, HoldsEverySampleOutOnce) {
     for (std::size_t r = 0; r < records.size(); ++r) {
       EXPECT_GE(hidden[r], records[r].readings);
       EXPECT_LE(hidden[r], records[r].readings * 5 / 4)
-          << "a margin of a tenth of a block on each side is also hidden";
+          << "a margin of 1/10 of a block on each side of the block must also be hidden";
     }
   }
 }

@@ -112,9 +112,11 @@ TEST(AveragedRecord, ReadingsThatAreNotThereAreNotInvented) {
   for (std::size_t i = 96; i <= 104; ++i) record.reading_mm[i] = none;
   record.reading_mm[201] = none;
   const Record averaged = averaged_to(record, 0.010);
-  EXPECT_FALSE(std::isfinite(averaged.reading_mm[10])) << "all nine readings are missing";
+  EXPECT_FALSE(std::isfinite(averaged.reading_mm[10]))
+      << "the mean must be missing if all nine readings are missing";
   EXPECT_TRUE(std::isfinite(averaged.reading_mm[9]));
-  EXPECT_NEAR(averaged.reading_mm[20], 2 * 0.2 * 0.2, 2e-3) << "one of nine readings is missing";
+  EXPECT_NEAR(averaged.reading_mm[20], 2 * 0.2 * 0.2, 2e-3)
+      << "the mean must use the other readings if one of nine readings is missing";
   EXPECT_EQ(averaged.readings, 400U);
 }
 
@@ -126,7 +128,7 @@ TEST(AveragedRecord, ThatIsSparseEnoughStaysAsItIs) {
 TEST(AveragedRecord, ACampaignKeepsAboutAsManyReadingsAsWanted) {
   const std::vector<Record> campaign{parabola(0), parabola(0)};  // each record has 4001 readings
   EXPECT_EQ(averaged_to_count(campaign, 8002, 1).front().size(), 4001U)
-      << "the records have no more readings than wanted";
+      << "the records have no more readings than requested, so no means are computed";
   const std::vector<Record> averaged = averaged_to_count(campaign, 800, 1);
   ASSERT_EQ(averaged.size(), 2U);
   for (const Record& record : averaged) EXPECT_EQ(record.size(), 364U) << "means over 11 samples";
@@ -137,7 +139,7 @@ TEST(AveragedRecord, ACampaignKeepsAboutAsManyReadingsAsWanted) {
 TEST(StridedRecord, LeavesOutReadingsButTellsMotionsApartLikeTheLog) {
   EXPECT_EQ(thinned_to(parabola(0), 0.02).finest_interval_s, 1e-3);
   EXPECT_NEAR(averaged_to(parabola(0), 0.02).finest_interval_s, 0.02, 1e-12)
-      << "a mean would smooth a faster signal";
+      << "a mean over a longer time would smooth a fast signal";
 }
 
 /// Returns a record of a ramp that lasts 4 s, sampled at 1 kHz.
@@ -160,7 +162,7 @@ TEST(CentredRecord, KeepsTheFirstSampleAndTheMiddleOfEveryInterval) {
   const Record thin = thinned_to_centres(ramp(), 0.011);
   ASSERT_GE(thin.size(), 364U);
   EXPECT_EQ(thin.time_s[0], 0);
-  EXPECT_EQ(thin.sample_time_s, 0) << "the first step differs from the others";
+  EXPECT_EQ(thin.sample_time_s, 0) << "the first time step differs from the other time steps";
   EXPECT_NEAR(thin.finest_interval_s, 0.011, 1e-4) << "each sample represents the samples around it";
   for (std::size_t i = 1; i + 1 < thin.size(); ++i) {
     EXPECT_NEAR(thin.time_s[i], 0.011 * (static_cast<double>(i) - 0.5), 0.51e-3);
@@ -169,7 +171,7 @@ TEST(CentredRecord, KeepsTheFirstSampleAndTheMiddleOfEveryInterval) {
     EXPECT_NEAR(thin.reading_mm[i], 2 * thin.time_s[i], 1e-9);
     EXPECT_NEAR(thin.temperature_c[i], 20 + thin.time_s[i], 1e-9);
   }
-  EXPECT_EQ(thin.duration_s[5], thin.duration_s[6]) << "equal steps use the same coefficients";
+  EXPECT_EQ(thin.duration_s[5], thin.duration_s[6]) << "equal time steps must use the same coefficients";
   EXPECT_TRUE(thin.supply_kpa.empty());
 }
 
@@ -223,7 +225,7 @@ TEST(FewerReadings, LeavesEveryKthAndAllSamples) {
       std::count_if(few.reading_mm.begin(), few.reading_mm.end(), [](double y) { return std::isfinite(y); });
   EXPECT_EQ(left, 1000);
   EXPECT_EQ(few.reading_mm[0], record.reading_mm[0]);
-  EXPECT_EQ(with_fewer_readings({record}, 4000).front().readings, 4000U) << "no sample has to be left out";
+  EXPECT_EQ(with_fewer_readings({record}, 4000).front().readings, 4000U) << "no sample must be omitted";
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ TEST(Page, StaysBelowItsBoundHoweverManyFigures) {
   const std::string html = page.to_html();
   EXPECT_LT(html.size(), Page::most_bytes);
   EXPECT_NE(html.find("Figure 100. Loops. This figure is omitted"), std::string::npos);
-  EXPECT_EQ(page.figures().size(), 100U) << "the figures can still be written";
+  EXPECT_EQ(page.figures().size(), 100U) << "the omitted figures must still be available for --figures";
 }
 
 TEST(Page, BothColourSchemesAndAPageBreakBeforeTheAppendix) {

@@ -37,7 +37,7 @@ class RecordingTest : public ::testing::Test {
 TEST_F(RecordingTest, WhatIsNoRecordingIsRefused) {
   EXPECT_NE(read().error().find("run.csv"), std::string::npos) << "the error must name run.csv";
   write("run.csv", "hello\n");
-  EXPECT_EQ(read().error(), "") << "the problems state the reason";
+  EXPECT_EQ(read().error(), "") << "the list of problems must contain the reason";
 }
 
 TEST_F(RecordingTest, APipeInsteadOfAFileIsNotWaitedFor) {

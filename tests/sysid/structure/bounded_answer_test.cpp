@@ -36,10 +36,11 @@ TEST(StaysBounded, AFingerThatDoesTheSameTwiceDoes) {
 TEST(StaysBounded, AnAnswerBeyondTheReadingsDoesNot) {
   const Record record = stroke(finger(0.5, 0.3));
   EXPECT_FALSE(stays_bounded({finger(2, 0.3), {StartState{}}}, {record}))
-      << "the response exceeds the readings in the first stroke";
+      << "the simulated response exceeds the readings in the first stroke";
   StartState away;
   away.offset_mm = -60;
-  EXPECT_FALSE(stays_bounded({finger(0.5, 0.3), {away}}, {record})) << "the response is below the readings";
+  EXPECT_FALSE(stays_bounded({finger(0.5, 0.3), {away}}, {record}))
+      << "the simulated response is below the readings";
 }
 
 TEST(StaysBounded, TheSecondStrokeCounts) {

@@ -223,10 +223,9 @@ TEST(IdentifyStructure, FindsAFingerOfPlays) {
   EXPECT_EQ(chosen->structure, "prandtl_ishlinskii");
   EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
   EXPECT_LT(continuation_rmse_mm(play_finger(), found->model, SignalName::tp2, 0), 3 * 0.03)
-      << "error on a log that was not fitted";
-  EXPECT_FALSE(model::position_of<model::ValveLag>(found->model)) << "the finger has no second lag";
-  EXPECT_FALSE(model::position_of<model::RateLimit>(found->model)) << "the finger has no rate limit";
-  EXPECT_FALSE(model::position_of<model::Inertia>(found->model)) << "the finger has no resonance";
+      << "prediction error on a log that was not fitted";
+  EXPECT_FALSE(model::position_of<model::ValveLag>(found->model)) << "the simulated finger has no second lag";
+  EXPECT_FALSE(model::position_of<model::Inertia>(found->model)) << "the simulated finger has no resonance";
   ASSERT_FALSE(found->structure->ablation.empty());
   for (const auto& without : found->structure->ablation) {
     if (without.without != "hysteresis" && without.without != "creep") continue;
@@ -241,7 +240,7 @@ TEST(IdentifyStructure, FindsTheBentEnvelopesOfGeneralisedPlays) {
                               simulated(bent_play_finger(), SignalName::sp2, 100, 0.03, 6)};
   const auto found = identify_structure(logs, StructureQuestion::automatic);
   ASSERT_TRUE(found) << found.error();
-  EXPECT_LT(found->rmse_mm, 2 * 0.03) << "thresholds and envelopes are not on the grid of the fit";
+  EXPECT_LT(found->rmse_mm, 2 * 0.03) << "the true thresholds and envelopes are not on the grid of the fit";
   EXPECT_LT(continuation_rmse_mm(bent_play_finger(), found->model, SignalName::tp2, 0), 3 * 0.03);
   const auto chosen = std::find_if(found->structure->candidates.begin(), found->structure->candidates.end(),
                                    [](const auto& c) { return c.chosen; });
@@ -365,7 +364,7 @@ TEST(IdentifyStructure, OneStrokeFromAnIdlePressureIsNoUnsettledCreep) {
   const auto found = identify_structure({log}, StructureQuestion::automatic, options);
   ASSERT_TRUE(found) << found.error();
   EXPECT_FALSE(found->records[0].start_unknown);
-  EXPECT_LT(found->held_out[0].rmse_mm, 0.05 * span_mm(log)) << "error in the second stroke";
+  EXPECT_LT(found->held_out[0].rmse_mm, 0.05 * span_mm(log)) << "prediction error in the second stroke";
 }
 
 TEST(SimplestStart, WhatTheCallerStatesAndWhatRestDoesNotExplainStays) {
@@ -380,11 +379,11 @@ TEST(SimplestStart, WhatTheCallerStatesAndWhatRestDoesNotExplainStays) {
   const std::vector<Record> records = make_records({late}, {});
   ASSERT_TRUE(records[0].start_unknown);
   EXPECT_TRUE(with_simplest_start(records, {})[0].start_unknown)
-      << "with a start at rest the error is clearly larger";
+      << "if a start at rest is assumed, the error is clearly larger";
   RecordOptions stated;
   stated.start = Start::unknown;
   EXPECT_TRUE(with_simplest_start(make_records({whole}, stated), {})[0].start_unknown)
-      << "the caller states that the start is unknown";
+      << "the options state that the initial state is unknown";
 }
 
 TEST(IdentifyStructure, TheAnswerDoesNotDependOnTheUnit) {

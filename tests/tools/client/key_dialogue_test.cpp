@@ -36,7 +36,7 @@ TEST_F(KeyDialogueTest, WhatMovesIsAskedBack) {
   EXPECT_NE(dialogue_.question().find("held parts drop"), std::string::npos);
   EXPECT_EQ(type("n"), "");
   EXPECT_TRUE(dialogue_.question().empty());
-  EXPECT_EQ(type("y"), "") << "the question has ended";
+  EXPECT_EQ(type("y"), "") << "the question must have ended";
   type("r");
   EXPECT_EQ(type("y"), R"({"command":"release"})");
 }
@@ -58,7 +58,7 @@ TEST_F(KeyDialogueTest, AStartOffersWhatRanAndTakesAnotherName) {
   EXPECT_EQ(type("y"), R"({"command":"start","sequence":"empty_grip"})");
   ran_.clear();
   type("g");
-  EXPECT_EQ(type("\r"), "") << "without a name nothing is started";
+  EXPECT_EQ(type("\r"), "") << "without the name of a sequence, no sequence must be started";
   EXPECT_TRUE(dialogue_.question().empty());
 }
 

@@ -36,7 +36,7 @@ TEST(StyledLine, TextBreaksAtBlanks) {
   EXPECT_EQ(broken(style, "", Tone::plain, 2), (Lines{""}));
   for (const std::size_t columns : {0U, 1U, 2U}) {
     EXPECT_FALSE(broken({columns, false, false}, "one two", Tone::plain, 4).empty())
-        << "the function must return";
+        << "the function must return even if the line is too narrow";
   }
 }
 

@@ -16,7 +16,8 @@ TEST(Trend, HasAColumnPerSecondFromLowestToHighest) {
   for (int tenths = 0; tenths < 80; ++tenths) trend.add(100 + tenths / 10.0, static_cast<int>(tenths / 10));
   EXPECT_EQ(joined(trend.glyphs(20, 1, true)), "▁▂▃▄▅▆▇█");
   EXPECT_EQ(joined(trend.glyphs(20, 1, false)), "_.,-~=*#");
-  EXPECT_EQ(joined(trend.glyphs(3, 1, true)), "▁▅█") << "the newest values have their own scale";
+  EXPECT_EQ(joined(trend.glyphs(3, 1, true)), "▁▅█")
+      << "the scale of the trend must be that of the newest values";
 }
 
 TEST(Trend, NoiseIsNoMotion) {

@@ -63,7 +63,7 @@ TEST_F(Completion, BashOffersWhatTheProgramHas) {
   EXPECT_EQ(offered({"tool", "start", "from"}), "from_daemon");
   EXPECT_EQ(offered({"tool", "study", ""}), "control published");
   EXPECT_EQ(offered({"tool", "study", "control", "--o"}), "--out")
-      << "the option must be offered once, although two commands have it";
+      << "an option of two commands must be offered only once";
   EXPECT_EQ(offered({"tool", "--he"}), "--help");
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 TEST(RestEstimate, IsWhatTheStageTookSoFar) {
   RestEstimate estimate;
-  EXPECT_LT(estimate.left_s("start 1 of 20", 10), 0) << "no estimate is possible yet";
+  EXPECT_LT(estimate.left_s("start 1 of 20", 10), 0) << "no estimate of the remaining time is possible yet";
   EXPECT_NEAR(estimate.left_s("start 6 of 20, best RMSE 0.3 mm", 15), 14, 1e-9);
   EXPECT_NEAR(estimate.left_s("start 20 of 20", 29), 0, 1e-9);
 }

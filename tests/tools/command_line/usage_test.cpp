@@ -50,7 +50,7 @@ TEST(Usage, AMistypedOptionIsNamedWithTheNearestOfItsCommand) {
   EXPECT_EQ(said.code, 2);
   EXPECT_NE(said.text.find("--jsno: did you mean `--json`?"), std::string::npos) << said.text;
   EXPECT_EQ(said_of({"start", "--jsno"}).text.find("--json"), std::string::npos)
-      << "the command start has no such option";
+      << "the command `start` has no option with this name";
 }
 
 TEST(Usage, HelpIsNoError) {

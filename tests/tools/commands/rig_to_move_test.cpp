@@ -22,7 +22,7 @@ TEST(RigToMove, WhatStandsInTheWayHasItsExitCode) {
   EXPECT_EQ(rig_to_move(SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml", "", true).error(),
             ExitCode::input_refused);
   EXPECT_EQ(rig_to_move(simulated, "", true).error(), ExitCode::usage)
-      << "the rig has two channels, but no channel is named";
+      << "the rig has two channels, but no channel was selected";
   EXPECT_EQ(rig_to_move(simulated, "middle", true).error(), ExitCode::usage);
 }
 
@@ -35,7 +35,7 @@ TEST(RigToMove, ABoardThatAnotherProgramHoldsIsNotTaken) {
     ASSERT_TRUE(held) << held.error();
     EXPECT_EQ(rig_to_move(real, "left", true).error(), ExitCode::state_refused);
   }
-  EXPECT_TRUE(rig_to_move(real, "left", true)) << "the board is no longer locked";
+  EXPECT_TRUE(rig_to_move(real, "left", true)) << "the lock of the board must be free";
   EXPECT_TRUE(daemon::BoardLock::take(*file));
 }
 

@@ -106,7 +106,8 @@ TEST(FindDeadZone, DoesNotInventOne) {
   const auto zone = find_dead_zone(command, response);
   ASSERT_TRUE(zone);
   EXPECT_FALSE(zone->significant);
-  EXPECT_FALSE(find_dead_zone(command, nothing)) << "the response does not rise";
+  EXPECT_FALSE(find_dead_zone(command, nothing))
+      << "the measured signal does not follow the ramp, so there is no dead zone to find";
 }
 
 /// Simulates an operator who reads the gauge at the true position of the simulated finger.
@@ -192,7 +193,7 @@ TEST_F(CalibrateTest, RecoversTheSensorsLineWithinItsStatedError) {
     for (const double x : {line->points.x0, line->points.x1}) {
       EXPECT_NEAR(line->points.y_at(x), truth.y_at(x), line->error) << "stated " << line->error;
     }
-    EXPECT_LT(line->error, 0.5) << "the stated error is small enough to be useful";
+    EXPECT_LT(line->error, 0.5) << "the stated error of the calibration must be small";
     EXPECT_EQ(person.asked.size(), 4U);
     session_.reset();
     EXPECT_EQ(board_->plant(0).held_command_kpa(), 0) << "the session ended with safe outputs";
@@ -308,7 +309,7 @@ TEST_F(CalibrateTest, StoppedOnTheWayItVents) {
   const auto line = calibrate_sensor(rig_, *session_, person, settings_);
   ASSERT_FALSE(line);
   EXPECT_EQ(line.error().text, "stopped by the user");
-  EXPECT_GT(board_->plant(0).held_command_kpa(), 1) << "the command had begun to rise";
+  EXPECT_GT(board_->plant(0).held_command_kpa(), 1) << "the command had begun to rise before the stop";
   EXPECT_TRUE(session_->leave());
   EXPECT_EQ(board_->plant(0).held_command_kpa(), 0);
 }
@@ -347,8 +348,8 @@ TEST_F(CalibrateTest, ReadsThePositionsOfAGaugeByHandAndNothingMoves) {
   });
   const auto visits = read_positions(*session_, person, settings_, {0, 10, 20, 30});
   ASSERT_TRUE(visits) << visits.error().text;
-  ASSERT_EQ(visits->size(), 3U) << "one visit was skipped";
-  EXPECT_EQ((*visits)[0].position_mm, 0) << "Enter confirms the requested position";
+  ASSERT_EQ(visits->size(), 3U) << "the operator skipped one of the measurements";
+  EXPECT_EQ((*visits)[0].position_mm, 0) << "pressing Enter must confirm the requested position";
   EXPECT_EQ((*visits)[1].position_mm, 12.5);
   EXPECT_EQ((*visits)[2].position_mm, 30);
   for (const GaugeVisit& visit : *visits) {

@@ -62,7 +62,7 @@ class CrossingTest : public ::testing::Test {
 
 TEST_F(CrossingTest, NothingIsCrossedOnAHealthyRigOrWhereSomethingIsDead) {
   EXPECT_TRUE(find({{0, 1}, {0, 1}}).empty());
-  EXPECT_TRUE(find({{0, -1}, {0, 1}}).empty()) << "one sensor is stuck";
+  EXPECT_TRUE(find({{0, -1}, {0, 1}}).empty()) << "one of the sensors is stuck";
   EXPECT_TRUE(find({{1, 1}, {0, 1}}).empty()) << "one sensor follows both fingers, so there is no swap";
   EXPECT_TRUE(find({{1, -1}, {0, 1}}).empty()) << "the mapping is not a swap";
 }

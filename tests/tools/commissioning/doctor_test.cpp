@@ -294,7 +294,8 @@ TEST_F(DoctorTest, AValveThatDoesNotFollow) {
   expect("valve left", Verdict::fail, "15.00 kPa commanded");
   expect_not_judged("finger left", "see `valve left`");
   expect_not_judged("model left", "see `valve left`");
-  EXPECT_EQ(findings_.count(Verdict::fail), 2U) << "both fingers: the fault blocks all lines";
+  EXPECT_EQ(findings_.count(Verdict::fail), 2U)
+      << "both fingers must fail, because the simulated fault blocks all air lines";
   EXPECT_EQ(output_kpa(0), 0);
 }
 
@@ -494,7 +495,7 @@ TEST(ExamineDaemon, AnUnpluggedSensorIsOneFailureAndAFaultWhoseCauseIsGoneIsOne)
   Findings findings;
   examine_daemon(status, healthy_statistics(), "bench", findings);
   EXPECT_EQ(findings.count(Verdict::fail), 1U);
-  EXPECT_EQ(findings.count(Verdict::not_judged), 2U) << "the fault and the model are not checked";
+  EXPECT_EQ(findings.count(Verdict::not_judged), 2U) << "the fault and the model must not be judged";
   status["channels"][0]["validity"] = "valid";
   status["fault"]["present"] = nullptr;
   status["fault"]["next"] = "The cause is gone.";

@@ -214,7 +214,8 @@ TEST_F(MotionSessionTest, APauseAsLongAsTheWatchdogEndsTheMotionAndNothingRisesB
       EXPECT_TRUE(board.vented);
       EXPECT_EQ(board.highest_after_vent_kpa, 0);
       EXPECT_LE(board.largest_rise_kpa, step_kpa());
-      EXPECT_FALSE(session.ramp(0, pressure_kpa, speed_kpa_per_s)) << "an ended session moves no finger";
+      EXPECT_FALSE(session.ramp(0, pressure_kpa, speed_kpa_per_s))
+          << "a session that has ended must not move a finger";
       EXPECT_FALSE(session.sample(0.1));
       EXPECT_TRUE(session.leave());
       EXPECT_EQ(board.highest_after_vent_kpa, 0);
@@ -256,7 +257,7 @@ TEST_F(MotionSessionTest, APauseInTheMiddleOfAnExchangeIsFoundOutAfterItAndEndsT
   EXPECT_TRUE(session.leave());
   EXPECT_EQ(board_.outputs_kpa[0], 0);
   EXPECT_LE(board_.highest_after_vent_kpa, before_kpa + step_kpa())
-      << "only one further step of the command may follow";
+      << "after the vent of the board, at most one further step of the command may be written";
 }
 
 TEST_F(MotionSessionTest, RequestsThatAreLostForLongerThanTheWatchdogEndTheMotionAndNothingRises) {
@@ -320,7 +321,7 @@ TEST_F(MotionSessionTest, ABoardWithoutAWatchdogThatIsSilentForTooLongEndsTheMot
   EXPECT_EQ(moved.error().text, "scripted");
   const Nanoseconds before = clock_.now();
   EXPECT_FALSE(session.leave()) << "the board did not confirm the rest pressure";
-  EXPECT_LT(clock_.now() - before, 3 * ns_per_s) << "the session must end in time";
+  EXPECT_LT(clock_.now() - before, 3 * ns_per_s) << "the session must end within its deadline";
 }
 
 TEST_F(MotionSessionTest, APauseOnABoardWithoutAWatchdogMakesNoLargerStep) {
@@ -411,7 +412,7 @@ TEST_F(MotionSessionTest, StoppedByTheUserItGoesDownWithinTheSlew) {
   const auto moved = move(session);
   ASSERT_FALSE(moved);
   EXPECT_EQ(moved.error().kind, Kind::stopped);
-  EXPECT_GT(board_.outputs_kpa[0], 1) << "the command had begun to rise";
+  EXPECT_GT(board_.outputs_kpa[0], 1) << "the command had begun to rise before the stop";
   EXPECT_TRUE(session.leave());
   EXPECT_EQ(board_.outputs_kpa[0], 0);
 }

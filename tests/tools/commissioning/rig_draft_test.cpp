@@ -24,7 +24,7 @@ std::string take(RigDraft& draft, const std::string& key, const std::string& wor
   for (const Fact& fact : draft_facts()) {
     if (fact.key == key) return fact.take(words, draft);
   }
-  return "there is no fact " + key;
+  return "the rig draft has no question with the key " + key;
 }
 
 /// Returns a draft with the given values. All other values have their defaults.

@@ -107,7 +107,7 @@ TEST_F(RigUpdateTest, ValveAndMonitorOfTheOtherChannel) {
   EXPECT_NE(changed->find("    pressure_monitor: {input: 5, at_v: [1, 7], is_kpa: [10.5, 70]}\n"),
             std::string::npos);
   EXPECT_NE(changed->find("    valve: {output: 0}\n"), std::string::npos)
-      << "the other channel has not changed";
+      << "the lines of the other channel must not change";
 }
 
 TEST_F(RigUpdateTest, PointsThatTheRigRefusesAreNotWritten) {
@@ -125,7 +125,8 @@ TEST_F(RigUpdateTest, TheOldFileIsKeptAndTheNewOneIsInItsPlace) {
   ASSERT_TRUE(backup) << backup.error();
   EXPECT_EQ(text_of_file(*backup), text_);
   EXPECT_EQ(text_of_file(path_), replaced("name: simulated", "name: other"));
-  EXPECT_NE(fs::path(*backup).extension(), ".yaml") << "softgrip check FOLDER must not read it as a rig";
+  EXPECT_NE(fs::path(*backup).extension(), ".yaml")
+      << "softgrip check FOLDER must not read the backup file as a rig file";
 }
 
 TEST_F(RigUpdateTest, AFileThatSomebodyChangedMeanwhileIsLeftAlone) {

@@ -161,13 +161,13 @@ TEST(ExperimentRig, KeepsWithinTheChannelsLimitsAndItsDisplacementRange) {
   EXPECT_EQ(rig.limits(0, 0).pressure_max_kpa, 60);
   EXPECT_EQ(rig.limits(0, 0).slew_kpa_per_s, 300);
   EXPECT_EQ(rig.limits(0.5, 30).pressure_max_kpa, 0.85 * 35 / 0.5)
-      << "a margin applies beyond the pressures of the logs";
-  EXPECT_EQ(rig.limits(0.7, 45).pressure_max_kpa, 45) << "the limit is the highest pressure of the logs";
+      << "above the highest pressure of the logs, a margin applies";
+  EXPECT_EQ(rig.limits(0.7, 45).pressure_max_kpa, 45) << "the limit must be the highest pressure of the logs";
   EXPECT_EQ(rig.limits(1, 35).pressure_max_kpa, 0.95 * 35)
-      << "a margin to the end of the sensor range must remain";
+      << "a margin between the motion and the end of the sensor range must remain";
   document::Problems problems;
   auto file = rig::load_rig(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems);
-  EXPECT_FALSE(experiment_rig(*file, "")) << "the rig has two channels, so a channel must be named";
+  EXPECT_FALSE(experiment_rig(*file, "")) << "the rig has two channels, so a channel must be selected";
   EXPECT_FALSE(experiment_rig(*file, "middle"));
 }
 
@@ -215,7 +215,7 @@ class GaugeStepTest : public InvestigationTest {
     options_.play = [this](const sysid::NextExperiment&,
                            const std::string&) -> tl::expected<sysid::Log, NotPlayed> {
       ++plays_;
-      return tl::unexpected(NotPlayed{false, "no waveform helps here"});
+      return tl::unexpected(NotPlayed{false, "no waveform of the menu separates these causes"});
     };
     options_.take_gauge = [this](const std::vector<double>& positions_mm, const std::string& folder) {
       ++checks_;
@@ -319,7 +319,8 @@ TEST(SimulatedGauge, ReadsTheSensorOfTheTruthAndNotItsFinger) {
   fs::create_directories(folder);
   const auto gauge = simulated_gauge(rig)({0, 10, 20, 10, 100}, folder.string());
   ASSERT_TRUE(gauge) << gauge.error().why;
-  ASSERT_EQ(gauge->readings.size(), 4U) << "100 mm exceed the range of the gauge";
+  ASSERT_EQ(gauge->readings.size(), 4U)
+      << "the position of 100 mm is outside the range of the simulated sensor";
   const double expected_mm[]{0, 11.5, 20, 11.5};
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(gauge->readings[i].reading_mm, expected_mm[i], 0.015);

@@ -46,7 +46,7 @@ TEST(LogInput, WithoutAMeasuredPressureAStageOfItsOwnHasNoOtherBeginning) {
   const auto logs = read_logs({begun_at_a_step(folder, false)}, staged);
   ASSERT_TRUE(logs);
   ASSERT_EQ(logs->front().size(), samples + 1);
-  EXPECT_EQ(logs->front().pressure_command_kpa.front(), 30) << "the log starts at the lowest command";
+  EXPECT_EQ(logs->front().pressure_command_kpa.front(), 30) << "this log starts at its lowest command";
 }
 
 TEST(LogInput, NotWhereTheMeasuredPressureDrivesAStageOrAll) {

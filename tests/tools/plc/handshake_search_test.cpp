@@ -167,7 +167,7 @@ struct World {
     check((asked.code == start) == (command == "start"),
           "the executed command differs from the requested one");
     check(!asked.executed, "a command is executed twice");
-    check(!asked.reported_refused, "a command is executed that was reported as refused");
+    check(!asked.reported_refused, "a command was reported as refused, but is executed");
     check(asked.code != start || cause->halts == halts,
           "a start outlives a stop or a vent that came after it");
     if (asked.code == vent) ++halts;
@@ -209,7 +209,7 @@ struct World {
     const modbus::Bytes bytes = wire.flying->bytes();
     wire.stream.append(std::span(bytes).first(bytes.size() / 2));
     wire.half = true;
-    check(!wire.stream.next().has_value(), "half a request is accepted as a whole one");
+    check(!wire.stream.next().has_value(), "an incomplete request is accepted as a complete request");
     gateway->masters().find(wire.id)->half = wire.stream.half();
   }
   void deliver(std::size_t index) {
@@ -268,7 +268,7 @@ struct World {
   }
   void report_refused(int command) {
     Command& asked = commands[static_cast<std::size_t>(command)];
-    check(!asked.executed || asked.over, "a command is reported as refused that was executed");
+    check(!asked.executed || asked.over, "a command was executed, but is reported as refused");
     asked.reported_refused = true;
   }
   /// Checks that a command that is reported as accepted has been executed. If two masters request the same
@@ -277,7 +277,7 @@ struct World {
     const bool executed = std::any_of(commands.begin(), commands.end(), [&](const Command& asked) {
       return asked.executed && asked.counter == master.counter && asked.code == master.code;
     });
-    check(executed, "a command is reported as accepted that was not executed");
+    check(executed, "a command was not executed, but is reported as accepted");
   }
   void ask(std::size_t plc, std::uint16_t code) {
     Plc& master = masters[plc];
@@ -442,8 +442,8 @@ std::string World::lost_for_good() const {
   if (!world.runs) world.daemon_starts();
   world.paused = false;
   settle();
-  if (world.owed || world.gateway->watch().owes()) return "the reaction to a silence is lost";
-  // The programs of all masters stop, but their connections repeat the last blocks.
+  if (world.owed || world.gateway->watch().owes()) return "the reaction to a silent master is lost";
+  // The programs of all masters stop, and their connections repeat the last blocks.
   for (Plc& master : world.masters) master.alive = false;
   for (int i = 0; i < 2 * silent_steps; ++i) {
     for (std::size_t wire = 0; wire < world.wires.size(); ++wire) {
@@ -453,10 +453,10 @@ std::string World::lost_for_good() const {
     world.pass();
     settle();
   }
-  if (world.owed || world.gateway->watch().owes()) return "the reaction to a silence is lost";
+  if (world.owed || world.gateway->watch().owes()) return "the reaction to a silent master is lost";
   if (!world.broken.empty()) return world.broken;
 
-  if (!world.connect(0)) return "a master is locked out: no free place";
+  if (!world.connect(0)) return "a master cannot connect: all connections are in use";
   const Masters::Id id = world.wires.back().id;
   Plc& master = world.masters[0];
   master.alive = true;
@@ -472,7 +472,7 @@ std::string World::lost_for_good() const {
     settle();
     const auto [done, outcome, reason] = world.read(id);
     if (code != 0 && (done != master.counter || static_cast<Outcome>(outcome) != Outcome::accepted))
-      return "a master is locked out: outcome " + std::to_string(outcome) + ", reason " +
+      return "a master is permanently refused with the outcome " + std::to_string(outcome) + ", reason " +
              std::to_string(reason);
   }
   return world.broken;

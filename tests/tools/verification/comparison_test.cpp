@@ -55,7 +55,8 @@ TEST(Comparison, OfACsvTheWorstLineOfEachColumnIsTold) {
   compare_csv("s.csv", was, "t,y\n0,1.1\n1,2.5\n2,\n", comparison);
   EXPECT_EQ(places(comparison), std::vector<std::string>{"s.csv: y, line 3"});
   compare_csv("s.csv", was, "t,y\n0,1\n1,2\n2,7\n", comparison);
-  EXPECT_EQ(comparison.differences.back().recomputed, "7") << "this cell is empty in the report";
+  EXPECT_EQ(comparison.differences.back().recomputed, "7")
+      << "the cell is empty in the report but not in the repeated result";
   compare_csv("s.csv", was, "t,y\n0,1\n", comparison);
   EXPECT_EQ(comparison.differences.back().where, "s.csv: lines");
 }

@@ -42,7 +42,7 @@ class Verification : public sysid::CommandInFolder {
 TEST_F(Verification, WhatWasNotTouchedComesOutAgain) {
   const auto json = verified(0);
   EXPECT_EQ(json["same"], true);
-  EXPECT_GT(json["numbers"], 5000) << "the numbers of all series are included";
+  EXPECT_GT(json["numbers"], 5000) << "the comparison must include the numbers of all series";
   EXPECT_EQ(
       run("validate --model report/model.yaml --data other.csv --at-most-percent 50 --held --out judged"), 0);
   EXPECT_EQ(run("report --verify judged/"), 0) << read("err.txt");

@@ -36,7 +36,7 @@ class ArchiveTest : public ::testing::Test {
   void wait_for(const DiskTask& task) {
     pollfd watched{archive_.descriptor(), POLLIN, 0};
     while (!task.done()) {
-      ASSERT_EQ(::poll(&watched, 1, 30'000), 1) << "no answer was signalled";
+      ASSERT_EQ(::poll(&watched, 1, 30'000), 1) << "the archive has not signalled an answer";
       archive_.hear();
     }
   }
@@ -89,7 +89,7 @@ TEST_F(ArchiveTest, ManyWhoAskAtOnceGetTheSameList) {
     if (&task->text() != last) ++lists;
     last = &task->text();
   }
-  EXPECT_LE(lists, 3U) << "each list is built once for all clients";
+  EXPECT_LE(lists, 3U) << "each list must be built only once for all clients";
 }
 
 TEST_F(ArchiveTest, WhoeverGoesCostsNothing) {
@@ -107,7 +107,7 @@ TEST_F(ArchiveTest, EndsWithQuestionsOpen) {
     for (int i = 0; i < 100; ++i) open = other.ask({.kind = DiskRequest::Kind::listing});
   }
   EXPECT_EQ(open->request().kind, DiskRequest::Kind::listing)
-      << "the task must remain valid, but it may have no answer";
+      << "the task must remain valid, but it may end without an answer";
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ TEST_F(ClientTest, AsksInPiecesAndGetsOneAnswer) {
   EXPECT_TRUE(client_.receive());
   EXPECT_EQ(client_.request(), "GET / HTTP/1.1\r\n\r\n");
   client_.answer("good", Phase::answering, 1);
-  EXPECT_FALSE(client_.send_on(1)) << "everything has been sent";
+  EXPECT_FALSE(client_.send_on(1)) << "all bytes have been sent";
   EXPECT_EQ(heard(), "good");
 }
 
@@ -63,7 +63,7 @@ TEST_F(ClientTest, WhoSaysNoMoreStillGetsHisAnswer) {
   client_.answer("good", Phase::answering, 1);
   EXPECT_FALSE(client_.send_on(1));
   EXPECT_EQ(heard(), "good");
-  EXPECT_FALSE(client_.receive()) << "a second end of data means a broken connection";
+  EXPECT_FALSE(client_.receive()) << "if a read ends without data a second time, the connection is broken";
 }
 
 TEST_F(ClientTest, WhoNeverStopsSendingHasATurnThatEnds) {
@@ -77,7 +77,7 @@ TEST_F(ClientTest, WhoNeverStopsSendingHasATurnThatEnds) {
   EXPECT_TRUE(client_.receive());
   int left = 0;
   ASSERT_EQ(::ioctl(client_.descriptor(), FIONREAD, &left), 0);
-  EXPECT_GT(left, 0) << "the rest is sent in the next turn";
+  EXPECT_GT(left, 0) << "the remaining bytes must be sent in the next turn of the server";
 }
 
 TEST_F(ClientTest, AFileIsSentInPieces) {

@@ -180,7 +180,7 @@ TEST_F(CommanderTest, AStartWithoutAnAnswerIsStopped) {
   EXPECT_EQ((*answer)["error"]["code"], "no_answer");
   const Json stop = expect_stop_of(line);
   reply(line, accepted_);
-  EXPECT_TRUE(heard().empty()) << "the stop has been sent already";
+  EXPECT_TRUE(heard().empty()) << "the stop of this start has already been sent";
   reply(stop, accepted_);
   expect_no_stop_any_more();
 }

@@ -33,7 +33,7 @@ TEST(LiveState, KeepsTheLastMinute) {
   EXPECT_EQ(trend.back()[0], 100.0);
   EXPECT_EQ(trend.back()[1], Json({1, nullptr, 100.0, nullptr}));
   state.take_status(status_at(0.5));
-  EXPECT_EQ(greeting_of(state)["trend"].size(), 1U) << "a new daemon has its own trend";
+  EXPECT_EQ(greeting_of(state)["trend"].size(), 1U) << "the trend must begin again with a new daemon";
 }
 
 TEST(LiveState, NewsAreToldOnceAndDoNotGrowUnread) {

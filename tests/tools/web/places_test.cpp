@@ -18,7 +18,7 @@ TEST(Places, LeaveADescriptorForEveryFile) {
   EXPECT_EQ(places_for(64, 1024), 64U);
   EXPECT_EQ(places_for(512, 2048), 512U);
   EXPECT_EQ(places_for(64, 64), 20U);
-  EXPECT_EQ(places_for(64, 0), 4U) << "some places must remain for requests";
+  EXPECT_EQ(places_for(64, 0), 4U) << "some connections must remain available for requests";
   for (std::size_t descriptors = 32; descriptors < 3000; ++descriptors)
     ASSERT_LT(2 * places_for(512, descriptors), descriptors) << descriptors;
 }
@@ -87,7 +87,7 @@ TEST(Places, NoOneWithAHigherRoleEverGivesWay) {
 
 TEST(Bytes, OfHimWhoHasTakenNothingForLongestGoFirst) {
   EXPECT_FALSE(gives_way_for_bytes({{Stay::lingering, Role::look, 0, 0}}, Role::operate))
-      << "this client holds no bytes";
+      << "this client has no unread bytes";
   EXPECT_FALSE(gives_way_for_bytes({{Stay::lingering, Role::operate, 0, 9}}, Role::look));
   const std::vector<Guest> guests{{Stay::lingering, Role::look, just, 9'000'000},
                                   {Stay::lingering, Role::look, long_ago, 1000},

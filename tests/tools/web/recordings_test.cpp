@@ -66,7 +66,8 @@ TEST_F(RecordingsTest, AListReadsOnlyWhatHasChanged) {
   const std::string first = list();
   EXPECT_EQ(recordings_.folders_read(), 1U + 300U);
   for (int i = 0; i < 5; ++i) EXPECT_EQ(list(), first);
-  EXPECT_EQ(recordings_.folders_read(), 301U) << "folders without a shown file are also read once";
+  EXPECT_EQ(recordings_.folders_read(), 301U)
+      << "folders without a file that can be shown must also be read only once";
 
   add("run-1299", "late.svg");
   EXPECT_NE(list().find(R"({"name":"run-1299","files":["late.svg"]})"), std::string::npos);
@@ -96,14 +97,14 @@ TEST_F(RecordingsTest, AFolderThatHasJustChangedIsReadAgain) {
   const std::size_t read = recordings_.folders_read();
   static_cast<void>(recordings_.list(changed - 100 * ns_per_s));
   EXPECT_EQ(recordings_.folders_read(), 2 * read)
-      << "the time stamp is too coarse to exclude a second change";
+      << "the time stamp of the folder is too coarse to exclude a second change";
 }
 
 TEST_F(RecordingsTest, OfVeryManyFoldersTheNewestAreSeen) {
   for (std::size_t i = 0; i < 2 * Recordings::most_considered + 10; ++i)
     fs::create_directory(folder_ / ("run-" + std::to_string(100'000 + i)));
   add("run-0", "run.csv");
-  EXPECT_EQ(list(), "[]") << "run-0 is older than all folders that are considered";
+  EXPECT_EQ(list(), "[]") << "the folder run-0 is older than all folders that the list contains";
   EXPECT_EQ(recordings_.folders_read(), 1 + Recordings::most_considered);
   add("run-999999", "run.csv");
   EXPECT_EQ(list(), R"([{"name":"run-999999","files":["run.csv"]}])");

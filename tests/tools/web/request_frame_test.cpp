@@ -67,7 +67,7 @@ TEST(RequestFrame, HeadsHaveABound) {
   for (std::size_t i = 0; i <= most_headers; ++i) many += "X: 1\r\n";
   EXPECT_EQ(frame_of(many + "\r\n").status, 431);
   EXPECT_EQ(frame_of(std::string("GET /\0 HTTP/1.1", 15)).status, 400)
-      << "refused at once, before the end of the header";
+      << "the request must be refused before the end of its header";
 }
 
 /// If a checked property does not hold, the fuzz target aborts and the test fails.

@@ -71,7 +71,7 @@ TEST_P(Causes, HaveStartsInEveryForm) {
 TEST_P(Causes, StartAsValidModelsOfTheirForm) {
   each_start([&](const CauseForm& form, const model::BlockSpec& start) {
     EXPECT_EQ(start.type, form.type);
-    EXPECT_EQ(&form_of(cause, start), &form) << "the start belongs to another form";
+    EXPECT_EQ(&form_of(cause, start), &form) << "the start point belongs to another block form of the cause";
     const auto wrong = model::validate(with(start));
     ASSERT_TRUE(wrong.empty()) << wrong.front();
   });

@@ -196,7 +196,7 @@ TEST(GaugeVerdict, ANoisyGaugeLeavesTheVerdictAsItWasAndIsNotProposedAgain) {
   EXPECT_EQ(d.gauge->check.outcome, GaugeOutcome::undecided);
   EXPECT_NE(verdict_sentence(d).find("does not decide"), std::string::npos);
   const NextExperiment again = design_experiment(d, {});
-  EXPECT_FALSE(again.gauge_check) << "the check has already been done";
+  EXPECT_FALSE(again.gauge_check) << "the gauge check has already been made, so it must not be proposed";
   ASSERT_FALSE(again.advice.empty());
   EXPECT_NE(again.advice.front().find("change the load"), std::string::npos);
 }

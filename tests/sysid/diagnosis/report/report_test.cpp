@@ -111,7 +111,7 @@ class ReportTest : public ::testing::Test {
 
 TEST_F(ReportTest, TheBudgetAddsUpToWhatRecalibrationLeaves) {
   const std::vector<BudgetPart> parts = budget_parts(diagnosis);
-  ASSERT_EQ(parts.size(), 3U) << "expected parts: explained by the lag, unexplained, noise";
+  ASSERT_EQ(parts.size(), 3U) << "the budget must have three parts: explained by the lag, unexplained, noise";
   double sum = 0;
   for (const BudgetPart& part : parts) sum += part.mm2;
   EXPECT_NEAR(sum, 0.09, 1e-12);
@@ -231,17 +231,17 @@ TEST_F(ReportTest, LoopsAreDrawnOfALogThatHasSome) {
   for (Record& record : diagnosis.records) {
     for (std::size_t i = 0; i < record.size(); ++i) record.drive_kpa[i] = i < record.size() / 2 ? 0 : 40;
   }
-  EXPECT_FALSE(has_loops(diagnosis.records.front())) << "a step has no loops";
+  EXPECT_FALSE(has_loops(diagnosis.records.front())) << "a single pressure step has no hysteresis loops";
   EXPECT_EQ(page().to_html().find("\"loops log_"), std::string::npos);
 }
 
 TEST_F(ReportTest, AClosedLoopWithoutAnyModelIsNotDrawn) {
   ClosedLoopCurves curves{
-      "13 ± 7 mm", {0, 1, 2}, {13, 20, 13}, {}, {"the extended model gives no feedforward"}};
+      "13 ± 7 mm", {0, 1, 2}, {13, 20, 13}, {}, {"the extended model has no usable feedforward"}};
   curves.schemes = {{"PID alone", 1.5, {12, 18, 14}}};
   const std::string alone = diagnosis_page({diagnosis, logs, given, 1, {}, {}, curves}).to_html();
   EXPECT_EQ(alone.find("In closed loop, "), std::string::npos);
-  EXPECT_NE(alone.find("the extended model gives no feedforward"), std::string::npos);
+  EXPECT_NE(alone.find("the extended model has no usable feedforward"), std::string::npos);
   EXPECT_NE(alone.find("The closed loop uses no model (13 ± 7 mm)"), std::string::npos);
   curves.schemes.push_back({"extended model", 0.02, {13, 20, 13.01}});
   EXPECT_NE(diagnosis_page({diagnosis, logs, given, 1, {}, {}, curves}).to_html().find("In closed loop, "),
@@ -265,7 +265,8 @@ TEST_F(ReportTest, TheClosedLoopIsDrawnOverTime) {
   curves.schemes = {{"PID alone", 1.5, {12, 18, 14}}, {"extended model", 0.02, {13, 20, 13.01}}};
   const Figure figure = closed_loop_figure(curves);
   ASSERT_EQ(figure.charts.size(), 2U);
-  EXPECT_EQ(figure.charts[1].front().series.front().y[1], -2) << "the error is displacement minus reference";
+  EXPECT_EQ(figure.charts[1].front().series.front().y[1], -2)
+      << "the tracking error is displacement minus reference";
   EXPECT_NE(figure.caption.find("PID alone 1.5 mm, extended model 0.02 mm"), std::string::npos);
   const std::vector<Series>& drawn = figure.charts[0].front().series;
   EXPECT_EQ(drawn[1].colour, Colour::other)

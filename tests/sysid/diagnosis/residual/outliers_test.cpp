@@ -73,7 +73,7 @@ TEST(Outliers, StructureIsNone) {
       {"slow ringing", [](double t) { return 2 * std::sin(2 * std::numbers::pi * 1.3 * t); }},
       {"ringing", [](double t) { return 2 * std::sin(2 * std::numbers::pi * 6.1 * t); }},
       {"fast ringing", [](double t) { return 2 * std::sin(2 * std::numbers::pi * 17.3 * t); }},
-      {"ringing that dies away",
+      {"ringing with a decaying amplitude",
        [](double t) {
          const double since = std::fmod(t, 5.0);
          return 3 * std::exp(-6 * since) * std::sin(2 * std::numbers::pi * 5 * since);

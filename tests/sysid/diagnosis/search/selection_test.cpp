@@ -57,7 +57,8 @@ double bent(double y_mm) {
 
 TEST(Selection, WhatTheFormOfACauseLeavesGetsNoNameOfItsOwn) {
   const Selection selection = select([](double y_mm, double) { return bent(y_mm); });
-  EXPECT_TRUE(selection.left.present) << "the form fits exactly, so this test is not meaningful";
+  EXPECT_TRUE(selection.left.present)
+      << "the block form of the cause fits exactly, so this test is not meaningful";
   ASSERT_EQ(selection.chosen.size(), 1U);
   EXPECT_EQ(names(selection), std::vector<std::string>{"sensor_nonlinearity"});
 }

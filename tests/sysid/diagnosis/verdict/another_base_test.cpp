@@ -51,14 +51,15 @@ TEST(AnotherShape, WillDoWhereItsBaseLeavesAboutAsLittleWithoutAnAsymmetricLoop)
   EXPECT_TRUE(another_shape_will_do(base, selected));
   base.losses.assign(10, 1.3 * 0.04);
   EXPECT_FALSE(another_shape_will_do(base, selected))
-      << "the unexplained error of the alternative structure is clearly larger";
+      << "the unexplained error of the alternative structure must be clearly larger than that of the given "
+         "structure";
   base.losses = selected;
   base.named.push_back(named("asymmetric_hysteresis"));
   EXPECT_FALSE(another_shape_will_do(base, selected))
-      << "the alternative structure needs the asymmetric loop as well";
+      << "the alternative structure must also contain the asymmetric loop";
   base.named = {named("slow_creep")};
   EXPECT_FALSE(another_shape_will_do(base, selected))
-      << "the loops of the alternative structure are those of the given structure";
+      << "the hysteresis loops of the alternative structure must equal those of the given structure";
 }
 
 TEST(AnotherShape, IsAnAlternativeOfTheAsymmetricLoopAloneAndOnce) {

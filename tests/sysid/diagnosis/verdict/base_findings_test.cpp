@@ -125,16 +125,16 @@ TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore)
   plain.extended.causes = {*find_cause("contact"), *find_cause("sensor_lag")};
   plain.left.excess_mm = 1.5 * noise_mm;
   EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true))
-      << "the alternative structure has none of the causes";
+      << "the alternative structure contains none of the causes";
   found.base->fit.causes = {*find_cause("contact")};
   EXPECT_TRUE(has_lower_loss(*found.base, plain, noise_mm, true));
   plain.left.excess_mm = 0.5 * noise_mm;
   EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true))
-      << "the two causes leave no unexplained error";
+      << "with the given structure and the two causes, no unexplained error remains";
   plain.left.excess_mm = 1.5 * noise_mm;
   for (double& loss : plain.extended_losses) loss /= 1.6;
   EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, true))
-      << "the unexplained error of the alternative structure is much larger";
+      << "the unexplained error of the alternative structure is much larger than that of the given structure";
 }
 
 /// For slow commands, a delay and a lag are equivalent. If the model lacks one of the two, the other replaces

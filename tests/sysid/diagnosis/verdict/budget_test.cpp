@@ -31,14 +31,15 @@ TEST(Budget, WhatIsBelowTheNoiseIsNothing) {
   const Budget budget = budget_of(errors_mm(0.05, 0.04, 0.03, 0.05));
   EXPECT_EQ(budget.excess(), 0);
   EXPECT_EQ(budget.left(), 0);
-  EXPECT_EQ(budget.share_percent(worth_mm2(0.01)), 0) << "the share of an error of 0 is 0";
+  EXPECT_EQ(budget.share_percent(worth_mm2(0.01)), 0)
+      << "if the mean square error is 0, every share must be 0";
 }
 
 TEST(Budget, AShareStaysWithinTheWhole) {
   const Budget budget = budget_of(errors_mm(0.5, 0.3, 0.1, 0));
   EXPECT_DOUBLE_EQ(budget.share_percent(worth_mm2(0.045)), 50);
   EXPECT_EQ(budget.share_percent(worth_mm2(1)), 100);
-  EXPECT_EQ(budget.share_percent(worth_mm2(-1)), 0) << "the error is smaller without the cause";
+  EXPECT_EQ(budget.share_percent(worth_mm2(-1)), 0) << "the held-out error is smaller without the cause";
 }
 
 }  // namespace

@@ -104,7 +104,8 @@ TEST_F(DiagnoseCommand, FilledInPositionsTellTheFingerFromTheSensor) {
   EXPECT_EQ(diagnosis()["verdict"], "ambiguous");
   EXPECT_EQ(diagnosis()["gauge_check"]["file"], "gauge_positions.csv");
   EXPECT_NE(read("out.txt").find("--gauge gauge_positions.csv"), std::string::npos) << read("out.txt");
-  EXPECT_EQ(run(command + " --gauge result/gauge_positions.csv"), 3) << "the file contains no readings yet";
+  EXPECT_EQ(run(command + " --gauge result/gauge_positions.csv"), 3)
+      << "the gauge file contains no readings yet";
   EXPECT_EQ(run(command + " --gauge nowhere.csv"), 4);
 
   std::string filled = "gauge_mm,displacement_mm\n";
@@ -124,7 +125,8 @@ TEST_F(DiagnoseCommand, FilledInPositionsTellTheFingerFromTheSensor) {
   EXPECT_EQ(json["gauge"]["outcome"], "decided");
   EXPECT_EQ(json["gauge"]["ruled_out"], Json({"sensor_nonlinearity"}));
   EXPECT_TRUE(json["gauge_check"].is_null());
-  EXPECT_EQ(read("result/gauge_positions.csv"), filled) << "the entered readings must remain";
+  EXPECT_EQ(read("result/gauge_positions.csv"), filled)
+      << "the readings that the operator entered must remain in the gauge file";
   EXPECT_NE(read("out.txt").find("The gauge check shows a linear sensor"), std::string::npos);
   EXPECT_NE(read("result/report.html").find("Gauge check of the sensor"), std::string::npos);
 }

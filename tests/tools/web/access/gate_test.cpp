@@ -70,7 +70,8 @@ TEST_F(GateTest, ForgedOriginsAndStrangeNamesAreTurnedAway) {
   EXPECT_EQ(status(gate.admit(forged, true, 0)), 403) << "a request that changes state needs an origin";
   forged.host = "evil.example:8017";
   forged.origin = "http://evil.example:8017";
-  EXPECT_EQ(status(gate.admit(forged, false, 0)), 421) << "another host name resolves to this server";
+  EXPECT_EQ(status(gate.admit(forged, false, 0)), 421)
+      << "a request whose Host header names another host must be refused";
 }
 
 TEST_F(GateTest, ATokenInAHeaderNeedsNoPage) {

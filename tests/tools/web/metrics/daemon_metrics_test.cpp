@@ -98,11 +98,12 @@ TEST(Metrics, WhatIsNotKnownIsNotThere) {
   EXPECT_EQ(text.find("softgrip_reference_meters{"), std::string::npos);
   EXPECT_EQ(text.find("softgrip_emergency_stop"), std::string::npos) << "the rig has no digital lines";
   EXPECT_EQ(text.find("softgrip_loop_compute_seconds{"), std::string::npos)
-      << "there are no quantiles without samples";
+      << "without samples, no quantiles must be reported";
   EXPECT_EQ(text.find("nan"), std::string::npos);
   const std::string gone = told(nullptr, statistics());
   EXPECT_TRUE(has_line(gone, "softgrip_up 0"));
-  EXPECT_EQ(gone.find("softgrip_state"), std::string::npos) << "no metric may be out of date";
+  EXPECT_EQ(gone.find("softgrip_state"), std::string::npos)
+      << "without a daemon, no old metric may be reported";
 }
 
 }  // namespace
