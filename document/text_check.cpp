@@ -98,7 +98,7 @@ bool check_text(const Document& document, const Bounds& bounds, Problems& proble
   const std::string_view text = document.text;
   if (text.substr(0, 3) == "\xEF\xBB\xBF") {
     problems.add(document.problem({1, 1}, "the file starts with a byte order mark",
-                                  "save it as UTF-8 without a byte order mark"));
+                                  "save the file as UTF-8 without a byte order mark"));
     return false;
   }
   Troubles troubles;

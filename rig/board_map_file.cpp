@@ -307,8 +307,8 @@ class BoardReader {
   void check_directions(MapReader& in) {
     const auto needs = [&](std::string_view key, const std::string& direction) {
       if (in.has(key) && !in.has(direction)) {
-        in.report(key,
-                  "`" + std::string(key) + "` needs `" + direction + "`, but this board has no such section");
+        in.report(key, "`" + std::string(key) + "` needs `" + direction +
+                           "`, but this board map has no such section");
       }
     };
     needs("input_status", "inputs");

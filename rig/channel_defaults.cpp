@@ -67,7 +67,8 @@ ChannelDefaults::ChannelDefaults(Context& context, MapReader& top) : context_(co
         entry.key_at,
         name ? "channels cannot share a name"
              : "`" + entry.key + "` for all channels belongs to the top level of the file",
-        name ? "give each channel its own name" : "move it out of `channel_defaults`"));
+        name ? "give each channel a different name"
+             : "move this key out of `channel_defaults` to the top level of the file"));
     spoiled_ = true;
     return true;
   });

@@ -112,7 +112,7 @@ void read_wiring(Context& context, MapReader& reader, const std::string& who,
   channel.displacement_used = reader.optional_boolean("displacement_used").value_or(true);
   if (!channel.displacement_used && !channel.pressure_measured) {
     reader.report("displacement_used",
-                  who + " must measure the displacement or the pressure, but measures none of them",
+                  who + " must measure the displacement or the pressure, but measures neither",
                   "add `pressure_monitor`");
   }
   context.wiring.push_back(std::move(wiring));

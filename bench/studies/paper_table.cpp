@@ -63,7 +63,7 @@ const std::vector<std::string>& paper_table_remarks() {
       "An ordinary actuator behind lag and dead time shows the pattern of the paper's "
       "figures at "
       "a fraction of their size. The hidden latency explains the published parameters and the shape of the "
-      "residual, but not its size. The paper does not name a further effect."};
+      "residual, but not the size of the residual. The paper does not name a further effect."};
   return remarks;
 }
 

@@ -77,7 +77,7 @@ constexpr std::array faults{
         "The outputs changed without a write from softgripd: another Modbus client writes to the board.",
         "another client on the line or the network, for example a Modbus tool or a PLC",
         "Disconnect the other Modbus client. The outputs are vented.",
-        "8 exchanges; the board must permit reading its outputs back"},
+        "8 exchanges, but only if the board permits reading its outputs back"},
     FaultInfo{FaultCode::model_unfit, "F401", "model_unfit",
               "The model in use no longer describes the finger.", "wear, another finger, leak, moved sensor",
               "Record the test signal tp1 and identify the model again.",
@@ -86,7 +86,8 @@ constexpr std::array faults{
               "The emergency stop is pressed, or has not been released since start-up.",
               "the emergency stop was pressed; its wire is broken; the daemon was started on a rig with an "
               "emergency stop",
-              "Make the area safe, release the emergency stop.", "1 cycle after the input's debounce_s"},
+              "Make the area safe, release the emergency stop.",
+              "1 cycle after the debounce time (debounce_s) of the input"},
     FaultInfo{FaultCode::inputs_lost, "F502", "inputs_lost", "The digital inputs cannot be read.",
               "the USB or expander chip was removed; the computer is too busy to read the inputs",
               "Reconnect the chip and restart the daemon. If the computer is too busy, raise stale_after_s.",

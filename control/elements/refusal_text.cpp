@@ -26,7 +26,7 @@ constexpr std::array<RefusalText, 13> texts{{
      "The rig can be started: `softgrip start SEQUENCE`."},
     {"The cause of a fault is still present.",
      "`softgrip status` names the remedy. Apply the remedy, then acknowledge again."},
-    {"A stop or vent request superseded the start.", "To run the sequence, start it again."},
+    {"A stop or vent request superseded the start.", "To run the sequence, send the start request again."},
     {"No sequence runs and every channel is at its rest pressure.", "No finger is pressurised."},
     {"The stop names a start that is not running and will not begin.",
      "No action is required. To stop any running sequence, use `softgrip stop` without naming a start."},

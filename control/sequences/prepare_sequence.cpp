@@ -219,7 +219,8 @@ class Fitting {
     } else if (channel.feedforward.kind == FeedforwardKind::none && channel.pid.kp_kpa_per_mm == 0 &&
                channel.pid.ki_kpa_per_mm_s == 0) {
       report(step, "channel '" + channel.name +
-                       "' needs feedforward or PID gains to follow a displacement, and it has none");
+                       "' has no feedforward and no PID gains, but a target in displacement_mm requires at "
+                       "least one of them");
     }
   }
 

@@ -200,7 +200,7 @@ void describe_unsteady(const Event& event, const Sequence*, EventEntry& entry) {
     entry.text = "The reading is steady again.";
     return;
   }
-  entry.text = fmt::format("The reading is unsteady: it jumps back and forth, last by {:.1f} mm.",
+  entry.text = fmt::format("The reading is unsteady: the reading jumps back and forth, last by {:.1f} mm.",
                            std::abs(event.value));
   entry.severity = Severity::warning;
 }

@@ -165,7 +165,7 @@ void conclude_one_shot_run(const OneShotRun& one_shot_run, Outcome& outcome) {
           fmt::format("the rig did not become idle within {} s{}", patience / ns_per_s,
                       outcome.last.first_fault.code == control::FaultCode::none
                           ? ""
-                          : fmt::format(": {} is latched, `softgrip acknowledge` clears it",
+                          : fmt::format(": {} is latched, `softgrip acknowledge` clears this fault",
                                         title_of(outcome.last.first_fault, outcome.channel_names)));
       break;
     default:

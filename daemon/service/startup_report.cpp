@@ -54,7 +54,7 @@ std::string channel_line(const control::ChannelSettings& channel, const rig::Val
                      channel.name, channel.limits.pressure_min_kpa, channel.limits.pressure_max_kpa,
                      rests_above ? fmt::format(", rests at {:g} kPa", rest_kpa) : "",
                      name_of(channel.feedforward.kind),
-                     planned ? " (a sequence is planned before it starts)" : "",
+                     planned ? " (each sequence is planned before its start)" : "",
                      valve.on_power_loss == rig::PowerLoss::vents ? "vents" : "holds");
 }
 

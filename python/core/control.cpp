@@ -60,7 +60,7 @@ constexpr double longest_s = 1e9;
 
 std::chrono::nanoseconds duration_of(const char* argument, double seconds) {
   if (!(seconds >= 0 && seconds <= longest_s))
-    throw InvalidArgument(argument, "it is not between 0 and 1e9 s");
+    throw InvalidArgument(argument, "the duration must be between 0 and 1e9 s");
   return std::chrono::nanoseconds(std::llround(seconds * 1e9));
 }
 

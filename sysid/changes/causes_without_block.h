@@ -19,7 +19,7 @@ inline constexpr CauseWithoutBlock blocked_line{
     "blocked_line",
     "Blocked line",
     {"the air flow of the line to the finger is reduced",
-     {"Blow through the tube, and check it for kinks and water.",
+     {"Blow through the tube, and check the tube for kinks and water.",
       "Replace the tube by a new tube of equal length, then record the same log again."},
      {{{HealthNumber::lag, Moves::up}}},
      {SizedBy::Of::number, "additional filling time", "s", "filling_s"}},
@@ -44,9 +44,10 @@ inline constexpr CauseWithoutBlock payload{
     "payload",
     "Payload",
     {"a weight or a preload acts on the finger",
-     {"Remove everything that is attached to the finger or touches it, then record the same log again.",
-      "Record one log in which the finger points down and one in which it points up: the effect of a weight "
-      "changes its sign."},
+     {"Remove all objects that are attached to the finger or touch the finger, then record the same log "
+      "again.",
+      "Record one log with the finger pointing down and one log with the finger pointing up: the effect of a "
+      "weight changes its sign."},
      {},
      {SizedBy::Of::span, "gain at full pressure, on average", "%", {}, 100}},
     Appears::displaced};

@@ -35,7 +35,7 @@ std::string_view reason_of(Veto veto) {
     case Veto::not_tested:
       return "the data never meet the condition under which the effect occurs";
     case Veto::absent_where_required:
-      return "the effect is absent under conditions in which it must occur";
+      return "the effect is absent under conditions in which the effect must occur";
   }
   return {};
 }

@@ -187,7 +187,7 @@ void add_allowances(sysid::Page& page, const FingerHealth& health, const std::ve
 }
 
 void add_suspicion(sysid::Page& page, const Suspicion& suspicion, const std::string& baseline) {
-  page.section("Possible causes and how to confirm them");
+  page.section("Possible causes, and how to confirm each cause");
   for (const Suspect& suspect : suspicion.suspects) {
     page.subsection(suspect.id + ": " + suspect.words);
     page.list(suspect.next_steps);

@@ -64,7 +64,7 @@ std::string shared_sentence(const SharedChange& shared) {
   return "Since " + shared.since + " all fingers of the rig show the same change: " +
          change_text(shared.number, shared.change, shared.output_unit) +
          ". Check first the parts that all fingers share: " +
-         (shared.temperature_recorded ? "" : "the temperature (it is not recorded), ") +
+         (shared.temperature_recorded ? "" : "the temperature (which is not recorded), ") +
          "the supply, the common air line and the gripped parts.";
 }
 

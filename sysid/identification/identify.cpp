@@ -179,7 +179,7 @@ model::Model put_back(const model::Model& start, const model::Model& fitted) {
 }
 
 void add_warnings(Identification& result) {
-  if (!result.converged) result.warnings.emplace_back("the last minimisation stopped before it converged");
+  if (!result.converged) result.warnings.emplace_back("the last minimisation stopped before convergence");
   if (const double ratio = beta_over_gain(result.fitted); ratio > 1)
     result.warnings.push_back(wrong_way_sentence(ratio) + ". Run softgrip diagnose");
   for (const Record& record : result.records) {

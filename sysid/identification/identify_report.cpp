@@ -240,7 +240,7 @@ std::string verdict_of(const Identification& r) {
                                        ", but the remaining error is larger than the noise. Search for the "
                                        "cause of this error with softgrip diagnose.";
   if (const double ratio = beta_over_gain(r.fitted); ratio > 1) text += " " + wrong_way_sentence(ratio) + ".";
-  if (!r.converged) text += " The search stopped before it converged.";
+  if (!r.converged) text += " The search stopped before convergence.";
   return text;
 }
 

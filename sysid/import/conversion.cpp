@@ -199,10 +199,10 @@ class Converter {
     const bool hours = unit == "hh:mm";
     if (hours && !column.surely_minutes && column.short_clocks == column.moments) source.factor = 60;
     if (source.factor == 60 || (!hours && (column.surely_minutes || unit == "mm:ss"))) return true;
-    refuse(
-        "time: '" + document::shown(column.name, 40) +
-            (hours ? "' cannot be hours and minutes" : "' can be hours and minutes, or minutes and seconds"),
-        "--unit time=mm:ss" + std::string(hours ? "" : ", or --unit time=hh:mm"));
+    refuse("time: '" + document::shown(column.name, 40) +
+               (hours ? "' contains times that cannot be hours and minutes"
+                      : "' contains times that can be hours and minutes, or minutes and seconds"),
+           "--unit time=mm:ss" + std::string(hours ? "" : ", or --unit time=hh:mm"));
     return false;
   }
 

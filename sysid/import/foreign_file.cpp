@@ -22,7 +22,7 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::size_t largest_file_bytes = std::size_t{1} << 30;
-constexpr const char* too_long_hint = "split it into several files";
+constexpr const char* too_long_hint = "split the file into several files";
 constexpr std::string_view hdf5_signature{"\x89HDF\r\n\x1a\n"};
 
 /// Returns true if the bytes are HDF5 data. HDF5 data begin at byte 0 or after a user block of 512, 1024, ...
@@ -83,8 +83,8 @@ std::optional<ForeignTable> read_bytes(const std::string& path, const std::strin
     problems.add({path,
                   {1, 1},
                   {},
-                  "its cells, structures and objects have more than " + std::to_string(most_parts) +
-                      " parts, or more than 1 GiB",
+                  "the cells, structures and objects of the file have more than " +
+                      std::to_string(most_parts) + " parts, or more than 1 GiB",
                   "save only arrays of numbers"});
     return std::nullopt;
   }
@@ -95,7 +95,7 @@ std::optional<ForeignTable> read_bytes(const std::string& path, const std::strin
   if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("PK\x05\x06"))
     return read_xlsx_table(path, bytes, options, problems);
   if (const std::string_view known = known_but_unread(bytes); !known.empty()) {
-    problems.add({path, {1, 1}, {}, "this is " + std::string(known), "export it as CSV"});
+    problems.add({path, {1, 1}, {}, "this is " + std::string(known), "export the data as CSV"});
     return std::nullopt;
   }
   return read_text(path, bytes, options, problems);
@@ -124,7 +124,8 @@ tl::expected<std::string, std::string> gunzipped(std::string_view bytes, std::si
   }
   inflateEnd(&stream);
   if (text.size() > bound)
-    return tl::unexpected("after decompression it has more than " + std::to_string(bound) + " bytes");
+    return tl::unexpected("after decompression, the gzip file has more than " + std::to_string(bound) +
+                          " bytes");
   if (state == Z_BUF_ERROR) return tl::unexpected(std::string("the gzip file is cut off"));
   if (state != Z_STREAM_END) return tl::unexpected(std::string("the gzip file is damaged"));
   return text;

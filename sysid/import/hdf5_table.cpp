@@ -109,7 +109,7 @@ void collect_members(hid_t dataset, hid_t type, const std::string& name, std::si
     H5Tinsert(one.get(), member.get(), 0, H5T_NATIVE_DOUBLE);
     std::vector<double> values(rows);
     if (H5Dread(dataset, one.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-      arrays.pass_over(name + "." + member.get(), "it cannot be read");
+      arrays.pass_over(name + "." + member.get(), "this dataset cannot be read");
     } else {
       arrays.add(name + "." + member.get(), {}, rows, 1, values);
     }
@@ -150,7 +150,7 @@ void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arr
         name, matlab_class.empty() ? "no numbers" : "MATLAB's " + matlab_class + ", no numbers");
   std::vector<double> values(size[0] * size[1]);
   if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    return arrays.pass_over(name, "it cannot be read");
+    return arrays.pass_over(name, "this dataset cannot be read");
   if (matlab_class.empty()) {
     arrays.add(name, unit_of(dataset), size[0], size[1], by_columns(values, size[0], size[1]));
   } else {
@@ -193,14 +193,14 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* data) 
   // The number of objects is limited, because groups that link to each other in a cycle would otherwise be
   // read without end.
   if (++walk.objects > most_objects) {
-    walk.refused = "it has more than " + std::to_string(most_objects) + " objects";
+    walk.refused = "the file has more than " + std::to_string(most_objects) + " objects";
   } else if (info->type != H5L_TYPE_HARD && info->type != H5L_TYPE_SOFT) {
     walk.refused = "'" + document::shown(path) + "' is a link to another file (external link)";
   }
   if (!walk.refused.empty()) return 1;
   const Handle object(H5Oopen(group, name, walk.access), H5Oclose);
   if (!object) {
-    walk.arrays.pass_over(path, "it cannot be opened");
+    walk.arrays.pass_over(path, "this object cannot be opened");
     return 0;
   }
   const H5I_type_t kind = H5Iget_type(object.get());

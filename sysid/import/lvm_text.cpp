@@ -67,7 +67,7 @@ class LvmReader {
 
  private:
   std::nullopt_t refuse(std::size_t line, const std::string& message) {
-    problems_.add({table_.file, {static_cast<int>(line), 1}, {}, message, "export it as CSV"});
+    problems_.add({table_.file, {static_cast<int>(line), 1}, {}, message, "export the data as CSV"});
     good_ = false;
     return std::nullopt;
   }

@@ -73,7 +73,7 @@ const char* what_it_is(const matvar_t& variable) {
     case MAT_C_OBJECT:
     case MAT_C_FUNCTION:
     case MAT_C_OPAQUE:
-      return "a MATLAB object (such as a timetable or a table); save its columns as arrays";
+      return "a MATLAB object (such as a timetable or a table); save the columns of the object as arrays";
     default:
       return variable.isComplex != 0 ? "complex numbers" : "not an array of numbers in two dimensions";
   }
@@ -130,7 +130,7 @@ class MatCollector {
     if (!arrays_.has_room(shape.rows, shape.columns)) return arrays_.pass_over(name, too_large);
     const bool read = Mat_VarReadDataAll(file_, &variable) == 0;
     const std::vector<double> values = read ? values_of(variable, shape.count()) : std::vector<double>{};
-    if (values.empty()) return arrays_.pass_over(name, "it cannot be read");
+    if (values.empty()) return arrays_.pass_over(name, "this array cannot be read");
     arrays_.add(name, unit, shape.rows, shape.columns, values);
   }
 

@@ -113,7 +113,7 @@ class McapReader {
     std::string encoding;
   };
 
-  void refuse(const std::string& message, const std::string& hint = "export it as CSV") {
+  void refuse(const std::string& message, const std::string& hint = "export the data as CSV") {
     if (!refused_) problems_.add({table_.file, {1, 1}, {}, message, hint});
     refused_ = true;
   }
@@ -170,8 +170,8 @@ class McapReader {
     if (!scan.good() || (complete && size != inside.size()))
       return refuse("a chunk of the file is shorter than the length that its header states");
     if (!packing.empty())
-      return refuse("its chunks are compressed with " + document::shown(packing, 20) +
-                    ", which is not supported; write it without compression");
+      return refuse("the chunks of the file are compressed with " + document::shown(packing, 20) +
+                    ", which is not supported; write the file without compression");
     const auto* const data = reinterpret_cast<const Bytef*>(inside.data());
     if (complete && checksum != 0 && checksum != ::crc32_z(0, data, inside.size()))
       return refuse("a chunk does not match its checksum");
@@ -215,13 +215,14 @@ class McapReader {
     if (!json.is_object())
       return refuse("message " + std::to_string(messages_) + " is not a JSON object of at most " +
                     std::to_string(largest_message) + " bytes; --skip-bad-lines leaves such messages out");
-    if (++rows_ > most_rows) return refuse("it has more than " + std::to_string(most_rows) + " messages");
+    if (++rows_ > most_rows)
+      return refuse("the file has more than " + std::to_string(most_rows) + " messages");
     log_times_.push_back(log_time);
     McapTopic& topic = topic_of(of.name);
     topic.rows.push_back(rows_ - 1);
     object(topic, json, "", 0);
     if (rows_ > most_values / std::max<std::size_t>(column_count_, 1))
-      refuse("it has more than " + std::to_string(most_values) + " values");
+      refuse("the file has more than " + std::to_string(most_values) + " values");
   }
 
   McapTopic& topic_of(const std::string& name) {

@@ -301,7 +301,7 @@ std::string unread_time(const ForeignTable& table) {
     if (!column.bad.empty() && names_role(column.name, Role::time))
       return " ('" + document::shown(column.name, 40) + "' has '" +
              document::shown(column.bad.front().text, 40) +
-             "', which is in an unknown format; a known one is 2024-05-31 12:00:00.25)";
+             "', which is in an unknown format; an example of a known format is 2024-05-31 12:00:00.25)";
   }
   return {};
 }

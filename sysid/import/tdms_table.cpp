@@ -175,7 +175,7 @@ class TdmsReader {
     std::size_t at = 0;
     while (at < bytes_.size() && refused.empty()) {
       if (bytes_.size() - at < lead_in_bytes) {
-        leave_out_segment(at, "in its first bytes");
+        leave_out_segment(at, " in the first bytes of the segment");
         break;
       }
       at = segment(at);
@@ -339,7 +339,7 @@ class TdmsReader {
     if (!refused.empty() || chunk == 0) return;
     steps_ += listed_.size() * (bytes.size() / chunk + 1);
     if (steps_ > most_steps)
-      refused = "it has more than " + std::to_string(most_steps) + " pieces of channels";
+      refused = "the file has more than " + std::to_string(most_steps) + " pieces of channels";
     while (!bytes.empty() && refused.empty()) {
       const std::string_view piece = bytes.substr(0, chunk);
       if (interleaved && has_room(piece.size() / row * listed_.size())) rows(piece, row);
@@ -351,7 +351,7 @@ class TdmsReader {
 
   bool has_room(std::uint64_t values) {
     values_ += values;
-    if (values_ > most_values) refused = "it has more than " + std::to_string(most_values) + " values";
+    if (values_ > most_values) refused = "the file has more than " + std::to_string(most_values) + " values";
     return refused.empty();
   }
 
@@ -475,7 +475,7 @@ std::optional<ForeignTable> read_tdms_table(const std::string& file, std::string
                 {1, 1},
                 {},
                 "a LabVIEW file (.tdms) that cannot be read: " + reader.refused,
-                "export it as CSV"});
+                "export the data as CSV"});
   return std::nullopt;
 }
 

@@ -198,7 +198,7 @@ class Heading {
          std::string(line.text.substr(0, 200)),
          std::to_string(names) + " names above " + std::to_string(dialect_.width) + " columns of numbers",
          commas ? "decimal commas and commas between the columns cannot be distinguished: export the file "
-                  "with ';' between them"
+                  "with ';' between the columns"
                 : ""});
     return false;
   }

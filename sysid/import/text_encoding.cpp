@@ -120,18 +120,19 @@ std::optional<ForeignText> foreign_text(const std::string& file, std::string_vie
     return std::nullopt;
   };
   const auto too_long = [&](std::size_t most, const char* what) {
-    return refused("the text has more than " + std::to_string(most) + what, "split it into several files");
+    return refused("the text has more than " + std::to_string(most) + what,
+                   "split the file into several files");
   };
   if (bytes.size() > most_text_bytes) return too_long(most_text_bytes, " bytes");
   const std::size_t nul_bytes = nul_tail(bytes);
   auto text = utf8_of(bytes.substr(0, bytes.size() - nul_bytes));
-  if (!text) return refused(text.error(), "export it as CSV");
+  if (!text) return refused(text.error(), "export the data as CSV");
   if (static_cast<std::size_t>(std::count(text->begin(), text->end(), '\n')) > most_rows)
     return too_long(most_rows, " lines");
   if (const auto line = number_of_long_line(*text))
     return refused(
         "line " + std::to_string(*line) + " has more than " + std::to_string(longest_line) + " bytes",
-        "export it as CSV");
+        "export the data as CSV");
   ForeignText foreign{std::move(*text), {}};
   if (nul_bytes > 0)
     foreign.notes.push_back(std::to_string(nul_bytes) + " NUL bytes at the end of the file are left out");

@@ -70,7 +70,7 @@ class RowReader {
     const TextLine& later = comma_.number > point_.number ? comma_ : point_;
     report_.add("decimal", {later.number, 1}, later.text,
                 "numbers with a decimal comma and numbers with a decimal point in one file",
-                "the other decimal mark is first used in line " +
+                "the second decimal mark is first used in line " +
                     std::to_string(std::min(comma_.number, point_.number)));
   }
   [[nodiscard]] bool decimal_comma() const { return comma_.number != 0; }
@@ -189,7 +189,7 @@ std::optional<ForeignTable> parse_text_table(const std::string& file, std::strin
                   {1, 1},
                   {},
                   "the text has more than " + std::to_string(most_values) + " values",
-                  "split it into several files"});
+                  "split the file into several files"});
     return std::nullopt;
   }
   ForeignTable table;

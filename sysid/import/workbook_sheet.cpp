@@ -207,8 +207,8 @@ class SheetReader {
     cell.text = std::string(trimmed(cell.text));
     const auto number = to_number(cell.text);
     if (!number)
-      return refuse_cell(
-          cell, "'" + document::shown(cell.text) + "' is not a number, although the file states that it is");
+      return refuse_cell(cell, "'" + document::shown(cell.text) +
+                                   "' is not a number, although the file declares this cell as a number");
     if (!std::isfinite(*number)) {
       cell.content = Content::text;  // the reader of text tables interprets "NaN" later
       return;
@@ -352,7 +352,7 @@ class SheetReader {
       note(texts_.from_1904 ? "cells with dates or times, counted from 1904" : "cells with dates or times",
            dates_);
     const std::size_t span = result_.first_row == 0 ? 0 : result_.last_row - result_.first_row + 1;
-    if (span > filled_.size()) note("empty rows between others are skipped", span - filled_.size());
+    if (span > filled_.size()) note("empty rows between other rows are skipped", span - filled_.size());
     name_hidden();
     NamedCells merged;
     for (const pugi::xml_node& merge : child_of(root_, "mergeCells").children())
@@ -370,9 +370,9 @@ class SheetReader {
       }
       return hidden;
     };
-    if (const std::size_t rows = count(data_); rows > 0) note("hidden rows are read like the others", rows);
+    if (const std::size_t rows = count(data_); rows > 0) note("hidden rows are read like visible rows", rows);
     if (const std::size_t columns = count(child_of(root_, "cols")); columns > 0)
-      note("hidden columns are read like the others", columns);
+      note("hidden columns are read like visible columns", columns);
   }
 
   pugi::xml_node root_;

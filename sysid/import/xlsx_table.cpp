@@ -110,7 +110,8 @@ class WorkbookReader {
   std::optional<std::string> book_part() {
     if (!package_.has("_rels/.rels")) {
       if (package_.has("content.xml"))
-        return refuse("this is an OpenDocument spreadsheet (.ods)", "save it as .xlsx, or export it as CSV");
+        return refuse("this is an OpenDocument spreadsheet (.ods)",
+                      "save the file as .xlsx, or export the sheet as CSV");
       return refuse("this is an archive, not a workbook", "unpack it");
     }
     const auto found = relations("", "");
@@ -118,7 +119,8 @@ class WorkbookReader {
     for (const auto& [id, relation] : *found) {
       if (relation.type != "officeDocument" || relation.external) continue;
       if (relation.part.ends_with(".bin"))
-        return refuse("this is a binary workbook (.xlsb)", "save it as .xlsx, or export it as CSV");
+        return refuse("this is a binary workbook (.xlsb)",
+                      "save the file as .xlsx, or export the sheet as CSV");
       return relation.part;
     }
     return refuse("this is an archive, not a workbook", "unpack it");
@@ -164,7 +166,7 @@ class WorkbookReader {
       }
       sheets_.push_back({name, found->second.part, found->second.type == "worksheet"});
       if (sheets_.size() > most_sheets) {
-        refuse("it has more than " + std::to_string(most_sheets) + " sheets");
+        refuse("the workbook has more than " + std::to_string(most_sheets) + " sheets");
         return false;
       }
     }
@@ -233,14 +235,15 @@ class WorkbookReader {
     std::optional<Sheet> found;
     for (const Sheet& sheet : sheets_) {
       if (!sheet.is_table) {
-        others_.push_back("sheet " + quoted_name(sheet.name) + " is skipped: it is a chart, not a table");
+        others_.push_back("sheet " + quoted_name(sheet.name) +
+                          " is skipped, because this sheet is a chart and not a table");
         continue;
       }
       auto text = text_of(sheet);
       if (!text) return std::nullopt;
       if (text->rows_of_numbers < 2) {
         others_.push_back("sheet " + quoted_name(sheet.name) +
-                          " is skipped: it does not have two rows of numbers");
+                          " is skipped, because this sheet does not have two rows of numbers");
         continue;
       }
       with_numbers.push_back(sheet.name);

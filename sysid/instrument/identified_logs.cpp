@@ -71,12 +71,12 @@ tl::expected<IdentifiedLogs, std::string> identify_logs(IdentifyQuestion questio
   all.result = *std::move(result);
   if (question.structure && given)
     all.result.warnings.push_back(
-        "--structure computes its start values from the data: " + question.start_file + " was not used");
+        "--structure computes the start values from the data: " + question.start_file + " was not used");
   if (given) {
     all.result.model.name = all.start.name + "_identified";
   } else {
-    all.start.name =
-        question.structure ? "structures, from the data's scale" : "base structure, from the data's scale";
+    all.start.name = question.structure ? "structures, with start values from the scale of the data"
+                                        : "base structure, with start values from the scale of the data";
   }
   std::vector<std::string> warnings = warnings_of_data(all.result, all.logs, std::move(wrong_readings));
   append(warnings, std::move(all.result.warnings));

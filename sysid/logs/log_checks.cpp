@@ -106,7 +106,7 @@ class Check {
     }
     if (sampling_.median_interval_s > longest_median_interval_s) {
       refuse(0, source_.time_column, "samples are " + significant(sampling_.median_interval_s) + " s apart",
-             "if the time is in milliseconds, divide it by 1000");
+             "if the time is in milliseconds, divide the time by 1000");
     }
   }
 
@@ -160,7 +160,7 @@ class Check {
     const std::size_t y = largest(log_.displacement_mm);
     if (std::abs(log_.pressure_command_kpa[p]) > largest_pressure_kpa) {
       refuse(p, source_.command_column, "a command of " + significant(log_.pressure_command_kpa[p]) + " kPa",
-             "if the column is in Pa, divide it by 1000");
+             "if the column is in Pa, divide the values by 1000");
     } else if (command_.width() > 0 && std::max(-command_.lowest, command_.highest) < small_pressure_kpa) {
       note(p, "the command stays below " + significant(small_pressure_kpa) +
                   " kPa: check if the column is in bar");
@@ -172,7 +172,7 @@ class Check {
                  ? "if this value is a code for a missing reading, remove it with softgrip import --missing"
              : log_.output_unit == model::OutputUnit::deg
                  ? "check if the column is in degrees"
-                 : "if the column is in micrometres, divide it by 1000");
+                 : "if the column is in micrometres, divide the values by 1000");
     } else if (const double span = span_mm(log_); span > 0 && span < small_reading(log_.output_unit)) {
       note(y, in_unit("the displacement spans ") + significant(span) + in_unit(" mm: is the column in ") +
                   (log_.output_unit == model::OutputUnit::deg ? "radians?" : "metres?"));
@@ -192,7 +192,7 @@ class Check {
       refuse(at, source_.displacement_column, message,
              "a log must have at least " + std::to_string(fewest_samples) + " readings");
     } else {
-      note(at, message + "; these samples are simulated, but they are not compared with the model");
+      note(at, message + "; these samples are simulated, but not compared with the model");
     }
   }
 

@@ -45,7 +45,7 @@ bool header_is_plausible(std::string_view line, const std::vector<Cell>& cells, 
   }
   if (std::all_of(cells.begin(), cells.end(), [](const Cell& c) { return to_number(c.text).has_value(); })) {
     report.add("header", {1, 1}, line, "the first line contains numbers instead of column names",
-               "write 'time_s,pressure_command_kpa,displacement_mm' above it");
+               "write 'time_s,pressure_command_kpa,displacement_mm' above the first line");
     return false;
   }
   return true;

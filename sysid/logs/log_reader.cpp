@@ -161,8 +161,8 @@ bool is_text(std::string_view text, LogReporter& report) {
   if (zero == std::string_view::npos) return true;
   const auto line = static_cast<int>(std::count(text.begin(), text.begin() + static_cast<long>(zero), '\n'));
   const bool wide = text.size() > 1 && (text[0] == '\xff' || text[0] == '\xfe');
-  report.add("binary", {line + 1, 1}, {}, "the file contains a byte 0, so it is not a CSV text",
-             wide ? "the file seems to be in UTF-16: save it as UTF-8" : "");
+  report.add("binary", {line + 1, 1}, {}, "the file contains a byte 0, so the file is not a CSV text",
+             wide ? "the file seems to be in UTF-16: save the file as UTF-8" : "");
   return false;
 }
 

@@ -148,7 +148,7 @@ std::string state_unit(const PressureColumn& column, const ColumnExtent& p, cons
   const double largest = -p.lowest > p.highest ? p.lowest : p.highest;
   return ". The largest value of `" + column.name + "` is " + significant(largest, 3) +
          ". State the unit of this column: `softgrip import --unit " + column.role + "=" + unit + "`, or `(" +
-         unit + ")` in its header";
+         unit + ")` in the header of the column";
 }
 
 void judge_unit_of_pressure(const Log& log, const PressureColumn& column,

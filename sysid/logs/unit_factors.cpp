@@ -27,8 +27,8 @@ constexpr std::array mistakes{
     UnitFactor{1000,
                "micrometres in the displacement column taken for mm, or MPa in a pressure column taken "
                "for kPa"},
-    UnitFactor{10, "mm in the displacement column converted as if they were cm"},
-    UnitFactor{25.4, "mm in the displacement column converted as if they were inch"},
+    UnitFactor{10, "millimetres in the displacement column converted as if the values were in cm"},
+    UnitFactor{25.4, "millimetres in the displacement column converted as if the values were in inch"},
     UnitFactor{1 / 10.0,
                "cm in the displacement column taken for mm, or mbar in a pressure column taken for "
                "kPa"},

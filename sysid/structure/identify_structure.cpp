@@ -122,7 +122,7 @@ void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Id
 }
 
 void add_warnings(Identification& result) {
-  if (!result.converged) result.warnings.emplace_back("the search stopped before it converged");
+  if (!result.converged) result.warnings.emplace_back("the search stopped before convergence");
   if (const double ratio = beta_over_gain(result.fitted); ratio > 1)
     result.warnings.push_back(wrong_way_sentence(ratio) + ". Run softgrip diagnose");
   for (const Record& record : result.records) {

@@ -718,7 +718,7 @@ def files():
              table(["Time", "set_kpa", "tip_mm"], [times("2024-05-31T11:59:58", "%M:%S.%f"), COMMAND, TIP])),
         File("two_fields.csv", "times that can be hours and minutes, or minutes and seconds",
              table(["Time", "set_kpa", "tip_mm"], [[f"{i // 60:02}:{i % 60:02}" for i in range(COUNT)], COMMAND, TIP]),
-             refused="'Time' can be hours and minutes, or minutes and seconds"),
+             refused="'Time' contains times that can be hours and minutes, or minutes and seconds"),
         File("two_fields_said.csv", "minutes and seconds, with the unit as an option",
              table(["Time", "set_kpa", "tip_mm"], [[f"{i // 60:02}:{i % 60:02}" for i in range(COUNT)], COMMAND, TIP]),
              "--unit time=mm:ss", columns={key: TRUTH[key] for key in BASIC} | {"time_s": list(range(COUNT))}),

@@ -71,7 +71,7 @@ class Figures(unittest.TestCase):
         self.assertTrue(self.softgrip("plot", first, "--out", "-").stdout.startswith("<svg"))
         self.softgrip("plot", first, "--channel", "left", "--out", self.folder / "x.svg", expect=2)
         beyond = self.softgrip("plot", first, "--from", 1000, "--out", self.folder / "x.svg", expect=2)
-        self.assertIn("has no samples from 1000 s on: it lasts from 0 to", beyond.stderr)
+        self.assertIn("has no samples from 1000 s on: the recording lasts from 0 to", beyond.stderr)
 
         over = self.softgrip("plot", first, second, "--from", 10, "--to", 12, "--out", "-").stdout
         self.assertIn(">measured, steps_100.csv<", over)

@@ -169,7 +169,7 @@ class Bombs(bench_files.Files):
     def test_text_that_is_larger_than_the_bound_when_it_is_decompressed(self):
         self.packed(b"0.000000000000000000000000000000000,1.00000000000000000000000000000000,2\n" * 10_000, 900)
         said = self.limited("import", "bomb.csv.gz", "--yes", "--out", "log.csv", code=3)
-        self.assertIn("after decompression it has more than 536870912 bytes", said)
+        self.assertIn("after decompression, the gzip file has more than 536870912 bytes", said)
 
     def test_text_of_very_many_rows(self):
         self.packed(b"0,1,2\n" * 100_000, 600)
@@ -220,7 +220,7 @@ class Bombs(bench_files.Files):
         packed = zlib.compress(struct.pack("<II", 14, len(body)) + body, 9)
         (self.folder / "bomb.mat").write_bytes(header + struct.pack("<II", 15, len(packed)) + packed)
         said = self.limited("import", "bomb.mat", "--yes", "--out", "x.csv", code=3)
-        self.assertIn("its cells, structures and objects have more than 100000 parts", said)
+        self.assertIn("the cells, structures and objects of the file have more than 100000 parts", said)
 
     def test_hdf5_chunks(self):
         h5py = self.h5py()

@@ -92,7 +92,7 @@ class Investigation(bench.BenchTest):
 
     def test_a_rig_that_plays_something_else_ends_it(self):
         for change, why in (("lambda rows: [(t, min(p, 30.0)) for t, p in rows]",
-                             "the rig did not play the requested experiment: its command went to 30 instead of 45 kPa"),
+                             "the rig did not run the requested experiment: the command went to 30 instead of 45 kPa"),
                             ("lambda rows: rows[:len(rows) * 2 // 3]", r"it took [\d.]+ instead of [\d.]+ s"),
                             ("lambda rows: [(t, p if t < rows[-1][0] / 2 else 0.0) for t, p in rows]",
                              "its command travelled")):

@@ -43,8 +43,8 @@ std::optional<ClientFailure> cannot_name_starts(DaemonClient& client) {
   const Json names = hello->value("capabilities", Json::array());
   if (std::find(names.begin(), names.end(), Json(capability)) != names.end()) return std::nullopt;
   return ClientFailure{ExitCode::state_refused,
-                       "This softgripd is older than this program: it cannot stop only the start of this "
-                       "program, so nothing was started. Restart the daemon (systemctl restart softgripd)"};
+                       "softgripd is older than this program and cannot stop only the start of this program, "
+                       "so nothing was started. Restart the daemon (systemctl restart softgripd)"};
 }
 
 Json stop_of(const std::string& start_id) {

@@ -203,8 +203,9 @@ tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, c
     options.valve = options.dead_zone = options.move;
   }
   if ((options.valve || options.dead_zone) && !options.move) {
-    return tl::unexpected(fail(
-        ExitCode::usage, "the calibration of valve and dead zone moves the finger: allow it with --move"));
+    return tl::unexpected(
+        fail(ExitCode::usage,
+             "the calibration of valve and dead zone moves the finger: allow the motion with --move"));
   }
   for (const auto* const answers : {&options.gauge_mm, &options.manometer_kpa}) {
     for (const std::string& answer : *answers) {

@@ -188,9 +188,9 @@ void add_doctor(CLI::App& program, ExitCode& outcome) {
       "doctor",
       "Check that the rig is ready: computer, board, sensors, disk. Each check is ok, warn or fail");
   command->add_option("--rig", options->rig, "Rig file [the rig file of the running daemon]");
-  command->add_flag(
-      "--move", options->move,
-      "Allow softgrip to move each finger a little, within its limits, to check that it follows");
+  command->add_flag("--move", options->move,
+                    "Allow softgrip to move each finger slightly, within its limits, to check that the "
+                    "finger follows the command");
   command->add_option("--socket", options->socket, "Socket of a running daemon [the socket in the rig file]");
   command->add_flag("--json", options->json, "Print the findings as JSON");
   command->footer(

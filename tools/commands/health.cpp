@@ -135,10 +135,9 @@ void add_health(CLI::App& program, ExitCode& outcome) {
       "health", "Report from the recordings of normal operation which fingers have changed, and since when");
   command->add_option("runs", options->runs, "Recordings, or folders of recordings")->required();
   command
-      ->add_option(
-          "--baseline", options->baseline,
-          "Folder that `softgrip baseline` wrote; if it contains one folder per finger, each finger is "
-          "compared with its own baseline")
+      ->add_option("--baseline", options->baseline,
+                   "Folder that `softgrip baseline` wrote; if this folder contains one folder for each "
+                   "finger, each finger is compared with its own baseline")
       ->required();
   command->add_option("--notes", options->notes, "Maintenance records [notes.yaml in the folder of --out]");
   command->add_option(

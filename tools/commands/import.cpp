@@ -55,7 +55,7 @@ void add_import(CLI::App& program, ExitCode& outcome) {
   command->add_option("--channel", options->channel, "Import only the rows or columns of this channel");
   command->add_option("--sheet", options->sheet,
                       "Sheet of a workbook, if more than one sheet contains numbers");
-  command->add_flag("--skip-bad-lines", options->skip_bad_lines, "Skip unreadable lines, and count them");
+  command->add_flag("--skip-bad-lines", options->skip_bad_lines, "Skip and count unreadable lines");
   command
       ->add_option("--from-s", options->from_s,
                    "Time of the first sample to use, relative to the first sample of the file [s]")

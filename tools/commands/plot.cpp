@@ -73,7 +73,8 @@ ExitCode run(const PlotOptions& options) {
   const auto format = is_stream(options.out) ? PictureFormat::svg : picture_format_of(options.out);
   if (!format)
     return fail(ExitCode::usage, "plot writes " + std::string(picture_formats()) +
-                                     ", selected by the extension: " + options.out + " has none of them");
+                                     ", selected by the extension: " + options.out +
+                                     " has a different extension");
   if (const auto code = refuse_overwriting({options.out}, options.recordings)) return *code;
   if (!(options.from_s < options.to_s)) return fail(ExitCode::usage, "--from must be below --to");
   std::vector<sysid::Recording> recordings;

@@ -299,7 +299,7 @@ void add_watch(CLI::App& program, ExitCode& outcome) {
   CLI::App* command = program.add_subcommand(
       "watch",
       "Show the live state of the daemon with trends, events, and keys that stop, vent, release, acknowledge "
-      "and start. Without a terminal, it prints one line per update");
+      "and start. Without a terminal, this command prints one line for each update");
   add_daemon_options(*command, options->daemon);
   command->add_option("--rate-hz", options->rate_hz, "Updates per second")
       ->capture_default_str()

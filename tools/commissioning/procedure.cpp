@@ -131,8 +131,8 @@ Visit visit_of(const Sample& first, const Sample& second, const drivers::TwoPoin
 std::optional<std::string> invalid(const Sample& sample) {
   if (sample.invalid == 0) return std::nullopt;
   return fmt::format(
-      "{} of {} readings are not valid ({}): the signal is outside its valid range, or the sensor "
-      "reports that it cannot measure",
+      "{} of {} readings are not valid ({}): the signal is outside its valid range, or the sensor reports "
+      "that no measurement is possible",
       sample.invalid, sample.invalid + sample.count, daemon::name_of(sample.why));
 }
 

@@ -87,7 +87,7 @@ void judge_displacement(const control::ChannelSettings& channel, const Sample& s
     findings.fail(name,
                   text + fmt::format("; the limits are {:g} to {:g} mm", channel.limits.displacement_min_mm,
                                      channel.limits.displacement_max_mm),
-                  "the finger or the sensor has moved: inspect it, then calibrate the sensor");
+                  "the finger or the sensor has moved: inspect both, then calibrate the sensor");
   } else if (sample.lowest == sample.highest) {
     findings.warn(name, text + "; no variation",
                   "very low noise, or a frozen sensor (hold mode, blocked beam): to distinguish them, run "

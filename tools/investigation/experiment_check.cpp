@@ -53,13 +53,13 @@ std::optional<std::string> broken_promise(const sysid::Waveform& waveform, const
   const Played asked = of_waveform(waveform), played = of_log(log);
   const auto differs = [](double a, double b, double share) { return std::abs(a - b) > share * b; };
   const auto sentence = [](const std::string& what, double got, double wanted, const char* unit) {
-    return "the rig did not play the requested experiment: " + what + " " + significant(got, 3) +
+    return "the rig did not run the requested experiment: " + what + " " + significant(got, 3) +
            " instead of " + significant(wanted, 3) + " " + unit;
   };
   if (played.length_s < shortest_share * asked.length_s)
     return sentence("it took", played.length_s, asked.length_s, "s");
   if (differs(played.largest_kpa, asked.largest_kpa, pressure_tolerance))
-    return sentence("its command went to", played.largest_kpa, asked.largest_kpa, "kPa");
+    return sentence("the command went to", played.largest_kpa, asked.largest_kpa, "kPa");
   if (differs(played.travel_kpa, asked.travel_kpa, travel_tolerance))
     return sentence("its command travelled", played.travel_kpa, asked.travel_kpa, "kPa up and down");
   return std::nullopt;

@@ -31,7 +31,7 @@ void add_log_options(CLI::App& command, LogInput& input) {
   command
       .add_option(
           "--begin", input.begin,
-          "Initial state of the logs: at rest, unknown (then it is estimated), or determined from each log")
+          "Initial state of the logs: at rest, unknown (the state is estimated), or determined from each log")
       ->check(CLI::IsMember({"auto", "rest", "unknown"}))
       ->capture_default_str();
   command.add_flag("--held", input.held, "Assume that the command is constant until the next sample");

@@ -226,7 +226,7 @@ tl::expected<sysid::Recording, std::string> part_of(const sysid::Recording& reco
     if (last - first < 2)
       return tl::unexpected(recording.name + " has no samples from " + significant(from_s) +
                             (std::isfinite(to_s) ? " to " + significant(to_s) + " s" : " s on") +
-                            ": it lasts from " + significant(log.time_s.front()) + " to " +
+                            ": the recording lasts from " + significant(log.time_s.front()) + " to " +
                             significant(log.time_s.back()) + " s");
     sysid::Log cut = sysid::slice(log, static_cast<std::size_t>(first - log.time_s.begin()),
                                   static_cast<std::size_t>(last - log.time_s.begin()));

@@ -115,7 +115,7 @@ class Verifier {
     result_.reported_by = text_in(json_, "software");
     const Json& call = member(json_, "call");
     for (const Json& word : call) {
-      if (!word.is_string()) return missing(path + ": the value of its key `call` is not a list of texts");
+      if (!word.is_string()) return missing(path + ": the value of the key `call` is not a list of texts");
       call_.push_back(word.get<std::string>());
     }
     if (call_.empty())
@@ -126,7 +126,7 @@ class Verifier {
       return word.starts_with("--out") || word.starts_with("--figures");
     });
     if (call_.front() != kind_->command || writes_elsewhere)
-      return missing(path + ": its key `call` does not contain a call of softgrip " + kind_->command);
+      return missing(path + ": the key `call` does not contain a call of softgrip " + kind_->command);
     return true;
   }
 

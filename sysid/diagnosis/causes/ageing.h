@@ -16,7 +16,7 @@ struct Ageing {
   static constexpr Appears appears = Appears::displaced;
   static constexpr WhenChanged when_changed{
       "the gain has changed",
-      {"Inspect the finger for cracks and bulges, and count the cycles since it was installed.",
+      {"Inspect the finger for cracks and bulges, and count the cycles since the installation of the finger.",
        "Install a new finger and record the same log. If the gain is normal again, the old finger has aged."},
       {{{HealthNumber::gain, Moves::either_way}}},
       {SizedBy::Of::span, "gain at full pressure, on average", "%", {}, 100}};

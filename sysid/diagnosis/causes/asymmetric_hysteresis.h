@@ -13,7 +13,7 @@ struct AsymmetricHysteresis {
   static constexpr std::string_view title = "Asymmetric hysteresis";
   static constexpr WhenChanged when_changed{
       "loading and unloading curves have moved apart",
-      {"Check whether the finger or its guide rubs on something in one direction.",
+      {"Check if the finger or its guide rubs in one direction.",
        "Remove the load, then run the pressure up and down slowly three times."},
       {{{HealthNumber::loop_width, Moves::either_way}}}};
 

@@ -10,7 +10,7 @@ struct Backlash : FormOf<model::Backlash> {
   static constexpr bool makes_distinguishable = true;
   static constexpr WhenChanged when_changed{
       "there is play between finger and sensor",
-      {"Move the target of the sensor by hand and check it for play.",
+      {"Move the target of the sensor by hand and check if the target has play.",
        "Tighten the clamp of the sensor's target, then record the same log again."},
       {{{HealthNumber::loop_width, Moves::up}}},
       {SizedBy::Of::number, "play", "mm", "gap_mm"}};

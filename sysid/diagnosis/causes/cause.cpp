@@ -175,14 +175,14 @@ constexpr const Cause* find(std::string_view id) {
 }
 
 static_assert(std::all_of(table.begin(), table.end(), [](const Cause& c) { return find(c.id) == &c; }),
-              "two causes have one id");
+              "two causes have the same id");
 static_assert(std::all_of(table.begin(), table.end(),
                           [](const Cause& c) {
                             return c.indistinguishable.empty() ||
                                    (find(c.indistinguishable) != nullptr &&
                                     find(c.indistinguishable)->indistinguishable == c.id);
                           }),
-              "causes are indistinguishable from each other in both directions");
+              "if one cause is indistinguishable from another, the other cause must also list the first one");
 static_assert(std::all_of(table.begin(), table.end(),
                           [](const Cause& c) {
                             const auto known = [](std::string_view id) { return find(id) != nullptr; };

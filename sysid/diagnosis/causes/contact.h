@@ -11,7 +11,7 @@ struct Contact : FormOf<model::Contact> {
   static constexpr std::array<std::string_view, 2> counterparts{"sensor_saturation", "sensor_nonlinearity"};
   static constexpr bool is_stop = true;
   static constexpr WhenChanged when_changed{
-      "something blocks the finger beyond a position",
+      "an object or a stop blocks the finger beyond a position",
       {"Move the finger by hand through its range and check which objects it touches.",
        "Remove the object or the stop, then record the same log again."},
       {{{HealthNumber::contact, Moves::either_way}}}};

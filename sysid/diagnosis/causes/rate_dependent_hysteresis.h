@@ -14,7 +14,7 @@ struct RateDependentHysteresis {
   static constexpr std::string_view title = "Rate-dependent hysteresis";
   static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{
-      "fast motions need more pressure than slow ones",
+      "fast motions require more pressure than slow motions",
       {"Run one stroke at three speeds and compare the hysteresis loops.",
        "Check the finger for rubbing, dried lubricant or a swollen seal, then record again."},
       {{{HealthNumber::loop_width, Moves::up}, {HealthNumber::lag, Moves::up}}}};

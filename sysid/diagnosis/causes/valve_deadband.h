@@ -15,7 +15,7 @@ struct ValveDeadband {
   static constexpr WhenChanged when_changed{
       "the valve ignores small changes",
       {"Command steps of 1 kPa up and down and note which steps the pressure follows.",
-       "Cycle the valve 50 times over its range, or clean it, and record the same log again."},
+       "Clean the valve or cycle it 50 times over its range, and record the same log again."},
       {},
       {SizedBy::Of::number, "dead band of the valve", "kPa", "band_kpa"}};
 

@@ -22,11 +22,11 @@ constexpr const char* vary_temperature =
 std::string instead_of_waveform(const Cause& one, const Cause& other, const std::string& names,
                                 bool gauge_made) {
   if (has(one, Advice::change_load) && has(other, Advice::change_load)) {
-    return std::string(gauge_made ? "the gauge check was not conclusive: repeat it with more positions over "
-                                    "a wider range, or change the load or move the object"
+    return std::string(gauge_made ? "the gauge check was not conclusive: repeat the check with more "
+                                    "positions over a wider range, or change the load or move the object"
                                   : "change the load or move the object") +
-           ": if the nonlinearity stays at the same reading, the sensor causes it; if the nonlinearity moves "
-           "with the load, the sensor does not cause it";
+           ": a nonlinearity that stays at the same reading is caused by the sensor; a nonlinearity that "
+           "moves with the load is not caused by the sensor";
   }
   if (has(one, Advice::leave_vented) && has(other, Advice::leave_vented)) {
     return "leave the finger vented for an hour and record the zero of the sensor, because no waveform of "

@@ -314,7 +314,7 @@ class Weighing {
       evidence_.sentence =
           "The gauge check is not conclusive: its readings cover only " +
           significant(100 * check.covered_share, 2) +
-          " % of the range of the readings in these logs. Check that the sensor follows its target.";
+          " % of the range of the readings in these logs. Check that the sensor follows the target.";
       warnings_.push_back(evidence_.sentence);
       return;
     }

@@ -62,7 +62,7 @@ void add_next(Page& page, const DiagnosisReport& report) {
   const ProposedExperiment& next = *report.next_experiment;
   page.paragraph(
       "Next experiment: " + (next.waveform.empty() ? "" : next.waveform + ". ") + "It separates " +
-      with_commas(next.separates) + ": their responses differ by " +
+      with_commas(next.separates) + ": the responses of these explanations differ by " +
       significant(next.predicted_separation_sigma, 3) +
       " standard deviations of the noise, after each explanation is refitted to the response of the other. " +
       significant(next.rig_minutes, 2) + " minutes of motion on the rig; sequence file: " + next.file + ".");

@@ -414,7 +414,7 @@ Figure spectrum_figure(const Diagnosis& d) {
                     significant(s.peak_hz, 4) + " Hz, amplitude " + significant(s.peak_amplitude_mm, 2) +
                     " " + std::string(model::name_of(d.extended_model.output_unit)) + " (p " +
                     significant(s.p_value, 2) + ")."
-              : "Spectrum of the error. It has no significant line that is not in the command.",
+              : "Spectrum of the error. All significant lines of this spectrum are also in the command.",
           {{chart}}};
 }
 

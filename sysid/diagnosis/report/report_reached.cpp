@@ -32,7 +32,7 @@ std::string alternatives_text(const NamedCause& named, const model::Model& exten
   std::string text;
   if (!alike.empty())
     text = "These logs cannot separate this cause from " + alike +
-           ": each of them explains the error equally well within one standard error. ";
+           ": each of these causes explains the error equally well within one standard error. ";
   if (!indistinguishable.empty())
     text += "No command can separate this cause from " + indistinguishable +
             ": each of these causes makes the readings nonlinear in the displacement. A better fit of one of "

@@ -115,7 +115,8 @@ class CandidateFitter {
     if (is_hopeless()) {
       for (Candidate& candidate : candidates_) {
         if (candidate.why_not.empty())
-          candidate.why_not = "its error is much larger than that of another explanation";
+          candidate.why_not =
+              "the error of this explanation is much larger than the error of another explanation";
       }
       return std::move(candidates_);
     }

@@ -98,8 +98,8 @@ std::string sentence_of_valve(const Diagnosis& d) {
     for (const CauseParameter& p : named.parameters)
       numbers += (numbers.empty() ? "" : ", ") + p.name + " " + significant(p.value, 3);
   }
-  return " Between the command and the measured pressure it lacks " + listed(d.in_valve->named) + " (" +
-         numbers + ").";
+  return " Between the command and the measured pressure, the model lacks " + listed(d.in_valve->named) +
+         " (" + numbers + ").";
 }
 
 std::string sentence_of_logs(const Diagnosis& d) {

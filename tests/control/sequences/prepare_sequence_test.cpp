@@ -226,7 +226,8 @@ TEST(Prepare, AFingerWithNothingToFollowADisplacementIsNotSentToOne) {
   settings.channels[0].pid.kp_kpa_per_mm = settings.channels[0].pid.ki_kpa_per_mm_s = 0;
   document::Problems problems;
   EXPECT_FALSE(prepared(move, settings, problems));
-  EXPECT_NE(problems.format().find("needs feedforward or PID gains"), std::string::npos) << problems.format();
+  EXPECT_NE(problems.format().find("has no feedforward and no PID gains"), std::string::npos)
+      << problems.format();
   settings.channels[0].pid.ki_kpa_per_mm_s = 1;
   document::Problems none;
   EXPECT_TRUE(prepared(move, settings, none)) << none.format();

@@ -151,7 +151,8 @@ TEST(McapTable, ReadsTheCompleteMessagesOfAFileThatIsCutOff) {
 }
 
 TEST(McapTable, RefusesWhatItCannotRead) {
-  EXPECT_TRUE(says(refusal(whole(chunk(two_fingers(), "zstd"))), "its chunks are compressed with zstd"));
+  EXPECT_TRUE(
+      says(refusal(whole(chunk(two_fingers(), "zstd"))), "the chunks of the file are compressed with zstd"));
   EXPECT_TRUE(says(refusal(whole(chunk(two_fingers(), "", 1))), "a chunk does not match its checksum"));
   EXPECT_TRUE(says(refusal(whole(message(1, 0, "{}"))), "a message refers to an unknown channel"));
   EXPECT_TRUE(

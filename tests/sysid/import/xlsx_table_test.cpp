@@ -170,7 +170,8 @@ TEST(XlsxTable, AsksWhichOfSeveralSheetsAndNamesTheOthers) {
   EXPECT_TRUE(has(refusal(parts, options), "no sheet 'Sunday'"));
   const ForeignTable only =
       table_of(book({{"Monday", cells(three_rows)}, {"Notes", cells({{"mass", "2"}})}}));
-  EXPECT_TRUE(has(joined(only.notes), "sheet 'Notes' is skipped: it does not have two rows of numbers"));
+  EXPECT_TRUE(has(joined(only.notes),
+                  "sheet 'Notes' is skipped, because this sheet does not have two rows of numbers"));
 }
 
 TEST(XlsxTable, NamesWhatIsMissing) {

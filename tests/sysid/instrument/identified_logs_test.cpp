@@ -57,7 +57,7 @@ TEST(IdentifiedLogs, WithoutAStartTheStructureIsTheBase) {
   asked.options.starts = 2;
   const auto all = identify_logs(std::move(asked));
   ASSERT_TRUE(all) << all.error();
-  EXPECT_EQ(all->start.name, "base structure, from the data's scale");
+  EXPECT_EQ(all->start.name, "base structure, with start values from the scale of the data");
   EXPECT_EQ(all->report({}).validation_logs, nullptr);
 }
 

@@ -41,7 +41,7 @@ Role Gate::role_of(const Credentials& credentials, Nanoseconds now) {
 tl::expected<std::string, Refusal> Gate::open(std::string_view token, Nanoseconds now) {
   const Grant grant = tokens_.grant_of(token);
   if (grant.role == Role::none)
-    return tl::unexpected{Refusal{401, "unknown token: the token file does not list it"}};
+    return tl::unexpected{Refusal{401, "unknown token: the token file does not contain this token"}};
   return sessions_.open(grant, now);
 }
 

@@ -84,7 +84,7 @@ void tell_loop(const Json& loop, MetricText& metrics) {
                  member(loop, "wake_up"));
   tell_durations(metrics, "softgrip_loop_compute_seconds", "Duration of a tick.", member(loop, "compute"));
   tell_durations(metrics, "softgrip_loop_reading_age_seconds",
-                 "Age of the oldest reading at the tick that uses it.", member(loop, "reading_age"));
+                 "Age of the oldest reading when the tick uses this reading.", member(loop, "reading_age"));
 }
 
 void tell_bus(const Json& bus, MetricText& metrics) {
