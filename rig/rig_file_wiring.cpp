@@ -108,7 +108,7 @@ std::size_t read_terminal(Context& context, MapReader& reader, std::string_view 
   const std::size_t count = key == "output" ? there.outputs.size() : there.inputs.size();
   const std::string who = context.modules.size() > 1 ? "the module `" + there.name + "`" : "the board";
   reader.report(key, who + " has no " + std::string(key) + " " + std::to_string(terminal),
-                count == 0 ? "no such terminal exists there"
+                count == 0 ? "this module or board has no terminals of this kind"
                            : "these terminals have the numbers 0 to " + std::to_string(count - 1));
   return terminal;
 }

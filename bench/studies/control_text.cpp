@@ -44,7 +44,7 @@ std::string control_text(const ControlStudy& study) {
       "Twin, " + significant(study.options.mean_mm) + " ± " + significant(study.options.amplitude_mm) +
       " mm, " + significant(study.options.rate_hz) + " Hz, noise " + significant(study.options.noise_mm) +
       " mm, " + std::to_string(study.options.draws) +
-      " fingers; RMSE: median [5 %, 95 %]; gains: same tuner, Ms <= " +
+      " fingers; RMSE: median [5 %, 95 %]; gains of all schemes from one tuner, sensitivity peak Ms <= " +
       significant(study.options.most_sensitivity) + "\nIdentified: published structure RMSE " +
       fixed(study.identified_rmse_mm, 3) + " mm, beta/(alpha+1/k0) " +
       significant(wrong_way_ratio(study.identified), 3) + "; extended RMSE " +

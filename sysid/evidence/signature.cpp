@@ -77,7 +77,7 @@ std::string_view recording_for(Appears appears) {
     case Appears::at_rest:
       return "record a rest without pressure at the beginning and at the end";
     case Appears::displaced:
-      return "record a run that goes to the highest pressure";
+      return "record a run up to the highest pressure";
     case Appears::held:
       return "record a run that holds a pressure for some seconds";
     case Appears::moving:
@@ -85,7 +85,7 @@ std::string_view recording_for(Appears appears) {
     case Appears::anywhere:
       break;
   }
-  return "record the same run again";
+  return "repeat the recording of the same run";
 }
 
 }  // namespace softgrip::sysid

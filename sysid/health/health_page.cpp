@@ -119,7 +119,7 @@ std::optional<sysid::Chart> chart_of(const FingerHealth& health, std::size_t num
 std::optional<sysid::Chart> chart_beside(const FingerHealth& health, std::size_t number) {
   const sysid::HealthNumberInfo& info = sysid::health_number_infos[number];
   sysid::Series series;
-  series.label = "deviation from the reference difference";
+  series.label = "deviation of the difference from its reference value";
   series.style = sysid::Series::Style::points;
   series.width = 2;
   for (std::size_t p = 0; p < health.points.size(); ++p) {

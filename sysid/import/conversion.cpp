@@ -80,7 +80,7 @@ class Converter {
       std::string names;
       for (const std::string& name : table_.channels) names += (names.empty() ? "'" : ", '") + name + "'";
       refuse("the file has " + std::to_string(table_.channels.size()) + " channels: " + names,
-             "select one with --channel");
+             "select one finger with --channel");
     } else if (!mapping_.channel.empty() && table_.rows() == 0) {
       refuse("no row belongs to channel '" + document::shown(mapping_.channel) + "'");
     }

@@ -210,9 +210,10 @@ FingerChoice choose_finger(const ForeignTable& table, const Mapping& given, Prop
     if (said.size() == 1) choice.meant = said.front();
     if (said.empty() && read.size() == 1) choice.meant = read.front();
     if (choice.meant.empty() && !given.complete())
-      proposal.questions.push_back({"the columns belong to " + std::to_string(choice.fingers.size()) +
-                                        " fingers: " + quoted(choice.fingers),
-                                    "select one with --channel, or give --command and --displacement"});
+      proposal.questions.push_back(
+          {"the columns belong to " + std::to_string(choice.fingers.size()) +
+               " fingers: " + quoted(choice.fingers),
+           "select one finger with --channel, or give --command and --displacement"});
   }
   return choice;
 }

@@ -147,7 +147,7 @@ void check_channel(const RowReader& rows, const LogHeader& header, const LogOpti
   if (options.channel.empty() && channels.size() > 1) {
     report.add("channel", at, header_line,
                "the log has " + std::to_string(channels.size()) + " channels: " + listed(channels),
-               "select one with --channel");
+               "select one channel with --channel");
   } else if (!options.channel.empty() &&
              std::find(channels.begin(), channels.end(), options.channel) == channels.end()) {
     report.add("channel", at, header_line,

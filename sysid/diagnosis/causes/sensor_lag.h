@@ -11,7 +11,7 @@ struct SensorLag : FormOf<model::SensorLag> {
   static constexpr bool makes_distinguishable = true;
   static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{
-      "the reading responds more slowly",
+      "the reading responds more slowly than before",
       {"Check the filter setting of the sensor or its amplifier.",
        "Move the target quickly by hand and compare the reading with that of a second sensor."},
       {{{HealthNumber::lag, Moves::up}}},

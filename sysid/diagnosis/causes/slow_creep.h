@@ -12,7 +12,7 @@ namespace softgrip::sysid::causes {
 struct SlowCreep : FormOf<model::SlowCreep> {
   static constexpr std::array advice{Advice::leave_vented};
   static constexpr WhenChanged when_changed{
-      "the finger creeps more within minutes",
+      "within minutes, the finger creeps more than before",
       {"Hold full pressure for ten minutes and watch the reading.",
        "Check for a loose mounting or a detached layer. Repair the defect and record again."},
       {{{HealthNumber::creep, Moves::up}}}};

@@ -13,7 +13,7 @@ struct TransportDelay : FormOf<model::TransportDelay> {
   static constexpr bool is_ideal = true;
   static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{
-      "the pressure responds later",
+      "the pressure responds later than before",
       {"Check whether the tube, a filter or the exchange rate of the board was changed.",
        "Close the tube of the finger at the valve, step the command and measure the delay of the pressure "
        "there."},

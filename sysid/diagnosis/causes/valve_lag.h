@@ -10,7 +10,7 @@ struct ValveLag : FormOf<model::ValveLag> {
   static constexpr std::array<std::string_view, 1> confounded_with{"transport_delay"};
   static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{
-      "the pressure responds more slowly",
+      "the pressure responds more slowly than before",
       {"Check for a kinked tube and a clogged filter or silencer, and check the supply pressure during "
        "motion.",
        "Close the tube of the finger at the valve and step the command. If the pressure there is slow, the "

@@ -69,7 +69,8 @@ TEST(ValveInverse, BringsThePressureWhereItIsWanted) {
     model::Model valve;
   };
   for (const Case& test :
-       {Case{"a lag", valve_with({lag})}, Case{"a lag by direction", valve_with({two_way_lag})},
+       {Case{"a lag", valve_with({lag})},
+        Case{"a lag with a separate time constant for each direction", valve_with({two_way_lag})},
         Case{"a dead band before a lag", valve_with({band, lag})},
         Case{"a regulator", valve_with({regulator})},
         Case{"a dead band before a regulator", valve_with({band, regulator})}}) {

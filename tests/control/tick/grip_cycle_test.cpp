@@ -207,7 +207,8 @@ steps:
   EXPECT_EQ(rig.output().channels[0].evidence, GripEvidence::pressure);
   ASSERT_TRUE(rig.run_until(State::idle, 20));
   EXPECT_EQ(rig.result(0), GripResult::released);
-  EXPECT_EQ(rig.output().channels[0].evidence, GripEvidence::none) << "no valid reading showed the part";
+  EXPECT_EQ(rig.output().channels[0].evidence, GripEvidence::none)
+      << "no valid reading indicated that a part is held";
 }
 
 TEST_F(GripCycle, APartThatLeavesItsPositionWindowIsLost) {

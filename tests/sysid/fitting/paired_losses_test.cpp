@@ -73,8 +73,7 @@ TEST(IsClearlyLess, InTheMeanOrInMostBlocks) {
   EXPECT_TRUE(is_clearly_less({1, 1, 1, 1}, {2, 2, 4, 4}));
   EXPECT_TRUE(is_clearly_less({1, 1, 1, 30}, {2, 2, 2, 90})) << "one block has a large loss with both models";
   EXPECT_FALSE(is_clearly_less({1, 2, 3, 4}, {1, 2, 3, 4}));
-  EXPECT_FALSE(is_clearly_less({1, 1, 1, 90}, {2, 2, 2, 30}))
-      << "the mean loss of the second model is larger";
+  EXPECT_FALSE(is_clearly_less({1, 1, 1, 90}, {2, 2, 2, 30})) << "the mean loss of the first model is larger";
   EXPECT_FALSE(is_clearly_less({1, 3, 1, 3}, {3, 1, 3, 1.5}));
 }
 

@@ -29,7 +29,7 @@ constexpr double noise_mm = 0.05, rate_hz = 50;
 model::Model play_finger() {
   model::Model m;
   m.name = "play_finger";
-  m.source = "made for this test";
+  m.source = "model made for this test";
   m = model::with_block(std::move(m), {model::block_type<model::TransportDelay>(), {0.06}});
   m = model::with_block(std::move(m), {model::block_type<model::PrandtlIshlinskii>(),
                                        {0, 0, 0, 0, 0, 0.2, 1.3, 0.06, 4.1, 0.05, 9.7, 0.04, 17, 0.03}});
@@ -128,7 +128,7 @@ TEST(EstimatedStart, OfARunFromRestIsRest) {
 TEST(EstimatedStart, AnActuatorInItsCycleIsPredictedInItsCycle) {
   model::Model finger;
   finger.name = "slow_to_cycle";
-  finger.source = "made for this test";
+  finger.source = "model made for this test";
   finger = model::with_block(std::move(finger),
                              {model::block_type<model::BoucWen>(), {5.57, 7.83, 0.0135, 0.00195, 1}});
   Log log;

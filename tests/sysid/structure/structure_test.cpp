@@ -39,7 +39,7 @@ using model::SignalName;
 model::Model play_finger() {
   model::Model m;
   m.name = "play_finger";
-  m.source = "made for this test";
+  m.source = "model made for this test";
   m = model::with_block(std::move(m), {model::block_type<model::TransportDelay>(), {0.06}});
   m = model::with_block(std::move(m), {*model::find_block("asymmetric_valve_lag"), {0.08, 0.2}});
   m = model::with_block(std::move(m), {model::block_type<model::PrandtlIshlinskii>(),

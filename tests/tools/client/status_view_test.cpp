@@ -150,14 +150,14 @@ TEST(StatusView, AFaultNamesItsFingerAndSaysWhatClearsIt) {
   faulted["state"] = "faulted";
   faulted["fault"] = {{"code", "F202"},
                       {"name", "reading_out_of_range"},
-                      {"meaning", "The signal was outside."},
+                      {"meaning", "The signal was outside its range."},
                       {"cause", "A wire."},
                       {"remedy", "Look."},
                       {"channel", "left"},
                       {"present", nullptr},
                       {"next", "The cause is gone: `softgrip acknowledge` clears the fault."}};
   const std::string text = joined(view_of(faulted, {100, false, false}));
-  EXPECT_NE(text.find("fault F202 of left  reading_out_of_range: The signal was outside.\n"),
+  EXPECT_NE(text.find("fault F202 of left  reading_out_of_range: The signal was outside its range.\n"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find("  The cause is gone: `softgrip acknowledge` clears the fault.\n"), std::string::npos)
