@@ -319,7 +319,8 @@ void Monitor::left(Nanoseconds now, std::span<const double> outputs_kpa) {
     const double allowed_kpa = control::no_further(rest_of(rig_, i), outputs_kpa[i], safe_kpa_[i]);
     if (!foreign_ && std::abs(outputs_kpa[i] - allowed_kpa) > equal_kpa)
       violate(now, "the last outputs are the safe ones",
-              fmt::format("channel {}: {} kPa, safe were {}", i, outputs_kpa[i], safe_kpa_[i]));
+              fmt::format("channel {}: the last output is {} kPa, but the safe output is {}", i,
+                          outputs_kpa[i], safe_kpa_[i]));
   }
 }
 

@@ -183,10 +183,11 @@ class MotionWorld {
   void judge(bool result) {
     result_.met.results += result ? 1U : 0U;
     if (result && vented_ && spoke_since_trip_)
-      around_.monitor.told_nobody(around_.scheduler.now(), "the command ended with a result");
+      around_.monitor.told_nobody(around_.scheduler.now(),
+                                  "the command reported a result in spite of this event");
     if (result && overwritten_ > most_overwritten)
       around_.monitor.command_breaks(around_.scheduler.now(), "another master is noticed",
-                                     "the command ended with a result");
+                                     "the command reported a result in spite of this event");
   }
 
   /// Called when the command has reported that the board confirmed the rest pressures.

@@ -108,7 +108,8 @@ TEST_F(Command, ValidateFailsPerLogOnScreenInJsonAndByItsCode) {
   EXPECT_NE(read("out.txt").find("1 of them above the permitted"), std::string::npos) << read("out.txt");
   EXPECT_NE(read("out.txt").find("FAILED: above"), std::string::npos) << read("out.txt");
   for (const char* text : {"out.txt", "out/validate.json", "out/report.html"})
-    EXPECT_EQ(read(text).find("nan"), std::string::npos) << text << ": a hold has no cycles to settle over";
+    EXPECT_EQ(read(text).find("nan"), std::string::npos)
+        << text << ": a log that only holds a pressure has no cycles for the settling time";
 }
 
 TEST_F(Command, WhatALogProbablyDoesNotMeanIsWarnedOf) {

@@ -29,8 +29,7 @@ LiveState state() {
   LiveState state;
   for (int second = 0; second <= 30; ++second) take_status(state, status_at(second));
   take_event(state, event(1, "information", "The state is now idle."));
-  take_event(state,
-             event(2, "error", "left: Fault F202 reading_out_of_range: The signal was outside its range."));
+  take_event(state, event(2, "error", "left: Fault F202 reading_out_of_range: The signal was outside."));
   return state;
 }
 
@@ -40,7 +39,7 @@ TEST(LiveView, ShowsTrendsEventsAndKeysAtTheBottom) {
   EXPECT_EQ(lines[0], "softgrip bench  idle  30.0 s");
   EXPECT_EQ(lines[3], "  pressure      30.00 kPa, command 0.00                 ___...,,,---~~~===***###");
   EXPECT_EQ(lines[10], "1.5 s    The state is now idle.");
-  EXPECT_EQ(lines[11], "1.5 s !! left: Fault F202 reading_out_of_range: The signal was outside its range.");
+  EXPECT_EQ(lines[11], "1.5 s !! left: Fault F202 reading_out_of_range: The signal was outside.");
   EXPECT_EQ(lines[23], std::string(KeyDialogue::help()) + "  trends: 1 column 1 s");
 }
 

@@ -195,7 +195,8 @@ TEST_F(SiteTest, AStreamBeginsWithAllThatThereIs) {
 }
 
 TEST_F(SiteTest, SessionsAreOpenedByTokensAndClosed) {
-  EXPECT_EQ(ask("POST", "/api/session", {}, R"({"token":"x"})").status, 403) << "the request has no origin";
+  EXPECT_EQ(ask("POST", "/api/session", {}, R"({"token":"x"})").status, 403)
+      << "the request has no Origin header";
   const auto post = [&](const std::string& body) {
     return site_.serve(
         "POST /api/session HTTP/1.1\r\nHost: localhost:1\r\nOrigin: http://localhost:1\r\n"
