@@ -125,7 +125,7 @@ sysid::Page control_page(const ControlStudy& study) {
            gains_in_words(study, "pid_on_published", "planned_on_published", mismatch) + ".",
        "Plan with the published structure, identified on the simulated rig, compared with PID alone: " +
            gains_in_words(study, "pid", "planned_identified", mismatch) + "."});
-  page.section("Models of the controllers");
+  page.section("Models that the controllers use");
   page.paragraph(
       "Both structures were identified from the responses of the simulated rig to tp1 and sp1 with 0.05 mm "
       "of noise. "

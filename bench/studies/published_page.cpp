@@ -150,7 +150,7 @@ void inverse_section(sysid::Page& page, const PublishedStudy& study) {
       "h(k-1))/alpha is a fixed-point iteration whose loop gain is beta/alpha.");
   sysid::Table table;
   table.header = {"beta/alpha",
-                  "explicit: growth per sample",
+                  "explicit form: error growth per sample",
                   "explicit: error [kPa]",
                   "implicit: error [kPa]",
                   "implicit: jump [kPa]",

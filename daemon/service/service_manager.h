@@ -17,8 +17,8 @@ class ServiceManager {
   void stopping();
 
   /// Feeds the unit's watchdog (WatchdogSec=) four times per period while all threads run (`alive`, see
-  /// Heartbeat). If a thread has stopped, it does not reset the watchdog, and the service manager restarts
-  /// the daemon.
+  /// Heartbeat). If a thread has stopped, it does not feed the watchdog, and the service manager restarts the
+  /// daemon.
   void feed(Nanoseconds now, bool alive);
 
  private:

@@ -49,8 +49,10 @@ void read_access(const document::Document& document, const Node& node, document:
                   "without_token: none");
   }
   if (settings.tokens.empty())
-    reader.report("tokens", "other machines can reach this address, so there must be tokens",
-                  "tokens: /etc/softgrip/web.tokens");
+    reader.report(
+        "tokens",
+        "other machines can reach this address, so `tokens` must name a file with the tokens of the clients",
+        "tokens: /etc/softgrip/web.tokens");
 }
 
 }  // namespace

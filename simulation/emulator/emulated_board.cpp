@@ -240,7 +240,7 @@ void EmulatedBoard::put_raw(const RegisterBlock& block, std::size_t index, doubl
 }
 
 /// Returns true if the request is a heartbeat that feeds the watchdog. If the heartbeat has two alternating
-/// values, a repeated value does not reset the watchdog, because it may come from a program that hangs.
+/// values, a repeated value does not feed the watchdog, because it may come from a program that hangs.
 bool EmulatedBoard::is_heartbeat(std::span<const std::uint8_t> pdu) {
   drivers::FixedWrite write = *map_.watchdog.feed_write;
   if (!write.alternate) return is_write(pdu, write);

@@ -47,7 +47,7 @@ class Caller : public Guest {
   [[nodiscard]] bool busy() const override { return calls_; }
 
  protected:
-  /// Runs the command once. Returns true if the command reported a result in spite of this event.
+  /// Runs the command once. Returns true if the command ended with a result.
   virtual bool call() = 0;
   [[nodiscard]] bool ending() const noexcept { return ending_; }
 

@@ -100,7 +100,7 @@ class World final : public Host {
     if (guest_) result_.met = guest_->met();
     guest_.reset();
     if (open_descriptors() != descriptors)
-      monitor_.leaks(fmt::format("{} descriptors more than at first",
+      monitor_.leaks(fmt::format("the process has {} more open descriptors than at the start of the world",
                                  static_cast<long>(open_descriptors()) - static_cast<long>(descriptors)));
     result_.violation = monitor_.violation();
     result_.trace = std::move(around_.traced);
@@ -246,7 +246,8 @@ class World final : public Host {
     const std::size_t growth = bytes > settled_bytes_ ? bytes - settled_bytes_ : 0;
     result_.growth_bytes = std::max<std::uint64_t>(result_.growth_bytes, growth);
     if (growth > allowed_growth_bytes)
-      monitor_.leaks(fmt::format("{} KiB more than {} s after its start", growth >> 10, settling / ns_per_s));
+      monitor_.leaks(fmt::format("the heap has grown by {} KiB since {} s after its start", growth >> 10,
+                                 settling / ns_per_s));
     const std::size_t opened = open_descriptors() - descriptors_;
     result_.descriptors = std::max<std::uint64_t>(result_.descriptors, opened);
     if (opened > allowed_descriptors) monitor_.leaks(fmt::format("{} descriptors", opened));

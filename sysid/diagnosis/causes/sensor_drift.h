@@ -33,7 +33,7 @@ struct SensorDrift {
     }
   };
 
-  /// The zero of the sensor drifts while the sensor warms up.
+  /// The zero drifts while the sensor warms up.
   struct WarmUp : FormOf<model::SensorWarmUp> {
     static Starts starts(const Scales& s) {
       return every(

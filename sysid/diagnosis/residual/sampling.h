@@ -10,7 +10,7 @@
 namespace softgrip::sysid {
 
 struct SamplingEvidence {
-  double interval_s = 0;  ///< median time between two updates of the reading; 0: each sample is a new reading
+  double interval_s = 0;  ///< median time between new readings; 0: each sample is a new reading
   double frozen_s = 0;    ///< total time in which the reading is frozen while the drive moves
   /// Root mean square, over all readings, of the distance between repeated readings and a line through the
   /// new readings.

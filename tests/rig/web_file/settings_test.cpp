@@ -36,7 +36,7 @@ TEST(WebSettings, TheShippedFileIsReadAndLetsNobodyOperate) {
 TEST(WebSettings, BeyondThisMachineThereAreTokensAndNothingWithoutThem) {
   const std::string said = said_of("address: 127.0.0.1", "address: 0.0.0.0");
   EXPECT_NE(said.find("each client needs a token"), std::string::npos) << said;
-  EXPECT_NE(said.find("there must be tokens"), std::string::npos) << said;
+  EXPECT_NE(said.find("`tokens` must name a file"), std::string::npos) << said;
   EXPECT_EQ(said_of("address: 127.0.0.1", "address: \"::1\""), "");
 }
 

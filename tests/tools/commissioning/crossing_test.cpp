@@ -64,7 +64,7 @@ TEST_F(CrossingTest, NothingIsCrossedOnAHealthyRigOrWhereSomethingIsDead) {
   EXPECT_TRUE(find({{0, 1}, {0, 1}}).empty());
   EXPECT_TRUE(find({{0, -1}, {0, 1}}).empty()) << "one of the sensors is stuck";
   EXPECT_TRUE(find({{1, 1}, {0, 1}}).empty()) << "one sensor follows both fingers, so there is no swap";
-  EXPECT_TRUE(find({{1, -1}, {0, 1}}).empty()) << "the mapping is not a swap";
+  EXPECT_TRUE(find({{1, -1}, {0, 1}}).empty()) << "the responses do not form a swap of channels";
 }
 
 TEST_F(CrossingTest, TwoSensorsAreNamedByTheirInputs) {
