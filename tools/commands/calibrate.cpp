@@ -305,7 +305,7 @@ void add_calibrate(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<CalibrateOptions>();
   CLI::App* command =
       program.add_subcommand("calibrate", "Calibrate sensor and valve against a gauge and a manometer");
-  command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed one]");
+  command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed rig file]");
   command->add_option("--channel", options->channel,
                       "Channel to calibrate; required if the rig has more than one channel");
   command->add_flag("--sensor", options->sensor, "Calibrate the displacement sensor against a gauge");

@@ -120,7 +120,7 @@ void add_run(CLI::App& program, ExitCode& outcome) {
       program.add_subcommand("run", "Run one sequence on a rig in the foreground, without a daemon");
   command->add_option("SEQUENCE", options->sequence, "Sequence file")->required();
   add_set_option(*command, options->settings);
-  command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed one]");
+  command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed rig file]");
   command->add_option("--record", options->record, "Record into this folder; overrides the rig file");
   command->add_flag(
       "--virtual-time", options->virtual_time,

@@ -189,9 +189,9 @@ std::string take_fingers(const std::string& text, RigDraft& draft) {
   if (names.empty()) return "a rig has at least one finger";
   for (const std::string& name : names) {
     if (name.size() > 32 || !std::all_of(name.begin(), name.end(), good)) {
-      return document::in_backticks(name) + ": a name is at most 32 letters, digits, `-` or `_`";
+      return document::in_backticks(name) + ": a name must consist of at most 32 letters, digits, `-` or `_`";
     }
-    if (std::count(names.begin(), names.end(), name) > 1) return "two fingers are called `" + name + "`";
+    if (std::count(names.begin(), names.end(), name) > 1) return "two fingers have the name `" + name + "`";
   }
   if (names.size() > most_fingers(draft, false)) {
     return fmt::format("the board has terminals for {} fingers", most_fingers(draft, false));
@@ -219,15 +219,15 @@ std::string take_model(const std::string& text, RigDraft& draft) {
 std::optional<Question> ask_valve(const RigDraft& draft) {
   const ElectricalRange range = output_range(draft);
   const bool told_kpa = output_unit(draft) == drivers::ElectricalUnit::kilopascal;
-  return Question{fmt::format("the valve's pressures at {} and at {} {}, kPa", range.lowest, range.highest,
-                              unit_name(output_unit(draft))),
+  return Question{fmt::format("pressures of the valve at the signals {} and {} {}, kPa", range.lowest,
+                              range.highest, unit_name(output_unit(draft))),
                   told_kpa ? fmt::format("{} {}", range.lowest, range.highest) : "0 100"};
 }
 
 std::string take_valve(const std::string& text, RigDraft& draft) {
   const auto numbers = two_numbers(text);
-  if (!numbers) return document::in_backticks(text) + ": two pressures that differ, like 0 100";
-  if (std::max(numbers->first, numbers->second) <= 0) return "a pressure above 0 is needed";
+  if (!numbers) return document::in_backticks(text) + ": enter two different pressures, for example 0 100";
+  if (std::max(numbers->first, numbers->second) <= 0) return "at least one of the pressures must be above 0";
   const ElectricalRange range = output_range(draft);
   draft.valve = {range.lowest, numbers->first, range.highest, numbers->second};
   return "";
@@ -252,14 +252,15 @@ std::string take_pressure_max(const std::string& text, RigDraft& draft) {
 
 std::optional<Question> ask_sensor(const RigDraft& draft) {
   const ElectricalRange range = input_range(draft);
-  return Question{fmt::format("the sensor's displacements at {} and at {} {}, mm", range.lowest,
+  return Question{fmt::format("displacements of the sensor at the signals {} and {} {}, mm", range.lowest,
                               range.highest, unit_name(input_unit(draft))),
                   "-5 45"};
 }
 
 std::string take_sensor(const std::string& text, RigDraft& draft) {
   const auto numbers = two_numbers(text);
-  if (!numbers) return document::in_backticks(text) + ": two displacements that differ, like -5 45";
+  if (!numbers)
+    return document::in_backticks(text) + ": enter two different displacements, for example -5 45";
   const ElectricalRange range = input_range(draft);
   draft.sensor = {range.lowest, numbers->first, range.highest, numbers->second};
   return "";
