@@ -80,6 +80,6 @@ class DaemonClient {
 [[nodiscard]] bool daemon_runs(const std::string& path);
 /// Advice after a refusal of a command that cannot run while the daemon runs.
 inline constexpr const char* stop_the_daemon =
-    "softgripd is running and controls the board: first stop softgripd (systemctl stop softgripd)";
+    "softgripd runs and controls the board: first stop softgripd (systemctl stop softgripd)";
 
 }  // namespace softgrip::tools

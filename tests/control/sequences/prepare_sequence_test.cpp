@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
         Misfit{"sine_too_fast",
                "  - move: {channels: [left], displacement_mm: 6, duration_s: 1}\n"
                "  - track: {channels: [left], mean_mm: 13, amplitude_mm: 7, frequency_hz: 11, cycles: 1}\n",
-               "twentieth"},
+               "above 1/20"},
         Misfit{"blind_displacement", "  - move: {channels: [right], displacement_mm: 6, duration_s: 1}\n",
                "does not use its displacement"},
         Misfit{"blind_detection",

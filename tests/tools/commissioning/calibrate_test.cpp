@@ -71,7 +71,7 @@ TEST(FitLine, RefusesNonsenseAndSaysWhy) {
   EXPECT_NE(why([](auto& list) { list[2].noise = 0.2; }).find("too much noise"), std::string::npos);
   EXPECT_NE(why([](auto& list) { list[2].reference = 3; }).find("not repeatable"), std::string::npos);
   EXPECT_NE(why([](auto& list) { list[0].reference = NAN; }).find("not a number"), std::string::npos);
-  EXPECT_NE(why([](auto& list) { list.resize(1); }).find("two positions"), std::string::npos);
+  EXPECT_NE(why([](auto& list) { list.resize(1); }).find("two different positions"), std::string::npos);
 }
 
 TEST(FindDeadZone, FindsABendInNoise) {
