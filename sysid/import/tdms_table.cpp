@@ -211,7 +211,7 @@ class TdmsReader {
     if (!signed_so) refuse(at, "does not begin with TDSm");
     if ((flags & is_big_endian) != 0) refuse(at, "is big-endian");
     if ((flags & is_daqmx) != 0) refuse(at, has_daqmx);
-    if (raw > next) refuse(at, "has more metadata than bytes");
+    if (raw > next) refuse(at, "declares more metadata than it has bytes");
     if (raw > size && at == 0) refuse(at, "is cut off in its metadata");
     if (!refused.empty()) return at;
     if (raw > size) {

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* ends_with_block = "what a block has started ends with it";
+constexpr const char* ends_with_block = "a start ends with the Python block that made it";
 constexpr const char* stops_no_other = "leaving a Python block stops only the start of this block";
 constexpr std::size_t client_count = 2;
 constexpr std::array block_sequences{"free_stroke", "empty_grip", "pressure_staircase", "hand_over"};

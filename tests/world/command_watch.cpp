@@ -14,9 +14,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* executed_once = "a counter is executed once";
-constexpr const char* asked_before = "only what a master has asked is executed";
-constexpr const char* true_end = "a master reads the true end of its command";
+constexpr const char* executed_once = "each command counter is executed once";
+constexpr const char* asked_before = "only commands that a master has requested are executed";
+constexpr const char* true_end = "each master reads the true end of its command";
 constexpr const char* outlives_nothing = "a start does not outlive a stop or a vent that came after it";
 constexpr const char* reaction_kept = "the reaction to a silent master is not lost";
 
@@ -132,8 +132,9 @@ void CommandWatch::passed(Nanoseconds now, bool undisturbed) {
   waited_ = owed_ && undisturbed ? waited_ + duration : 0;
   if (waited_ <= reaction_bound) return;
   on_break(reaction_kept,
-           fmt::format("no daemon has answered the reaction within {:.3f} s of undisturbed time",
-                       seconds(waited_)));
+           fmt::format(
+               "the daemon has not responded to the stop after a silence within {:.3f} s of undisturbed time",
+               seconds(waited_)));
 }
 
 }  // namespace softgrip::world

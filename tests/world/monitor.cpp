@@ -129,13 +129,13 @@ void Monitor::watch_state(Nanoseconds now, const control::TickOutput& output) {
     if (event.kind != control::Event::Kind::state_changed) continue;
     const auto state = static_cast<State>(event.detail);
     if (state != state_ && !may_follow(state_, state))
-      violate(now, "states follow each other as drawn",
+      violate(now, "states follow each other as in the state diagram",
               fmt::format("{} after {}", control::name_of(state), control::name_of(state_)));
     state_ = state;
   }
   if (output.events.lost() > 0) state_ = output.state;
   if (output.state != state_)
-    violate(now, "states follow each other as drawn",
+    violate(now, "states follow each other as in the state diagram",
             fmt::format("{} without an event after {}", control::name_of(output.state),
                         control::name_of(state_)));
   if (state_ == State::faulted) trip_untold_.reset();
@@ -152,7 +152,7 @@ void Monitor::watch_grips(Nanoseconds now, const control::TickOutput& output) {
     // A grip result ends its step, so compare the time of the reading with the beginning of this step.
     if (new_grip && channel.evidence == control::GripEvidence::displacement &&
         (seen.validity != model::Validity::valid || old || seen.sampled < step_began_[i]))
-      violate(now, "HOLDING rests on readings newer than the grip",
+      violate(now, "HOLDING is based on readings that are newer than the start of the grip",
               fmt::format("channel {}: validity {}, seen {:.4f} s ago, sampled {:.4f} s before the step", i,
                           static_cast<int>(seen.validity), seconds(now - seen.at),
                           seconds(step_began_[i] - seen.sampled)));
@@ -178,7 +178,7 @@ void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> 
     const double known = known_kpa(i, outputs_kpa[i]);
     const double allowed_kpa = control::no_further(rest_kpa, commands_kpa[i], known);
     if (std::abs(commands_kpa[i] - allowed_kpa) > equal_kpa && !armed_at_entry_)
-      violate(now, "nothing moves away from rest unasked",
+      violate(now, "no output moves away from rest without a request",
               fmt::format("channel {}: {:.3f} -> {:.3f} kPa in an exchange that began {:.4f} s ago", i,
                           outputs_kpa[i], commands_kpa[i], seconds(now - began)));
     watch_way(now, i, known, commands_kpa[i], elapsed_s_, safe_outputs);
@@ -210,7 +210,7 @@ bool Monitor::watch_gap(Nanoseconds began, Nanoseconds now, std::span<const doub
     rested = rested && std::abs(commands_kpa[i] - rest_of(rig_, i)) <= equal_kpa;
   const Nanoseconds longest = watchdog_ - margin_;
   if (before_ > 0 && woke_ - before_ >= longest && !rested)
-    violate(now, "rest is written where the board has or may have vented",
+    violate(now, "rest is written if the board has or may have vented",
             fmt::format("{:.3f} kPa after {:.3f} s", fmt::join(commands_kpa, " "), seconds(woke_ - before_)));
   return rested && began - last_woke_ >= longest;
 }
@@ -226,17 +226,18 @@ void Monitor::watch_way(Nanoseconds now, std::size_t channel, double output_kpa,
   const double slew = command_kpa > last_kpa ? limits.slew_up_kpa_per_s : limits.slew_down_kpa_per_s;
   const bool crosses = (command_kpa - rest_kpa) * (last_kpa - rest_kpa) < 0;
   if (crosses && std::abs(command_kpa - last_kpa) > slew * elapsed_s + equal_kpa)
-    violate(now, "outputs cross rest within their slew",
+    violate(now, "outputs cross rest within their slew limit",
             fmt::format("channel {}: {:.3f} -> {:.3f} kPa", channel, last_kpa, command_kpa));
   for (const double side : {1.0, -1.0}) {
     const double leaving = side > 0 ? limits.slew_up_kpa_per_s : limits.slew_down_kpa_per_s;
     const double returning = side > 0 ? limits.slew_down_kpa_per_s : limits.slew_up_kpa_per_s;
     const double there_kpa = away_kpa(rest_kpa, command_kpa, side);
     if (there_kpa - away_kpa(rest_kpa, output_kpa, side) > leaving * elapsed_s + equal_kpa)
-      violate(now, "outputs leave rest within their slew",
+      violate(now, "outputs leave rest within their slew limit",
               fmt::format("channel {}: {:.3f} -> {:.3f} kPa", channel, output_kpa, command_kpa));
     if (!safe_outputs && away_kpa(rest_kpa, last_kpa, side) - there_kpa > returning * elapsed_s + equal_kpa)
-      violate(now, "outputs return to rest within their slew, but for safe ones that no loop shapes",
+      violate(now,
+              "outputs return to rest within their slew limit, except safe outputs without the control loop",
               fmt::format("channel {}: {:.3f} -> {:.3f} kPa", channel, last_kpa, command_kpa));
   }
 }
@@ -269,7 +270,8 @@ void Monitor::passed(Nanoseconds now, const Excuse& excuse, std::span<const doub
   if (excuse.no_daemon) {
     dead_ = dead_.value_or(0) + duration;
     if (watchdog_ > 0 && *dead_ > watchdog_ + 2 * duration && !rested && !foreign_)
-      violate(now, "a board with a watchdog vents when the daemon is gone", "outputs are not at rest");
+      violate(now, "a board with a watchdog vents when the daemon is gone",
+              "the outputs are not at the rest pressure");
     return;
   }
   watch_foreign(now, excuse, duration);
@@ -309,7 +311,7 @@ void Monitor::watch_foreign(Nanoseconds now, const Excuse& excuse, Nanoseconds d
   const bool answered = state_ == State::faulted || state_ == State::starting;
   foreign_unseen_ = answered ? 0 : *foreign_unseen_ + duration;
   if (*foreign_unseen_ > foreign_bound)
-    violate(now, "another master is noticed",
+    violate(now, "another Modbus client is detected",
             fmt::format("another client has written for {:.3f} s of undisturbed time",
                         seconds(*foreign_unseen_)));
 }
@@ -318,7 +320,7 @@ void Monitor::left(Nanoseconds now, std::span<const double> outputs_kpa) {
   for (std::size_t i = 0; i < outputs_kpa.size(); ++i) {
     const double allowed_kpa = control::no_further(rest_of(rig_, i), outputs_kpa[i], safe_kpa_[i]);
     if (!foreign_ && std::abs(outputs_kpa[i] - allowed_kpa) > equal_kpa)
-      violate(now, "the last outputs are the safe ones",
+      violate(now, "the last outputs are the safe outputs",
               fmt::format("channel {}: the last output is {} kPa, but the safe output is {}", i,
                           outputs_kpa[i], safe_kpa_[i]));
   }

@@ -186,7 +186,7 @@ class MotionWorld {
       around_.monitor.told_nobody(around_.scheduler.now(),
                                   "the command reported a result in spite of this event");
     if (result && overwritten_ > most_overwritten)
-      around_.monitor.command_breaks(around_.scheduler.now(), "another master is noticed",
+      around_.monitor.command_breaks(around_.scheduler.now(), "another Modbus client is detected",
                                      "the command reported a result in spite of this event");
   }
 
