@@ -191,10 +191,10 @@ FingerChoice choose_finger(const ForeignTable& table, const Mapping& given, Prop
             ? Proposal::Question{"no finger has the name " + name + ": the columns belong to " +
                                      quoted(choice.fingers),
                                  "select one with --channel"}
-            : Proposal::Question{"--channel " + name +
-                                     ": the file has no column 'channel' and columns of one "
-                                     "finger only",
-                                 "leave --channel out"});
+            : Proposal::Question{
+                  "--channel " + name +
+                      ": the file has no column 'channel' and contains the columns of only one finger",
+                  "omit --channel"});
   } else if (!given.channel.empty()) {
     for (const std::string& other : said) {
       if (other != choice.meant)

@@ -79,9 +79,9 @@ void check_measured_pressure(const Log& log, std::vector<std::string>& warnings)
   const double slope = sums.slope();
   if (const std::string units = pressure_units_apart(slope); !units.empty())
     warnings.push_back(
-        "the measured pressure is " + significant(slope, 3) + " times the command, with the same factor as " +
-        units +
-        " have: if the unit of one column is wrong, state the right unit with `softgrip import --unit`");
+        "the measured pressure is " + significant(slope, 3) +
+        " times the command, which is the conversion factor between " + units +
+        ": if the unit of one column is wrong, state the right unit with `softgrip import --unit`");
   constexpr int clearly_before = -2;
   if (best_lag(log.pressure_command_kpa, log.pressure_kpa) <= clearly_before)
     warnings.emplace_back(
