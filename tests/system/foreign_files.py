@@ -672,7 +672,7 @@ def files():
              says="the reading decreases when the pressure increases"),
         File("wrong_unit.csv", "a measured pressure in psi that claims kPa",
              table(["time_s", "set_kpa", "actual_pressure_kpa", "tip_mm"], [T, COMMAND, scaled(PRESSURE, PSI), TIP]),
-             columns=MEASURED | {"pressure_kpa": scaled(PRESSURE, PSI)}, says="as psi and kPa are"),
+             columns=MEASURED | {"pressure_kpa": scaled(PRESSURE, PSI)}, says="which is the conversion factor between psi and kPa"),
         File("packed.csv.gz", "gzip", gzip.compress(PLAIN.encode(), mtime=0)),
         File("packed_cut.csv.gz", "gzip, cut off", gzip.compress(PLAIN.encode(), mtime=0)[:-300],
              refused="the gzip file is cut off"),
