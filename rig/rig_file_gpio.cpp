@@ -110,7 +110,7 @@ void read_gpio(Context& context, MapReader& top) {
   reader.finish();
   if (settings.lines.empty() && node->kind == Node::Kind::map) {
     top.report("gpio", "`gpio` names no line",
-               "one of emergency_stop, part_in_position, enable, ready_lamp, fault_lamp");
+               "name at least one of emergency_stop, part_in_position, enable, ready_lamp, fault_lamp");
   }
   if (settings.stale_after_s < 4 * settings.look_interval_s && reader.good("stale_after_s")) {
     reader.report("stale_after_s", "`stale_after_s` must be at least four times `look_interval_s`");

@@ -95,11 +95,11 @@ void read_socket_mode(MapReader& reader, SocketFile& socket, bool moves) {
   socket.mode = *mode;
   if ((*mode & 0111U) != 0) {
     reader.report("mode", "`mode` contains the right to execute, which does not exist for a socket",
-                  "rw-rw----: the owner and the group may connect");
+                  "write rw-rw----: then the owner and the group may connect");
   }
   if (moves && (*mode & 0006U) != 0) {
     reader.warn("mode", "everyone on this machine may move the gripper",
-                "rw-rw----: the owner and the group may connect");
+                "write rw-rw----: then the owner and the group may connect");
   }
 }
 

@@ -296,8 +296,8 @@ class Fitting {
     report(step,
            "verifies the grip by a pressure that channel '" + channel.name +
                "' has even at rest, without a grip (" + significant(rest_kpa, 6) + " kPa)",
-           below ? "a lower pressure_max_kpa"
-                 : "pressure_max_kpa, if the grip uses a pressure below the rest pressure");
+           below ? "use a lower pressure_max_kpa"
+                 : "use pressure_max_kpa if the grip uses a pressure below the rest pressure");
   }
 
   /// Reports a step that uses detection, contact or squeeze at pressures below rest. These functions need a
