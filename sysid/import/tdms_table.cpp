@@ -175,7 +175,7 @@ class TdmsReader {
     std::size_t at = 0;
     while (at < bytes_.size() && refused.empty()) {
       if (bytes_.size() - at < lead_in_bytes) {
-        leave_out_segment(at, " in the first bytes of the segment");
+        leave_out_segment(at, "in its first bytes");
         break;
       }
       at = segment(at);

@@ -59,7 +59,7 @@ class RowReader {
     for (std::size_t i = 0; i < skipped_.size() && i < bad_lines_named; ++i)
       lines += (lines.empty() ? "" : ", ") + std::to_string(skipped_[i]);
     table_.notes.push_back("--skip-bad-lines leaves out " + std::to_string(skipped_.size()) +
-                           " lines with a different number of cells:" + lines +
+                           " lines with a different number of cells: " + lines +
                            (skipped_.size() > bad_lines_named ? ", ..." : ""));
   }
 
