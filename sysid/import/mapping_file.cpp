@@ -111,7 +111,7 @@ class MappingReader {
 std::string mapping_yaml(const Mapping& mapping, const ImportSource& source, const std::string& software,
                          const std::vector<std::string>& remarks) {
   std::string text =
-      "# Columns and units of an import. To repeat it: softgrip import FILE --map THIS --out LOG\n";
+      "# Columns and units of an import. To repeat the import: softgrip import FILE --map THIS --out LOG\n";
   text += comment("file: " + source.file + " (" + source.format + ")");
   text += comment("sha256: " + source.sha256);
   text += comment("by " + software);

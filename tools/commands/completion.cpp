@@ -17,7 +17,7 @@ void add_completion(CLI::App& program, ExitCode& outcome) {
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
   command->footer(
-      "The Debian package installs these scripts. Without the package, run one of these commands: source "
+      "The Debian package installs these scripts. Without the package, run one of these commands:\nsource "
       "<(softgrip completion bash);\n"
       "softgrip completion zsh >DIRECTORY_OF_FPATH/_softgrip;\n"
       "softgrip completion fish >~/.config/fish/completions/softgrip.fish.");

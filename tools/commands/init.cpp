@@ -137,9 +137,8 @@ void add_init(CLI::App& program, ExitCode& outcome) {
   }
   command->footer(
       "On a terminal, init asks a question for each missing option. Without a terminal, init uses the "
-      "defaults,\nand options without a default are required. Exit codes: 0 written, 1 stopped, 2 usage, 3 "
-      "the resulting rig "
-      "file is refused,\n4 the file cannot be written, 5 the file already exists.");
+      "defaults,\nand options without a default are required. Exit codes: 0 written, 1 stopped, 2 usage,\n3 "
+      "the resulting rig file is refused, 4 the file cannot be written, 5 the file already exists.");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

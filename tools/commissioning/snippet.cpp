@@ -116,8 +116,8 @@ std::string snippet(const rig::RigFile& rig, const Results& results) {
       fmt::format("# softgrip calibrate, {}: rig {}, channel {}\n", results.date, rig.name, settings.name);
   if (results.sensor) {
     text += findings("sensor", *results.sensor, "mm");
-    text +=
-        fmt::format("#   the signal {} with displacement\n", results.sensor->slope > 0 ? "rises" : "falls");
+    text += fmt::format("#   the signal {} with increasing displacement\n",
+                        results.sensor->slope > 0 ? "rises" : "falls");
     text += input(rig, "sensor", wiring.displacement, results.sensor->points, "mm");
   }
   if (results.valve) {

@@ -92,7 +92,7 @@ void add_options(CLI::App& program, Options& options) {
   program.footer(
       "Control commands: status, fault NAME, clear NAME, object out|back|stone|screw|POSITION_MM[:YIELDING], "
       "quit.\n"
-      "SIGUSR1 removes the object. The emulator is ready when it has printed 'listening on ADDRESS:PORT' or "
+      "SIGUSR1 removes the object.\nThe emulator is ready when it has printed 'listening on ADDRESS:PORT' or "
       "'listening on DEVICE'.");
 }
 
