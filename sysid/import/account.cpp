@@ -20,7 +20,7 @@ constexpr std::array<Reason, left_out_count> reasons{{
     {"no_time", "without a time", true},
     {"repeated_time", "with the time of the previous row", true},
     {"before_command", "before the first command", true},
-    {"hole", "in segments that are not the longest one between gaps", true},
+    {"hole", "in shorter segments before or after a gap", true},
 }};
 
 std::size_t sum_of(const RowAccount& account, bool lost_only) {

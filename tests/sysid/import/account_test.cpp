@@ -16,7 +16,7 @@ TEST(RowAccount, IsBalancedOnlyWhereEveryRowHasAFate) {
   EXPECT_TRUE(account.balanced());
   EXPECT_EQ(account.sentence(),
             "10 rows: 6 used, 1 merged with another row of the same time, 3 left out (1 without a time, 2 in "
-            "segments that are not the longest one between gaps)");
+            "shorter segments before or after a gap)");
 }
 
 TEST(RowAccount, RowsThatTheUserLeavesOutAreNotLost) {

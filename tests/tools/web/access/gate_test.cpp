@@ -67,7 +67,8 @@ TEST_F(GateTest, ForgedOriginsAndStrangeNamesAreTurnedAway) {
   forged.origin.clear();
   EXPECT_EQ(gate.admit(forged, false, 0), Role::operate) << "a link from another site may open the page";
   forged.fetch_site.clear();
-  EXPECT_EQ(status(gate.admit(forged, true, 0)), 403) << "a request that changes state needs an origin";
+  EXPECT_EQ(status(gate.admit(forged, true, 0)), 403)
+      << "a request that changes the state requires an Origin header";
   forged.host = "evil.example:8017";
   forged.origin = "http://evil.example:8017";
   EXPECT_EQ(status(gate.admit(forged, false, 0)), 421)
