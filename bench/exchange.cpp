@@ -1,20 +1,31 @@
-// Measures the duration of a Modbus exchange over the loopback interface. For comparison, the client of
-// libmodbus sends the same requests to the same server. Blocks of exchanges of the two clients alternate
-// within the same seconds. The program prints the percentiles of both clients.
+// Measures the duration of an exchange over loopback. libmodbus sends the same requests to the same server
+// for comparison. Blocks of exchanges of the two clients alternate within the same seconds, each client
+// begins equally many rounds, and the percentiles of both are compared.
 //
-//   build/release/bench/exchange_bench [exchanges, default 20000]
+// An exchange takes longer if the server runs on another processor than the client. Each request and each
+// response must then wake a processor. Without the second argument, the kernel chooses the processor of each
+// thread. It often keeps this choice for many blocks, so a comparison of p50 may compare processors, not
+// clients. The columns "1 cpu" and "2 cpus" are the medians of the exchanges on one and on two processors.
+// "one" keeps all threads on one processor, "two" keeps the servers on another processor than the clients.
+//
+//   build/release/bench/exchange_bench [exchanges, default 20000] [any|one|two]
 
 #include <modbus/modbus.h>
 #include <netinet/in.h>
+#include <pthread.h>
+#include <sched.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <limits>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -29,7 +40,22 @@ using drivers::ModbusBoard;
 
 constexpr std::size_t block = 100;
 
-/// A Modbus server of libmodbus in a thread. Each server serves one client at a time.
+/// Lets a thread run only on the allowed processor with number `place`, counted from 0.
+void keep_on(pthread_t thread, int place) {
+  cpu_set_t allowed;
+  cpu_set_t chosen;
+  CPU_ZERO(&chosen);
+  if (::sched_getaffinity(0, sizeof allowed, &allowed) != 0) std::exit(1);
+  for (std::size_t cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+    if (CPU_ISSET(cpu, &allowed) && place-- == 0) CPU_SET(cpu, &chosen);
+  }
+  if (::pthread_setaffinity_np(thread, sizeof chosen, &chosen) != 0) {
+    std::fprintf(stderr, "this comparison needs two processors\n");
+    std::exit(1);
+  }
+}
+
+/// A server of libmodbus in a thread. Each server handles one session at a time.
 class Server {
  public:
   Server() : context_(::modbus_new_tcp("127.0.0.1", 0)), mapping_(::modbus_mapping_new(64, 64, 512, 64)) {
@@ -52,6 +78,9 @@ class Server {
     ::modbus_free(context_);
   }
   [[nodiscard]] std::uint16_t port() const { return port_; }
+  /// Returns the processor on which the last request was answered.
+  [[nodiscard]] int processor() const { return processor_; }
+  void keep_on(int place) { ::keep_on(thread_.native_handle(), place); }
 
  private:
   void serve() {
@@ -59,6 +88,7 @@ class Server {
     while (::modbus_tcp_accept(context_, &listener_) >= 0) {
       for (int size = ::modbus_receive(context_, request.data()); size >= 0;
            size = ::modbus_receive(context_, request.data())) {
+        processor_ = ::sched_getcpu();
         ::modbus_reply(context_, request.data(), size, mapping_);
       }
       ::modbus_close(context_);
@@ -69,6 +99,7 @@ class Server {
   modbus_mapping_t* mapping_;
   int listener_ = -1;
   std::uint16_t port_ = 0;
+  std::atomic<int> processor_ = -1;
   std::thread thread_;
 };
 
@@ -104,8 +135,10 @@ drivers::ModbusSettings settings(std::uint16_t port, const drivers::BoardMap& ma
 
 struct Contender {
   std::string name;
+  const Server& server;
   std::function<bool()> exchange;
-  std::vector<double> microseconds = {};
+  std::vector<double> one_processor = {};   ///< durations [us]
+  std::vector<double> two_processors = {};  ///< the same, with the server on another processor
 };
 
 void run_block(Contender& contender) {
@@ -116,18 +149,27 @@ void run_block(Contender& contender) {
       std::fprintf(stderr, "%s failed\n", contender.name.c_str());
       std::exit(1);
     }
-    contender.microseconds.push_back(static_cast<double>(clock.now() - before) * 1e-3);
+    const Nanoseconds after = clock.now();
+    const bool same = contender.server.processor() == ::sched_getcpu();
+    (same ? contender.one_processor : contender.two_processors)
+        .push_back(static_cast<double>(after - before) * 1e-3);
   }
 }
 
+double percentile(std::vector<double>& values, double share) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
 void print(Contender& contender) {
-  std::sort(contender.microseconds.begin(), contender.microseconds.end());
-  const auto percentile = [&](double share) {
-    return contender.microseconds[static_cast<std::size_t>(
-        share * static_cast<double>(contender.microseconds.size() - 1))];
-  };
-  std::printf("%-34s %8.1f %8.1f %8.1f\n", contender.name.c_str(), percentile(0.5), percentile(0.99),
-              percentile(0.999));
+  std::vector<double>& one = contender.one_processor;
+  std::vector<double>& two = contender.two_processors;
+  std::vector<double> all = one;
+  all.insert(all.end(), two.begin(), two.end());
+  std::printf("%-26s %8.1f %8.1f %8.1f %8.1f %8.1f %7.0f %%\n", contender.name.c_str(), percentile(all, 0.5),
+              percentile(all, 0.99), percentile(all, 0.999), percentile(one, 0.5), percentile(two, 0.5),
+              100.0 * static_cast<double>(two.size()) / static_cast<double>(all.size()));
 }
 
 modbus_t* libmodbus_client(std::uint16_t port) {
@@ -140,7 +182,16 @@ modbus_t* libmodbus_client(std::uint16_t port) {
 
 int main(int argc, char** argv) {
   const std::size_t exchanges = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 20000;
+  const std::string_view processors = argc > 2 ? argv[2] : "any";
+  if (exchanges == 0 || (processors != "any" && processors != "one" && processors != "two")) {
+    std::fprintf(stderr, "usage: exchange_bench [exchanges] [any|one|two]\n");
+    return 2;
+  }
   std::array<Server, 4> servers;
+  if (processors != "any") {
+    for (Server& server : servers) server.keep_on(processors == "one" ? 0 : 1);
+    keep_on(::pthread_self(), 0);
+  }
   ModbusBoard pair(settings(servers[0].port(), map_with(false)));
   ModbusBoard single(settings(servers[1].port(), map_with(true)));
   if (pair.connect(std::chrono::seconds(5)) != drivers::BusStatus::ok ||
@@ -159,23 +210,25 @@ int main(int argc, char** argv) {
     return board.exchange(commands, readings, std::chrono::seconds(5)) == drivers::BusStatus::ok;
   };
   std::vector<Contender> contenders{
-      {"softgrip, write + read", [&] { return exchange(pair); }},
-      {"libmodbus, write + read",
+      {"softgrip, write + read", servers[0], [&] { return exchange(pair); }},
+      {"libmodbus, write + read", servers[2],
        [&] {
          return ::modbus_write_registers(peer_pair, 256, 2, out.data()) == 2 &&
                 ::modbus_read_registers(peer_pair, 0, 2, in.data()) == 2;
        }},
-      {"softgrip, function 23", [&] { return exchange(single); }},
-      {"libmodbus, function 23",
+      {"softgrip, function 23", servers[1], [&] { return exchange(single); }},
+      {"libmodbus, function 23", servers[3],
        [&] {
          return ::modbus_write_and_read_registers(peer_single, 256, 2, out.data(), 0, 2, in.data()) == 2;
        }},
   };
   for (std::size_t done = 0; done < exchanges; done += block) {
-    for (Contender& contender : contenders) run_block(contender);
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+      run_block(contenders[(i + done / block) % contenders.size()]);
+    }
   }
-  std::printf("%zu exchanges each over loopback [us]\n%-34s %8s %8s %8s\n", exchanges, "", "p50", "p99",
-              "p99.9");
+  std::printf("%zu exchanges each over loopback [us]\n%-26s %8s %8s %8s %8s %8s %9s\n", exchanges, "", "p50",
+              "p99", "p99.9", "1 cpu", "2 cpus", "on 2 cpus");
   for (Contender& contender : contenders) print(contender);
   std::printf("%s\n%s\n", pair.budget().explanation.c_str(), single.budget().explanation.c_str());
   for (modbus_t* const peer : {peer_pair, peer_single}) {
