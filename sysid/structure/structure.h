@@ -30,6 +30,7 @@ struct BaseStructure {
   bool two_way = true;     ///< true: the lag has different time constants for filling and venting
   /// True: there is another lag before the first one, with one time constant for both directions.
   bool second_lag = false;
+  bool rate_limit = false;     ///< true: a rate limit follows the lag (model::RateLimit)
   bool regulator = false;      ///< true: the lag is that of a regulator with an overlap (RegulatedPressure)
   bool characteristic = true;  ///< true: the sum of all operators passes a nonlinear, monotonic map
   bool resonance = false;      ///< true: a second-order mode follows this map (with_resonance())
@@ -69,7 +70,9 @@ struct NonlinearNumbers {
   double delay_s = 0;
   double filling_s = 0;  ///< time constant of the lag while the pressure rises; 0: no lag
   double venting_s = 0;
-  double second_s = 0;  ///< time constant of the second lag
+  double second_s = 0;           ///< time constant of the second lag
+  double filling_s_per_kpa = 0;  ///< rate limit: shortest time in which the pressure rises by 1 kPa
+  double venting_s_per_kpa = 0;  ///< rate limit: shortest time in which the pressure falls by 1 kPa
   /// After a reversal of the command, the regulator ignores a change of this size.
   double pilot_band_kpa = 0;
   /// Overlap of the regulator; this and the next two members are those of RegulatorNumbers.

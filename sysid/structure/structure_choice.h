@@ -48,6 +48,7 @@ enum class Ingredient {
   delay,
   lag,
   second_lag,
+  rate_limit,
   latency,      ///< delay and lag together, because a delay can largely replace a lag, and a lag a delay
   regulator,    ///< regulator; a lag replaces it
   venting_lag,  ///< separate time constant for venting; one time constant for both directions replaces it
