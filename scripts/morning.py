@@ -21,11 +21,11 @@ sys.path.insert(0, str(ROOT / "tests/system"))
 HEAD = """# A morning at the bench
 
 This page shows the output of softgrip for common faults, and what to do. `scripts/morning.py` ran the commands below, with
-`softgrip-rig` in place of the board, and wrote this page. A test repeats the page and compares the sentences. Times are
-shown as hh:mm:ss, measured numbers are rounded, and `[...]` marks omitted lines. `softgrip watch` shows the same state live.
-Its keys are `s`, `v`, `r`, `a` and `g` ([commands](../reference/commands.md#with-a-daemon)). The pictures show it at
-80 columns while both fingers hold a part, and at 60 columns after a sensor was lost in a hold and has come back
-(`scripts/watch_pictures.py` draws a real terminal):
+`softgrip-rig` in place of the board, and wrote this page. A test runs the commands again and compares their output with
+this page. Times are shown as hh:mm:ss, measured numbers are rounded, and `[...]` marks omitted lines. `softgrip watch`
+shows the same state live. Its keys are `s`, `v`, `r`, `a` and `g` ([commands](../reference/commands.md#with-a-daemon)). The
+first picture shows `softgrip watch` in 80 columns, while both fingers hold a part. The second shows it in 60 columns, after
+a sensor failed during a hold and recovered. `scripts/watch_pictures.py` drew both from a real terminal:
 
 ![watch at 80 columns: both fingers hold a part](../pictures/watch-80.svg)
 
@@ -140,7 +140,7 @@ def play():
 
         def cable_out(self):
             self.say("## The cable comes out\n\nThe rig is idle and holds no part. The fault latches. "
-                     "`acknowledge` is refused while its cause is present, and the message names the cause.")
+                     "While its cause is present, the daemon refuses `acknowledge` with a message that names the cause.")
             self.emulated.ask("fault cable")
             self.softgripd.wait_for_state("faulted")
             bench.wait_for("attempts", lambda: self.softgripd.status()["bus"]["attempts"] >= 2)
@@ -148,7 +148,8 @@ def play():
                 channel["validity"] == "stale" for channel in self.softgripd.status()["channels"]))
             self.show_status()
             self.show(("acknowledge",))
-            self.say("The doctor reports one failure for the cable and does not check the parts that depend on it:")
+            self.say("The doctor reports one failure for the cable. It does not check sensors and models, because their checks "
+                     "need the board:")
             self.show_failures()
             self.say("The cable is connected again:")
             self.emulated.ask("clear cable")
@@ -158,7 +159,7 @@ def play():
             self.softgripd.wait_for_state("idle")
 
         def sensor_out(self):
-            self.say("## A sensor loses its cable\n\nThe fault names its finger.")
+            self.say("## A sensor loses its cable\n\nThe fault message names the finger whose sensor failed.")
             self.emulated.ask("fault blind")
             self.softgripd.wait_for_state("faulted")
             self.show_status()
