@@ -56,9 +56,9 @@ std::string range(double value) {
 void write_parameter(std::ostream& out, const ParameterSpec& spec) {
   out << "| `" << spec.name << "` | " << (spec.unit.empty() ? "-" : spec.unit) << " | "
       << range(spec.default_value) << " | " << range(spec.lower) << " to " << range(spec.upper)
-      << (spec.whole ? ", whole" : "") << " | "
-      << (spec.neutral == spec.neutral ? range(spec.neutral) : "any") << " | " << spec.meaning;
-  if (spec.if_left_out == spec.if_left_out) out << " (may be left out: " << range(spec.if_left_out) << ")";
+      << (spec.whole ? ", whole" : "") << " | " << (spec.neutral == spec.neutral ? range(spec.neutral) : "-")
+      << " | " << spec.meaning;
+  if (spec.if_left_out == spec.if_left_out) out << " (optional, default " << range(spec.if_left_out) << ")";
   out << " |\n";
 }
 
@@ -67,31 +67,35 @@ void write_block(std::ostream& out, const BlockDescriptor& descriptor) {
   out << "\n### `" << info.id << "`: " << info.title << "\n\n" << info.meaning << "\n\n";
   out << "    " << info.equation << "\n\n";
   out << "Acts on: " << what_it_does(info.kind) << ". In the feedforward: " << how_undone(info.inverse) << "."
-      << (info.repeatable ? " A chain may contain this block more than once." : "") << "\n\n";
-  out << "| key | unit | default | allowed | no effect at | meaning |\n|---|---|---|---|---|---|\n";
+      << (info.repeatable ? " A chain may contain it more than once." : "") << "\n\n";
+  out << "| key | unit | typical | allowed | no effect at | meaning |\n|---|---|---|---|---|---|\n";
   for (const ParameterSpec& spec : descriptor.parameters) write_parameter(out, spec);
   for (const ParameterSpec& spec : descriptor.repeated) write_parameter(out, spec);
   if (descriptor.max_parts > 0) {
-    out << "\n`#` counts the branches from 1, at most " << descriptor.max_parts << ".\n";
+    out << "\n`#` is a number from 1 to at most " << descriptor.max_parts << ".\n";
   }
 }
 
 std::string page() {
   std::ostringstream out;
   out << "# Blocks\n\n"
-         "A model file lists blocks by station. The signal passes them from top to bottom:\n\n"
+         "A model file lists blocks by station. The signal passes through the stations from left"
+         " to right, and through the blocks of a station from top to bottom:\n\n"
          "    command [kPa] -> valve -> actuator -> load -> sensor -> reading [mm]\n\n"
-         "u is the command, p the pressure, y the input displacement, z the output, t the time of "
-         "the"
-         " campaign, ' a derivative with respect to time. Inside a station, blocks are sorted by their input:"
-         " pressure, elements, displacement, reading. Every parameter of a block must be given,"
-         " except those with a default (may be left out). A model file with a value outside the allowed "
-         "range is"
-         " refused.\n\n"
-         "The output of a model whose file has `output_unit: deg` is a bending angle. mm then means deg in "
-         "all "
-         "keys and units below. Without this key, the unit is mm. A rig accepts only models in mm.\n\n"
-         "This page is written by `model_blocks_page --write` from the declarations in `model/blocks/`.\n";
+         "In the equations, u is the command, p the pressure, y the input displacement of the "
+         "block, z its output, and t the time since the start of the first log. An apostrophe is"
+         " the derivative with respect to time. Inside a station, blocks are sorted by their "
+         "input: pressure, elements, displacement, reading.\n\n"
+         "The column \"typical\" is a parameter value at which the block has a visible effect. "
+         "The column \"no effect at\" is the value at which the block has no effect; \"-\" means"
+         " that the parameter has no such value. A model file must state every parameter that is"
+         " not marked as optional. A model file with a value outside the allowed range is "
+         "refused.\n\n"
+         "If a model file has `output_unit: deg`, the output of the model is a bending angle, "
+         "and mm means deg in all keys and units on this page. Without this key, the unit is mm."
+         " A rig accepts only models in mm.\n\n"
+         "This page is written by `model_blocks_page --write` from the declarations in "
+         "`model/blocks/`.\n";
   Station station = Station::valve;
   bool first = true;
   for (const BlockDescriptor& descriptor : catalogue()) {

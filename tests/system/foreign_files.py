@@ -495,7 +495,7 @@ def other_fingers_and_clocks():
         File("header_stamp.csv", "the time of a ROS header, nanoseconds first", table(
             ["header.stamp.nanosec", "header.stamp.sec", "set_kpa", "tip_mm"], [*stamp[::-1], COMMAND, TIP]), tolerance=1e-6,
              says="'header.stamp.sec' and 'header.stamp.nanosec' are combined into one time"),
-        File("secs_nsecs.csv", "seconds and nanoseconds, numbers of the columns given", table(
+        File("secs_nsecs.csv", "seconds and nanoseconds, columns selected by number", table(
             ["secs", "nsecs", "p", "y"], [*stamp, COMMAND, TIP]),
              "--time 1 --command 3 --unit command=kPa --displacement 4 --unit displacement=mm", tolerance=1e-6),
         File("no_rest.csv", "nanoseconds that count the whole time, in addition to seconds", table(
@@ -559,7 +559,7 @@ def files():
     pairs = list(zip(T, COMMAND, TIP))
     broken_bar = [None if i == 50 else value for i, value in enumerate(COMMAND)]
     return [
-        File("names_psi.csv", "other names, psi, units in brackets",
+        File("names_psi.csv", "names other than those of a log, psi, units in brackets",
              table(["Time (s)", "P set [psi]", "P meas [psi]", "Tip [mm]"], [T, scaled(COMMAND, PSI),
                                                                              scaled(PRESSURE, PSI), TIP]),
              columns=MEASURED),
@@ -651,7 +651,7 @@ def files():
         File("duplicates.csv", "rows that occur twice",
              PLAIN.replace("\n1.5,", "\n1.49,61,99\n1.5,"), says="1 sample with the time of the previous sample left out",
              left_out={"repeated_time": 1}),
-        File("hole.csv", "a hole in which the command changed",
+        File("hole.csv", "a gap without samples, in which the command changed",
              table(["time_s", "set_kpa", "tip_mm"], dropped([T, COMMAND, TIP], set(range(80, 150)))),
              columns={key: without(set(range(150)))[key] for key in BASIC}, says="the longest segment is kept",
              left_out={"hole": 80}),
@@ -754,7 +754,7 @@ def files():
         File("two_times_unclear.csv", "two times that differ, without names that show to which signal they belong",
              table(["time_a_s", "time_b_s", "set_kpa", "tip_mm"], [T, [round(0.5 * t, 6) for t in T], COMMAND, TIP]),
              refused="the times of the columns 'time_a_s', 'time_b_s' differ"),
-        File("two_times_chosen.csv", "two times that differ, with one of them as an option",
+        File("two_times_chosen.csv", "two times that differ, one of them selected by an option",
              table(["time_a_s", "time_b_s", "set_kpa", "tip_mm"], [T, [round(0.5 * t, 6) for t in T], COMMAND, TIP]),
              "--time time_a_s", says="the column 'time_b_s' looks like a time and is not used, because its times differ"),
         File("fingers.csv", "two fingers in the columns", fingers, refused="the columns belong to 2 fingers: 'left', 'right'"),
@@ -879,10 +879,11 @@ This page shows how `softgrip import` converts external files. This command writ
 $ tests/system/foreign_files.py --page
 ```
 
-The script writes every file, imports it, and compares each value with the original. An import passes if the deviation is at most 1e-9
-of the column's size, or if it is refused with the reason and without output. "As they are" means that all samples passed this
-comparison. A test compares this page with the imports (`system.test_import`). Without options, the proposed columns, which follow from
-names and units, were confirmed (`--yes`). [How to import](../how-to/import.md) contains the rules.
+The script writes every file, imports it, and compares each value with the original. An import passes if each deviation is at
+most 1e-9 of the largest value of its column. A file that must be refused passes if the import states the reason and writes
+no output. "As they are" means that all samples passed this comparison. If the column "options" is empty, the import used the
+columns that it had proposed from names and units (`--yes`). The test `system.test_import` repeats the imports and compares
+them with this page. [How to import](../how-to/import.md) contains the rules.
 
 | file | content | options | result | messages |
 |---|---|---|---|---|
