@@ -18,8 +18,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* ends_with_block = "a start ends with the Python block that made it";
-constexpr const char* stops_no_other = "leaving a Python block stops only the start of this block";
+constexpr const char* ends_with_block = "the end of a Python block stops its sequence";
+constexpr const char* stops_no_other = "leaving a block stops no other start";
 constexpr std::size_t client_count = 2;
 constexpr std::array block_sequences{"free_stroke", "empty_grip", "pressure_staircase", "hand_over"};
 /// Time between two turns in which a client reads the messages of the daemon.

@@ -14,11 +14,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* executed_once = "each command counter is executed once";
-constexpr const char* asked_before = "only commands that a master has requested are executed";
-constexpr const char* true_end = "each master reads the true end of its command";
-constexpr const char* outlives_nothing = "a start does not outlive a stop or a vent that came after it";
-constexpr const char* reaction_kept = "the reaction to a silent master is not lost";
+constexpr const char* executed_once = "softgrip-plc executes each command at most once";
+constexpr const char* asked_before = "only what a master has asked is executed";
+constexpr const char* true_end = "a master reads the true end of its command";
+constexpr const char* outlives_nothing = "a stop or a vent always ends an earlier start";
+constexpr const char* reaction_kept = "the reaction to a stopped heartbeat is not lost";
 
 constexpr auto start_code = static_cast<std::uint16_t>(plc::CommandCode::start);
 constexpr auto vent_code = static_cast<std::uint16_t>(plc::CommandCode::vent);

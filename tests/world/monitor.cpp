@@ -108,7 +108,7 @@ void Monitor::watch_events(Nanoseconds now, const control::TickOutput& output) {
         armed_ = true;
         vent_waits_.reset();
         if (event.request < halted_by_)
-          violate(now, "a start does not outlive a stop or a vent that came after it",
+          violate(now, "a stop or a vent always ends an earlier start",
                   fmt::format("request {} started, {} was to end it", event.request, halted_by_));
         break;
       case Kind::fault_latched:
@@ -129,13 +129,13 @@ void Monitor::watch_state(Nanoseconds now, const control::TickOutput& output) {
     if (event.kind != control::Event::Kind::state_changed) continue;
     const auto state = static_cast<State>(event.detail);
     if (state != state_ && !may_follow(state_, state))
-      violate(now, "states follow each other as in the state diagram",
+      violate(now, "the states change only as in the state diagram",
               fmt::format("{} after {}", control::name_of(state), control::name_of(state_)));
     state_ = state;
   }
   if (output.events.lost() > 0) state_ = output.state;
   if (output.state != state_)
-    violate(now, "states follow each other as in the state diagram",
+    violate(now, "the states change only as in the state diagram",
             fmt::format("{} without an event after {}", control::name_of(output.state),
                         control::name_of(state_)));
   if (state_ == State::faulted) trip_untold_.reset();
@@ -152,7 +152,7 @@ void Monitor::watch_grips(Nanoseconds now, const control::TickOutput& output) {
     // A grip result ends its step, so compare the time of the reading with the beginning of this step.
     if (new_grip && channel.evidence == control::GripEvidence::displacement &&
         (seen.validity != model::Validity::valid || old || seen.sampled < step_began_[i]))
-      violate(now, "HOLDING is based on readings that are newer than the start of the grip",
+      violate(now, "HOLDING is based on new readings",
               fmt::format("channel {}: validity {}, seen {:.4f} s ago, sampled {:.4f} s before the step", i,
                           static_cast<int>(seen.validity), seconds(now - seen.at),
                           seconds(step_began_[i] - seen.sampled)));
@@ -210,7 +210,7 @@ bool Monitor::watch_gap(Nanoseconds began, Nanoseconds now, std::span<const doub
     rested = rested && std::abs(commands_kpa[i] - rest_of(rig_, i)) <= equal_kpa;
   const Nanoseconds longest = watchdog_ - margin_;
   if (before_ > 0 && woke_ - before_ >= longest && !rested)
-    violate(now, "rest is written if the board has or may have vented",
+    violate(now, "the rest pressure is written if the board may have vented",
             fmt::format("{:.3f} kPa after {:.3f} s", fmt::join(commands_kpa, " "), seconds(woke_ - before_)));
   return rested && began - last_woke_ >= longest;
 }
@@ -226,14 +226,14 @@ void Monitor::watch_way(Nanoseconds now, std::size_t channel, double output_kpa,
   const double slew = command_kpa > last_kpa ? limits.slew_up_kpa_per_s : limits.slew_down_kpa_per_s;
   const bool crosses = (command_kpa - rest_kpa) * (last_kpa - rest_kpa) < 0;
   if (crosses && std::abs(command_kpa - last_kpa) > slew * elapsed_s + equal_kpa)
-    violate(now, "outputs cross rest within their slew limit",
+    violate(now, "outputs cross the rest pressure within their slew limits",
             fmt::format("channel {}: {:.3f} -> {:.3f} kPa", channel, last_kpa, command_kpa));
   for (const double side : {1.0, -1.0}) {
     const double leaving = side > 0 ? limits.slew_up_kpa_per_s : limits.slew_down_kpa_per_s;
     const double returning = side > 0 ? limits.slew_down_kpa_per_s : limits.slew_up_kpa_per_s;
     const double there_kpa = away_kpa(rest_kpa, command_kpa, side);
     if (there_kpa - away_kpa(rest_kpa, output_kpa, side) > leaving * elapsed_s + equal_kpa)
-      violate(now, "outputs leave rest within their slew limit",
+      violate(now, "outputs change within their slew limits",
               fmt::format("channel {}: {:.3f} -> {:.3f} kPa", channel, output_kpa, command_kpa));
     if (!safe_outputs && away_kpa(rest_kpa, last_kpa, side) - there_kpa > returning * elapsed_s + equal_kpa)
       violate(now,
@@ -270,8 +270,7 @@ void Monitor::passed(Nanoseconds now, const Excuse& excuse, std::span<const doub
   if (excuse.no_daemon) {
     dead_ = dead_.value_or(0) + duration;
     if (watchdog_ > 0 && *dead_ > watchdog_ + 2 * duration && !rested && !foreign_)
-      violate(now, "a board with a watchdog vents when the daemon is gone",
-              "the outputs are not at the rest pressure");
+      violate(now, "a board with a watchdog vents after the end of the daemon", "outputs are not at rest");
     return;
   }
   watch_foreign(now, excuse, duration);
@@ -281,13 +280,12 @@ void Monitor::passed(Nanoseconds now, const Excuse& excuse, std::span<const doub
     if (rested) vent_waits_.reset();
   }
   if (vent_waits_ && *vent_waits_ > vent_bound + nanoseconds(slowest_s))
-    violate(now, "a vent is carried out in time",
-            fmt::format(
-                "{:.3f} s of undisturbed time after the request, the outputs are not at the rest pressure",
-                seconds(*vent_waits_)));
+    violate(now, "a vent is executed within 0.1 s",
+            fmt::format("outputs are not at rest {:.3f} s of undisturbed time after the request",
+                        seconds(*vent_waits_)));
   if (trip_untold_) *trip_untold_ += duration;
   if (trip_untold_ && *trip_untold_ > trip_bound)
-    violate(now, "a watchdog that has tripped is a fault", "no fault was latched");
+    violate(now, "a tripped watchdog causes a fault", "no fault was latched");
 }
 
 void Monitor::foreign_wrote(std::span<const double> outputs_kpa) noexcept {
@@ -311,7 +309,7 @@ void Monitor::watch_foreign(Nanoseconds now, const Excuse& excuse, Nanoseconds d
   const bool answered = state_ == State::faulted || state_ == State::starting;
   foreign_unseen_ = answered ? 0 : *foreign_unseen_ + duration;
   if (*foreign_unseen_ > foreign_bound)
-    violate(now, "another Modbus client is detected",
+    violate(now, "writes of another Modbus client are detected",
             fmt::format("another client has written for {:.3f} s of undisturbed time",
                         seconds(*foreign_unseen_)));
 }
@@ -327,7 +325,7 @@ void Monitor::left(Nanoseconds now, std::span<const double> outputs_kpa) {
 }
 
 void Monitor::answer_is_late(Nanoseconds now, Nanoseconds asked_at) {
-  violate(now, "every request is answered",
+  violate(now, "every request receives a reply",
           fmt::format("a request has had no answer for {:.3f} s", seconds(now - asked_at)));
 }
 

@@ -77,14 +77,14 @@ class Monitor {
   /// Reports the violation that the board has vented, but that the daemon's message to the user (`otherwise`)
   /// does not say so.
   void told_nobody(Nanoseconds now, const char* otherwise) {
-    violate(now, "a watchdog that has tripped is a fault", otherwise);
+    violate(now, "a tripped watchdog causes a fault", otherwise);
   }
   /// Reports that a command or its exit code violates an invariant.
   void command_breaks(Nanoseconds now, const char* invariant, std::string text) {
     violate(now, invariant, std::move(text));
   }
-  void recording_lacks(const std::string& text) { violate(0, "recordings are whole", text); }
-  void leaks(const std::string& text) { violate(0, "nothing leaks", text); }
+  void recording_lacks(const std::string& text) { violate(0, "recordings are complete", text); }
+  void leaks(const std::string& text) { violate(0, "memory and file descriptors do not leak", text); }
 
   [[nodiscard]] const std::optional<Violation>& violation() const noexcept { return violation_; }
   /// Returns the safe outputs that the daemon computed in its last tick.

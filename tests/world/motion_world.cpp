@@ -186,8 +186,8 @@ class MotionWorld {
       around_.monitor.told_nobody(around_.scheduler.now(),
                                   "the command reported a result in spite of this event");
     if (result && overwritten_ > most_overwritten)
-      around_.monitor.command_breaks(around_.scheduler.now(), "another Modbus client is detected",
-                                     "the command reported a result in spite of this event");
+      around_.monitor.command_breaks(around_.scheduler.now(), "writes of another Modbus client are detected",
+                                     "the command ended with a result");
   }
 
   /// Called when the command has reported that the board confirmed the rest pressures.
