@@ -123,19 +123,19 @@ def main():
     text = "\n".join([
         *results_page.head(
             "Python functions compared with C++ and SciPy",
-            f"A simulation from Python takes {abs(overhead):.1f} % {'more' if overhead > 0 else 'less'} time than from C++. `softgrip.identify()` reaches the error "
-            f"of SciPy, {ours['rmse_mm']:.4f} and {scipy['rmse_mm']:.4f} mm, with {scipy_s / ours_s:.1f} times less processor time.",
+            f"A simulation from Python takes {abs(overhead):.1f} % {'more' if overhead > 0 else 'less'} time than from C++. `softgrip.identify()` and SciPy "
+            f"reach equal errors ({ours['rmse_mm']:.4f} and {scipy['rmse_mm']:.4f} mm), and `softgrip.identify()` needs {scipy_s / ours_s:.1f} times less processor time.",
             study.version, f"bench/python_library.py --runs {args.runs}", f"simulated logs; {results_page.here()}"),
         "| measured | result | required |", "|---|---|---|", *("| " + " | ".join(row) + " |" for row in rows), "",
-        f"Import: median of {4 * args.runs} processes. Simulation: the fastest of {args.runs * CALLS:,} calls, in alternating",
-        "processes of the two languages, both with `MALLOC_TRIM_THRESHOLD_` of 256 MiB. With the default, the small C++ program returns",
-        "memory to the system after each call, and the next call takes longer.", "",
+        f"The time of the import is the median of {4 * args.runs} processes. The time of a simulation is the shortest of {args.runs * CALLS:,} calls, in",
+        "alternating processes of the two languages. Both languages used a `MALLOC_TRIM_THRESHOLD_` of 256 MiB. With the default value, the",
+        "small C++ program returns memory to the system after each call, so the next call takes longer.", "",
         "## Identification", "",
         "| program | processor time [s] | fitted: tp1 [mm] | held out: steps [mm] | held out: sp2 [mm] |", "|---|---|---|---|---|",
         *("| " + " | ".join(row) + " |" for row in fits), "",
-        f"Both start at the published parameters and at {STARTS - 1} other points. SciPy's `least_squares` drives a simulator in C",
-        f"(`bench/sysid_peer_simulator.c`) through ctypes. Processor time: whole program on all cores, median of {args.runs} runs. Only",
-        "`softgrip.identify()` also computes intervals, warnings and the report in this time.", ""])
+        f"Both programs start at the published parameters and at {STARTS - 1} other parameter sets. SciPy's `least_squares` calls a simulator in C",
+        f"(`bench/sysid_peer_simulator.c`) through ctypes. The processor time is that of the complete program on all cores, as the median of {args.runs}",
+        "runs. In this time, `softgrip.identify()` also computes intervals, warnings and the report.", ""])
     args.page.write_text(text)
     print(text)
     met = max(with_numpy[1], without_numpy[1]) < MOST_IMPORT_S and overhead <= MOST_OVERHEAD_PERCENT
