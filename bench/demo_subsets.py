@@ -81,12 +81,12 @@ def page(results, verdicts, real, options, version):
     both = sum(verdict == "cause_found" and real.keys() <= rows.keys() for verdict, rows in zip(verdicts.values(), results.values()))
     lines = [*results_page.head(
                  "The demo's logs, all seven subsets",
-                 f"{both} of {len(results)} combinations of the demo's logs are sufficient to name the delay and the lag without an "
-                 "alternative.", version, "bench/demo_subsets.py --build build/release --page docs/results/demo-subsets.md",
+                 f"{both} of {len(results)} combinations of the demo's logs are sufficient for a diagnosis that "
+                 "names the delay and the lag without an alternative.", version, "bench/demo_subsets.py --build build/release --page docs/results/demo-subsets.md",
                  f"simulated logs, `softgrip simulate` with `{' '.join(options)}`, `softgrip diagnose --model "
                  "config/models/zhang2025.yaml`"),
              f"The demo's finger has a transport delay of {real['transport_delay']} s and a valve lag of {real['valve_lag']} s. The given",
-             "model has neither. If the logs do not show that there is a lag, the interval of the delay covers the results with and without it.", "",
+             "model has neither. If the logs do not show that there is a lag, the interval of the delay includes the results with and without a lag.", "",
              "| logs | verdict | transport delay | valve lag |", "|---|---|---|---|"]
     for subset, rows in results.items():
         lines.append(f"| {' + '.join(subset)} | {verdicts[subset]} | {cell(rows.get('transport_delay'))} | "

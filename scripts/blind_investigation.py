@@ -56,18 +56,16 @@ def page(results, command, version):
     lines = [*results_page.head("Blind investigations", meaning, version, command,
                                 f"{sum(not r['poor'] for r in results)} ambiguous cases of the campaign and "
                                 f"{sum(r['poor'] for r in results)} that wrote one log of triangles alone"),
-             f"{len(asked)} first diagnoses were ambiguous and listed the true cause. These cases were investigated, with the simulated "
-             "finger as the rig and its sensor on a gauge. The position of the gauge's target has an error of 0.01 mm (standard deviation). A "
-             "reading is the mean of 2 s, with the noise, quantisation, drift, disturbances and wrong samples of the "
-             "simulated case.", "",
+             f"{len(asked)} first diagnoses were ambiguous and listed the true cause. `softgrip investigate` was run on these cases. The simulated finger was the rig, and the gauge check of its sensor was also simulated. The position of the sensor's target has "
+             "an error of 0.01 mm (standard deviation). Each reading is the mean over 2 s, with the noise, quantisation, drift, disturbances and wrong samples of the simulated case.", "",
              "| ambiguous verdicts | cases, with the 95 % interval of their share |",
              "|---|---|",
              f"| resolved to the true cause | {share(resolved, asked)} |",
-             f"| of these by a waveform | {len(resolved) - len(by_gauge)} |",
-             f"| of these by the gauge check | {len(by_gauge)} |",
-             f"| resolved to another cause (wrong) | {share(wrong, asked)} |",
+             f"| of the resolved verdicts: resolved by an experiment with a waveform | {len(resolved) - len(by_gauge)} |",
+             f"| of the resolved verdicts: resolved by the gauge check | {len(by_gauge)} |",
+             f"| resolved to a wrong cause | {share(wrong, asked)} |",
              f"| still ambiguous, with the true cause listed | {len(open_still)} |",
-             f"| of these, indistinguishable by any command or gauge (lags of valve and sensor) | {len(twins)} |",
+             f"| of the ambiguous verdicts: no command and no gauge can separate the causes (lags of valve and sensor) | {len(twins)} |",
              f"| other results (unexplained, partly, failed) | {len(others)} |", ""]
     for title, chosen in (("the campaign's", [r for r in asked if not r["poor"]]),
                           ("one log of triangles", [r for r in asked if r["poor"]])):

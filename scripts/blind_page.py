@@ -213,18 +213,17 @@ def write(path, results, planned, command, variation, version):
     unreachable = sum(not r.get("reachable", True) for r in results)
     lines = [*results_page.head("Blind campaign", meaning(summary(results)), version, command,
                                 f"{len(results)} simulated cases{of_planned}"),
-             "In each case, a separate program simulates a finger with a hidden effect and writes logs. `softgrip diagnose` gets the logs and a model "
-             "whose parameters have errors of a few percent. Strength is the excess error that the effect leaves in the refitted model, in units of "
+             "In each case, a separate program simulates a finger with a hidden effect and writes logs. `softgrip diagnose` reads these "
+             "logs, and a model of the finger without the effect whose parameters have errors of a few per cent. Strength is the excess error that the effect leaves in the refitted model, in units of "
              "the noise (0.04 mm).",
              "", variation, "", "| measure | target | measured (95 % interval) | cases |", "|---|---|---|---|"]
     lines += [f"| {what} | {target} | {measured} | {count} |" for what, target, measured, count in summary(results)]
     walls = [r["wall_s"] for r in results if "wall_s" in r]
     lines += ["", f"Median wall time of a diagnosis: {statistics.median(walls):.1f} s (three logs of 8,000 samples). In "
-              f"{unreachable} cases the effect cannot physically reach the required strength and has its largest size instead.",
+              f"{unreachable} cases, the effect cannot physically reach the required strength and has its largest possible size.",
               "", f"![Outcomes by hidden cause]({bars_path.name})", "",
               f"![Named cause by hidden cause, in percent]({confusion_path.name})", "", "A cause counts as found if it is named alone or listed in an ambiguous verdict.", "",
               *detection_limits(results), "", *table(results), "",
-              "Right: the cause is named alone. In a case without an effect, right means that no cause is named and no error remains "
-              "unexplained; outside the library, it means `unexplained`. Missed: no cause is named although there is an effect. Wrong: a "
-              "cause is named that is not present, alone or together with the right one."]
+              "Right: only the true cause is named. In a case without an effect, right means that no cause is named and no error remains unexplained. For an effect outside the library, right "
+              "means the verdict `unexplained`. Missed: no cause is named although there is an effect. Wrong: a cause is named that is not present, alone or together with the true cause."]
     path.write_text("\n".join(lines) + "\n")

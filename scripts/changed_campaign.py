@@ -139,15 +139,14 @@ def page(rows, command, planned, variation, version):
 
 def changing_text():
     return [
-        "In each case, the healthy logs of a finger (campaign 0 of its seed; 3 logs unless stated) are recorded without a hidden",
-        "cause. The later logs (campaign 1, with other waveforms and other noise) contain one hidden cause or none. Strength 1 is the",
-        "strength 8 of the other campaigns: an excess error of 8 times the noise of 0.04 mm. At strength 0.15 the excess error is 0.048 mm.",
-        "On the later day, the zero of the sensor and the temperature differ from those of the healthy logs. The outcomes are: `first`: the true cause is named first.",
-        "`twin`: stiffening is named for a nonlinear scale, or the reverse. `listed`: the true cause is named after another cause or among",
-        "the alternatives. `unnamed`: a change is reported without a cause. `missed`: the finger is reported as unchanged. `wrong`: only",
-        "another cause is named. The intervals are those of true changes that are named first, for parameters with the same meaning in the",
-        "simulation and in the result. The valve of the textbook family follows the same standard (ISO 6358, a controller with an integral)",
-        "as the regulator of the model structure. These cases do not show the performance on a valve with another law."]
+        "In each case, the healthy logs of a finger (campaign 0 of its seed; 3 logs unless stated) are simulated without a hidden cause. The later logs (campaign 1) have different",
+        "waveforms and different noise, and contain one hidden cause or no cause. At strength 1, the excess error is 8 times the noise of 0.04 mm; the other campaigns",
+        "call this strength 8. At strength 0.15, the excess error is 0.048 mm.",
+        "In the later logs, the zero of the sensor and the temperature differ from those of the healthy logs. The outcomes are: `first`: the true cause is named first.",
+        "`twin`: stiffening is named although the sensor scale is nonlinear, or the reverse. `listed`: the true cause is named after a wrong cause,",
+        "or is listed as an alternative. `unnamed`: a change is reported, but no cause is named. `missed`: the finger is reported as unchanged. `wrong`: only a wrong cause is named. The coverage of the intervals is computed for changes whose true cause",
+        "is named first, and for parameters that have the same meaning in the simulation and in the result. The valve of the textbook family and the regulator of the model structure follow the same standard (ISO 6358, a controller",
+        "with integral action). These cases therefore do not show the performance on a valve that does not follow this standard."]
 
 
 def main():

@@ -279,22 +279,21 @@ def page(args, seen, eventful, healthy, wall_s):
         results_page.version_of(args.build), f"scripts/ninety_days.py --healthy {args.healthy} --seed {args.seed} --page "
         "docs/results/ninety-days.md", f"simulated rig, virtual time, {len(HOURS)} grips a day of two fingers")
     return "\n".join(head) + f"""
-{(args.healthy + 1) * DAYS * len(HOURS)} recordings of `softgrip run` were judged{took}. The changes of a finger are simulated in its plant; `softgrip health` reads only the recordings.
+{(args.healthy + 1) * DAYS * len(HOURS)} recordings of `softgrip run` were evaluated{took}. The changes are simulated in the model of the finger; `softgrip health` reads only the recordings.
 
 Every simulated life has weather of {WEATHER_C:g} °C (standard deviation, with a correlation of {WEATHER_STAYS:g} from day to day), a variation of {DAY_C:g} °C
 within the day, and a temperature coefficient of the gain of {100 * GAIN_PER_C["left"]:g} (left) and {100 * GAIN_PER_C["right"]:g} (right) % per °C. The position of the parts varies by
-{PART_MM:g} mm (standard deviation), and the wear is {-100 * WEAR_PER_DAY * DAYS:.1g} % in ninety days. The rig has one thermometer with a noise of {working_life.THERMOMETER_NOISE_C:g} °C. Every life is
-judged with its temperatures and again without them, as for a rig without a thermometer.
+{PART_MM:g} mm (standard deviation), and the wear is {-100 * WEAR_PER_DAY * DAYS:.1g} % in ninety days. The rig has one thermometer with a noise of {working_life.THERMOMETER_NOISE_C:g} °C. Every life is evaluated twice: with the recorded temperatures, and without them, as for a rig without a thermometer.
 
 ## Detected changes
 
-{told}`warned on day` is the day on which the difference between the fingers was reported, possibly without naming the changed finger
-(`unclear`). `shared` is a change of the rig, not of a finger. On day 60 the left finger was replaced by one that is {100 * (NEW_FINGER - 1):.0f} % softer. The maintenance
-record contains this, so its charts started again.
+{told}`warned on day` is the day on which the changed difference between the fingers was first reported. This report can be `unclear`: it then does
+not name the changed finger. `shared` is a change of the rig and not of a single finger. On day 60, the left finger was replaced by a finger that is {100 * (NEW_FINGER - 1):.0f} % softer. The maintenance record
+contains this replacement, so the control charts of the finger started with a new reference.
 
 ## Healthy days
 
-These are lives of {DAYS} days with weather and wear only, two fingers each, nine indicators per finger. For independent days the stated
+These simulated lives of {DAYS} days contain only weather and wear. Each life has two fingers, with nine indicators per finger. For independent days, the stated
 average is one false alarm in 3650 points of a finger, which is {2 * args.healthy * DAYS / 3650:.2f} for {2 * args.healthy} fingers. The table
 states the fingers with an alarm, and the lives with a reported change of the rig:
 
@@ -303,9 +302,9 @@ states the fingers with an alarm, and the lives with a reported change of the ri
 {counts}
 The estimated temperature coefficient of the gain is {min(slopes, default=0):.4f} to {max(slopes, default=0):.4f} mm per °C.
 
-{lists}An active alarm hides further alarms of the same indicator. Without a thermometer, a shared change of the gain is caused by the weather
-here: the warning is true, but not useful. These figures have limits: all simulated fingers are of one kind, they follow the
-temperature of the hall at once, and only the weather is correlated from day to day.
+{lists}An active alarm hides further alarms of the same indicator. Without a thermometer, the weather causes the shared changes of the gain in these lives. These warnings are true, but not
+useful. The results are limited in three ways: all simulated fingers are of one type, they follow the ambient temperature
+without delay, and only the weather is correlated from day to day.
 """
 
 

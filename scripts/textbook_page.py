@@ -153,24 +153,24 @@ def made(results, planned):
 
 
 INTRODUCTION = """\
-The simulated cases share no equation with the models of softgrip. The valve follows ISO 6358, behind a PI spool with overlap and
-pilot hysteresis. There are five makes of fingers: generalised play operators, Maxwell-slip elements, Preisach relays, a tube of
-slices of rubber with a Prony series, and play with fractional creep. All have creep over five decades and a slight curvature. Each
+The simulated cases share no equation with the models of softgrip. The valve follows ISO 6358 and has a PI-controlled spool with overlap and pilot hysteresis. There are five types (makes) of
+fingers: generalised play operators, Maxwell-slip elements, Preisach relays, a tube of slices of rubber with a Prony series, and
+play operators with fractional creep. All types have creep with time constants over five decades and a slightly nonlinear
+characteristic. Each
 case has three logs. The noise is 0.04 mm for readings, 0.05 kPa for pressures and 0.3 kPa for supplies.
 
-Strength is the RMS that the effect adds to the displacement over the campaign, divided by the noise. It excludes the part that a
-refit can absorb: any zero and gain, and any width, curvature and creep that fingers of this make can have. The whole effect of a leak counts.
-*Own physics* are the mechanisms of a case without an effect that change the displacement by more than 25 % of the noise when they
-are removed. A named cause that is own physics of the case is never counted as wrong. If the hidden cause is also own physics (a
-slower valve behind a valve with a lag) and is named, it counts as found.
+Strength is the RMS of the change of the displacement that the effect causes over the campaign, divided by the noise. It does
+not include the part that a refit can absorb. A refit can absorb any zero and gain, and any hysteresis width, curvature and
+creep that fingers of this make can have. For a leak, the complete effect is included.
+*Own physics* are mechanisms that the simulated finger and valve have even without the hidden effect. Only mechanisms whose removal changes
+the displacement by more than 25 % of the noise are included. If a named cause is own physics of the case, it is not counted as
+wrong. If the hidden cause is also own physics (for example an additional valve lag) and is named, it is counted as found.
 
-The diagnosis starts from a plain Bouc-Wen model of another finger (`tests/blind/textbook/given.yaml`), as if one finger of a type
-had been identified and another one had been bought. `--given commissioned` starts from the model of `softgrip identify --structure
-auto` for other logs of the same finger without the effect. A cause is *found* if it is named or among the alternatives of a named
-cause, for any verdict. One named cause can account for at most one hidden cause. A named cause is *wrong* if neither it nor any of its
-alternatives is present. The held-out error is that of `softgrip identify --structure auto` on interleaved blocks, from the measured pressure if it is recorded,
-otherwise from the command. The next column is the error of the diagnosis' own model on its held-out blocks. If the pressure is
-recorded, it is the input of the finger (`--drive measured`), and the valve is judged by it."""
+The diagnosis starts from a plain Bouc-Wen model of another finger (`tests/blind/textbook/given.yaml`), as if a model had been identified on one finger and were then used for a second finger of the same type. `--given commissioned` starts from the model of `softgrip identify --structure
+auto` that was fitted to different logs of the same finger without the effect. A cause is *found* if it is named or is an alternative
+of a named cause, with any verdict. One named cause is counted for at most one hidden cause. A named cause is *wrong* if this cause is not present and none of its alternatives is present. The held-out error is that of `softgrip identify --structure auto` on interleaved blocks. The input of the model is the measured pressure if it is recorded, otherwise the command. The next column
+is the error of the model of the diagnosis on its held-out blocks. If the pressure is recorded, it is the input of the finger
+model (`--drive measured`), and causes in the valve are found by a comparison of the measured pressure with the command."""
 
 
 def write(path, results, planned, command, variation, version):

@@ -107,7 +107,7 @@ def page(args, figures):
                  f"repeats {twice} of the {done} rows that were done.", results_page.version_of(args.build),
                  f"scripts/workflow_campaign.py --work DIR --rows {rows} --cores {args.cores} --batch {args.batch} --page {args.page}",
                  f"{os.cpu_count()} processors, which other programs used, too"),
-             "The load is the mean of the last minute. Each row runs `softgrip identify --threads 1` for another simulated finger, with a "
+             "The column *load* is the 1-minute load of the machine. Each row runs `softgrip identify --threads 1` for another simulated finger, with a "
              "log of 25 s at 20 Hz. Such short rows are the workflow's worst case, because its overhead per row does not depend on the "
              "duration of a row.", "",
              "| method | wall time | per row | load | models, hash over all |", "|---|---|---|---|---|"]

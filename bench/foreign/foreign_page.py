@@ -65,9 +65,9 @@ def requirements(values):
                  ("other loops: reported as sticking by Horch's phase test", "-", of(others["horch"], others["cases"]))]
     if "identification" in summary:
         part = summary["identification"]
-        rows += [("identification: a linear model of order 3 is better than `auto` by more than 10 %", "none",
+        rows += [("identification: the error of a linear model of order 3 is more than 10 % smaller than that of `auto`", "none",
                   of(part["linear_better"]["auto"], part["rows"])),
-                 ("identification: a linear model of order 3 is better than `plain` by more than 10 %", "-", of(part["linear_better"]["plain"], part["rows"])),
+                 ("identification: the error of a linear model of order 3 is more than 10 % smaller than that of `plain`", "-", of(part["linear_better"]["plain"], part["rows"])),
                  ("identification: `auto` or `plain` has the smallest error", "-",
                   of(part["first"]["auto"] + part["first"]["plain"], part["rows"]))]
     return rows
@@ -100,10 +100,10 @@ def pair_tables(values, judge, more_head, more_cells):
 
 
 PLAIN_TEXT = [
-    "*fitted*, *left out* and *later* are RMSE values of the plain identified model (`softgrip identify` without",
-    "`--structure`): on the baseline, the largest on a baseline run that was left out of the fit, and on the later run.",
-    "*bound* is the one-sided 95 % prediction bound (Student's t) for the error on 1 more healthy run, from the errors on",
-    "the runs left out.",
+    "*fitted*, *left out* and *later* are RMSE values of the plain identified model (`softgrip identify` without `--structure`). *fitted* is the RMSE on the baseline runs.",
+    "*left out* is the largest RMSE on a baseline run that was left out of the fit. *later* is the RMSE on the later run.",
+    "*bound* is the one-sided 95 % prediction bound (Student's t) for the error on a further healthy run. It is computed from",
+    "the errors on the baseline runs that were left out.",
     "*ratio* is *later* divided by *bound*. With 1 baseline run there is no bound, and *ratio* is *later* divided by *fitted*."]
 
 
@@ -123,9 +123,9 @@ def changes_section(values):
 
 
 STICTION_TEXT = [
-    "*phase ratio* is the statistic of Horch's test (A. Horch, Control Engineering Practice 7, 1999, 1221-1231), which",
-    "`bench/foreign/horch.py` computes without softgrip: above 2/3 the valve sticks, below 1/3 it is free. The labels of these loops",
-    "were known when the form of the test was chosen, so these counts are no independent measure of the test."]
+    "*phase ratio* is the statistic of Horch's test (A. Horch, Control Engineering Practice 7, 1999, 1221-1231), which `bench/foreign/horch.py` computes without softgrip. The valve sticks",
+    "if the ratio is above 2/3, and does not stick if it is below 1/3. The labels of these loops",
+    "were known when the form of the test was chosen, so these counts are not an independent evaluation of the test."]
 
 
 def stiction_section(values):
@@ -137,16 +137,16 @@ def stiction_section(values):
 
 
 IDENTIFICATION_TEXT = [
-    "The values are held-out RMSE in % of the span of the log. Of a single log, the first half is fitted, and the second half is",
-    "predicted from the start of the log. `A -> B`: A is fitted, and B is predicted. *plain* is `softgrip identify`, *auto* is",
-    "`softgrip identify --structure auto`. *output error* is a linear output-error model of order 3 (`bench/foreign/output_error.py`): the",
-    "published element also has 3 states. *SciPy* is Bouc-Wen with 2 Kelvin-Voigt branches, fitted by `least_squares`",
+    "The values are held-out RMSE in % of the span of the log. If a case has a single log, its first half is fitted, and its second half is predicted by a simulation",
+    "from the start of the log. In a case `A -> B`, log A is fitted and log B is predicted. *plain* is `softgrip identify`, *auto* is",
+    "`softgrip identify --structure auto`. *output error* is a linear output-error model of order 3 (`bench/foreign/output_error.py`). The order is 3",
+    "because the published element also has 3 states. *SciPy* is Bouc-Wen with 2 Kelvin-Voigt branches, fitted by `least_squares`",
     "(`bench/foreign/scipy_bouc_wen.py`). For B, *output error* and *SciPy* estimate only the offset, from the first 5 % (at least 2 s).",
-    "With the drive *command* the measured pressure is withheld from every method; with *measured* it is the input of every model.",
+    "With the drive *command*, no method uses the measured pressure. With the drive *measured*, the measured pressure is the input of every model.",
     "The held-out errors of `piezo` and `hydraulic` were known when the rule for the initial state of the linear model was chosen.",
-    "The errors on `asu_softarm` and `hydraulic` were known when the start at rest, the bounded response, the second lag, the",
-    "rate limit and the resonance of *auto* were added, so the counts on these sets are no independent measure of these additions.",
-    "The smallest error of each row is bold. *linear better*: the linear model is better than *auto* by more than 10 %.",
+    "The errors on `asu_softarm` and `hydraulic` were known when the start at rest, the bounded response, the second lag and the",
+    "resonance of *auto* were added, so the counts on these sets are not an independent evaluation of these additions.",
+    "The smallest error of each row is bold. *linear better*: the error of the linear model is more than 10 % smaller than that of *auto*.",
     "In the column *structure of auto*, a creep ladder is a chain of Kelvin-Voigt elements."]
 
 
@@ -194,17 +194,17 @@ def meaning(values):
         parts.append(f"{of(part['changed'], part['cases'])} repeated runs without a change are reported as changed")
     if "changes" in summary:
         part = summary["changes"]
-        parts.append(f"{of(part.get('listed', '-'), part['cases'])} labelled changes have their labelled cause named or listed, and "
-                     f"{of(part['wrong_alone'], part['cases'])} have only a wrong cause named")
+        parts.append(f"the labelled cause is named or listed for {of(part.get('listed', '-'), part['cases'])} labelled changes, and "
+                     f"only a wrong cause is named for {of(part['wrong_alone'], part['cases'])}")
     if "stiction" in summary:
         part = summary["stiction"]["sticking"]
         parts.append(f"stiction is named in {of(part['stiction_named'], part['cases'])} sticking valves")
     if "identification" in summary:
         part = summary["identification"]
-        parts.append(f"a linear model predicts better than `auto` by more than 10 % in {of(part['linear_better']['auto'], part['rows'])} "
+        parts.append(f"the error of a linear model is more than 10 % smaller than that of `auto` in {of(part['linear_better']['auto'], part['rows'])} "
                      "fits")
     parts = parts or ["nothing was evaluated"]
-    return " ".join([f"On data that the project did not make, {parts[0]}.", *(f"{part[0].upper()}{part[1:]}." for part in parts[1:])])
+    return " ".join([f"On data of other laboratories, {parts[0]}.", *(f"{part[0].upper()}{part[1:]}." for part in parts[1:])])
 
 
 def head(values, title, command):

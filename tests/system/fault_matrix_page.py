@@ -7,22 +7,22 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import results_page
 
 EXPLANATION = """\
-This page shows every fault in every phase of a grip: the result, the number of cycles of the loop, and the outputs at the board.
+This page shows the result of every fault in every phase of a grip, with the number of cycles of the control loop and the outputs of the board.
 `tests/system/fault_matrix.yaml` defines the required result of each cell. A cell with another result is marked **WRONG** and fails
-the command. A part of it runs with every test (`system.test_fault_matrix`).
+the command. `system.test_fault_matrix` runs some of the cells with every test run.
 
-- **F103 20/22 vent**: this fault latched 20 cycles after its first effect, where 22 are allowed by the thresholds below. Then the
-  outputs were vented. *board*: the board's own watchdog vented them, because no write was possible. The cycles are ticks in the
-  recording, from the first affected message to the tick that latched.
-- **waits**: the daemon stays in `starting`, outputs at rest, and becomes idle when the cause is gone.
-- **ridden**: no fault, and the grip has its normal result.
+- **F103 20/22 vent**: fault F103 latched 20 cycles after its first effect, and the thresholds below allow 22 cycles. The outputs were then vented.
+*board*: the watchdog of the board vented the outputs, because no write was possible. The cycles are ticks in the recording,
+from the first affected message to the tick in which the fault latched.
+- **waits**: the daemon stays in the state `starting` with its outputs at rest, and becomes idle when the cause is gone.
+- **ridden**: no fault is raised, and the grip has its normal result.
 - **unseen**: the software cannot detect the fault. The note gives the reason and the remaining protection.
-- *spoiled*: a write does not arrive unchanged, so no safe action of the daemon helps, only the protection of board and bench
-  (relief valve, dump valve in the emergency-stop circuit).
+- *spoiled*: a write does not arrive unchanged, so the safe action of the daemon has no effect. Only the protection of board and bench is
+effective (relief valve, dump valve in the emergency-stop circuit).
 
-Every cell also checks these conditions: no output moved away from rest after the fault; the fault is acknowledged once its cause is
-gone, and this causes no motion; recordings are complete, without a missing row except for ticks that the loop itself lost; and `run.json`
-contains the fault.
+In every cell, these conditions are also checked. After the fault, no output moved away from rest. When the cause is gone, the
+fault can be acknowledged, and the acknowledgement causes no motion. The recordings contain every tick that the loop executed,
+and `run.json` contains the fault.
 """
 
 
@@ -57,7 +57,7 @@ def summary(results):
     worst = max(reactions, key=lambda m: m["cycles"] / m["bound"])
     tried = sum(r["attempts"] > 1 for r in results)
     return (f"{len(results)} cells: " + ", ".join(f"{n} {ends}" for ends, n in sorted(count.items())) +
-            f". {len(reactions)} reactions were measured; the one nearest to its bound took {worst['cycles']} of {worst['bound']} "
+            f". {len(reactions)} reactions were measured; the reaction that was nearest to its limit took {worst['cycles']} of {worst['bound']} "
             f"cycles. {tried} cells were repeated after a pause of the machine.")
 
 
@@ -65,7 +65,7 @@ def meaning(results):
     wrong, unseen = (sum(bool(kind(r)) for r in results) for kind in (
         lambda r: r["wrong"], lambda r: not r["wrong"] and r["expected"]["ends"] == "unseen"))
     return (f"{len(results) - wrong} of {len(results)} cells have the required result, but in {unseen} of them the software cannot "
-            "detect the fault, and the note states the remaining protection.")
+            "detect the fault. For each of these cells, a note states the remaining protection.")
 
 
 def page(table, results, build):
