@@ -22,8 +22,8 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests/system"))
 
-ZONES = (("nearer by 4 to 8 mm", -8, -4), ("nearer by 0 to 4 mm", -4, 0), ("farther by 0 to 4 mm", 0, 4),
-         ("farther by 4 to 8 mm", 4, 8.001))
+ZONES = (("4 to 8 mm nearer than expected", -8, -4), ("0 to 4 mm nearer than expected", -4, 0), ("0 to 4 mm farther than expected", 0, 4),
+         ("4 to 8 mm farther than expected", 4, 8.001))
 SLIPPED = "pulled out when held"
 HEAD = ("part", "where", "fingers", "grips", "largest gripping pressure, median and maximum [kPa]", "results",
         "time to the result, median and maximum [s]")
@@ -77,7 +77,7 @@ def table(groups):
 
 
 def page(groups, problems, off, wire, version):
-    others = "".join(f"- {abs(percent)} % {'farther' if percent > 0 else 'less far'}: {summary(judged)}, "
+    others = "".join(f"- fingers move {abs(percent)} % {'farther' if percent > 0 else 'less far'}: {summary(judged)}, "
                      f"{len(found)} requirements violated.\n" for percent, (judged, found) in off.items())
     over_the_wire = "" if wire is None else f"""
 ## Over the network
@@ -93,8 +93,8 @@ requirements violated.
     off_model = max(one.peak_kpa for found, _ in off.values() for group in found.values() for one in group)
     head = results_page.head(
         "Gripping pressure of the shipped sequence",
-        f"In {len(judged)} simulated grips, the gripping pressure was at most {max(one.peak_kpa for one in judged):.1f} kPa, where "
-        f"{ALLOWED_KPA:g} kPa are allowed. If the fingers differ from the model by 2 %, it was at most {off_model:.1f} kPa.", version, f"scripts/gentle_grips.py {wanted} --page docs/results/gentle-grips.md",
+        f"In {len(judged)} simulated grips, the gripping pressure was at most {max(one.peak_kpa for one in judged):.1f} kPa; "
+        f"{ALLOWED_KPA:g} kPa are allowed. If the motion of the fingers differs from the model by 2 %, the gripping pressure was at most {off_model:.1f} kPa.", version, f"scripts/gentle_grips.py {wanted} --page docs/results/gentle-grips.md",
         "simulated rig; virtual time, and real time over Modbus TCP" if wire else "simulated rig, virtual time")
     return "\n".join(head) + f"""
 `config/sequences/pick_stone.yaml` is run on the simulated rig of `config/rig.yaml` in virtual time. Its two positions are adapted to

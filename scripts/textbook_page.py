@@ -55,19 +55,19 @@ def summary(rows):
         among = [r for r in clean if r["columns"] == columns]
         line(f"without an effect, {columns_text(columns)}: held-out error at most {most:g} times the noise", "100 %",
              within(among, most), among)
-    line("without an effect: no cause named that is not present", "at least 97 %",
+    line("cases without an effect: no wrong cause is named", "at least 97 %",
          share(sum(not r["wrong"] for r in clean), len(clean)), clean)
-    line("without an effect: no cause named, but an unexplained error reported (`unexplained`)", "-",
+    line("cases without an effect: no cause is named, but an unexplained error is reported (`unexplained`)", "-",
          share(sum(r["outcome"] == "unexplained" for r in clean), len(clean)), clean)
     wanted = {8: "at least 90 %", 2: "at least 70 %"}
     for strength in sorted({r["strength"] for r in singles}, reverse=True):
         among = [r for r in singles if r["strength"] == strength]
-        line(f"one effect at {strength:g} times the noise: found", wanted.get(strength, "-"), found_of(among), among)
+        line(f"one effect at {strength:g} times the noise: effect found", wanted.get(strength, "-"), found_of(among), among)
     line("one effect: a wrong cause is named", "at most 3 %", wrong_of(singles), singles)
     for size, word in ((2, "two"), (3, "three")):
         among = [r for r in rows if len(r["causes"]) == size]
         line(f"{word} effects: share of the effects that are found", "-", found_of(among), among)
-        line(f"{word} effects: all found", "-", share(sum(len(r["found"]) == size for r in among), len(among)), among)
+        line(f"{word} effects: cases in which {'both' if size == 2 else 'all'} effects are found", "-", share(sum(len(r["found"]) == size for r in among), len(among)), among)
         line(f"{word} effects: a wrong cause is named", "-", wrong_of(among), among)
     closed = [r for r in rows if r.get("feedforward")]
     line("the extended model gives a feedforward", "100 %", share(sum(r["feedforward"] != "none" for r in closed), len(closed)),
@@ -76,7 +76,7 @@ def summary(rows):
 
 
 def columns_text(columns):
-    return {"pressure": "measured pressure", "command": "command alone"}[columns]
+    return {"pressure": "measured pressure", "command": "command without a measured pressure"}[columns]
 
 
 def clean_table(rows):
@@ -94,8 +94,8 @@ def clean_table(rows):
             lines.append((make, columns_text(columns), len(among), median(chosen), f"{max(chosen, default=math.nan):.2f}",
                           median(extended), ", ".join(f"{name} ({n})" for name, n in own.most_common()),
                           instead(among)))
-    return table(("make", "columns", "cases", "held-out error / noise, median", "worst",
-                  "of the diagnosis' model, median", "own physics named", "wrongly named"), lines)
+    return table(("make", "columns", "cases", "held-out error / noise, median", "held-out error / noise, largest",
+                  "held-out error / noise of the diagnosis' model, median", "own physics named", "wrongly named"), lines)
 
 
 def split_table(rows, key, text=str):
@@ -136,7 +136,7 @@ def wrong_table(rows):
 
 def meaning(rows):
     measured = {what: text.split(" (")[0] for what, _, text, _ in summary(rows)}
-    found = [measured.get(f"one effect at {strength} times the noise: found", "-") for strength in (8, 2)]
+    found = [measured.get(f"one effect at {strength} times the noise: effect found", "-") for strength in (8, 2)]
     return (f"In fingers and valves that share no equation with softgrip, the diagnosis finds the true cause in {found[0]} of the "
             f"cases at 8 times the noise, and in {found[1]} at 2 times. It names a wrong cause in "
             f"{measured.get('one effect: a wrong cause is named', '-')} of the cases.")

@@ -48,7 +48,7 @@ def requirements(values):
         part = summary["changes"]
         rows += [("labelled changes beyond the run-to-run spread: detected", "80 %",
                   of(part["detected"], part["beyond_spread"])),
-                 ("of the detected: labelled cause named or listed", "50 %", of(part["named_or_listed"], part["detected"])),
+                 ("detected changes: labelled cause named or listed", "50 %", of(part["named_or_listed"], part["detected"])),
                  ("labelled changes: only a wrong cause named", "at most 10 %", of(part["wrong_alone"], part["cases"])),
                  ("labelled changes within the spread: reported as unchanged", "all",
                   of(part["within_reported_unchanged"], part["within_spread"])),
