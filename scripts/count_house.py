@@ -99,21 +99,21 @@ def count(root):
     large = sorted(name for name in lines if lines[name] > LARGE)
     biggest, files = rooms.most_common(1)[0]
     return [
-        ("product lines", sum(lines.values()), []),
-        ("of these lines of comment only", sum(len(re.findall(r"^\s*//", text, re.MULTILINE)) for text in sources.values()), []),
+        ("lines of source code without tests", sum(lines.values()), []),
+        ("lines of source code without tests that contain only a comment", sum(len(re.findall(r"^\s*//", text, re.MULTILINE)) for text in sources.values()), []),
         ("files", len(sources), []),
         ("folders with sources", len(rooms), []),
-        ("largest folder, files", f"{files} (`{biggest}`)", [f"{one}: {n}" for one, n in rooms.most_common(8)]),
+        ("number of files in the largest folder", f"{files} (`{biggest}`)", [f"{one}: {n}" for one, n in rooms.most_common(8)]),
         (f"files below {SMALL} lines", len(small), small),
         (f"files above {LARGE} lines", len(large), [f"{one}: {lines[one]}" for one in large]),
         ("includes between folders", len(crossing), []),
-        ("arrows between folders", len(arrows), []),
-        ("pairs of folders in a circle of includes", len(circles), [f"{one} <-> {other}" for one, other in circles]),
-        ("pairs of top folders in a circle of includes", len(mutual({one for one in floors if one[0] != one[1]})), []),
-        ("files that name a block away from home", len({name for name, _ in names}), [f"{name}: {one}" for name, one in names]),
-        ("names of blocks there", len(names), []),
-        ("files that `softgrip diagnose` stands on", len(diagnose), []),
-        ("folders that it stands on", len(set(map(folder, diagnose))), sorted(set(map(folder, diagnose)))),
+        ("allowed dependencies between folders", len(arrows), []),
+        ("pairs of folders that include each other", len(circles), [f"{one} <-> {other}" for one, other in circles]),
+        ("pairs of top folders that include each other", len(mutual({one for one in floors if one[0] != one[1]})), []),
+        ("files that contain the name of a block and do not define this block", len({name for name, _ in names}), [f"{name}: {one}" for name, one in names]),
+        ("names of blocks in these files", len(names), []),
+        ("files on which `softgrip diagnose` depends", len(diagnose), []),
+        ("folders on which `softgrip diagnose` depends", len(set(map(folder, diagnose))), sorted(set(map(folder, diagnose)))),
     ]
 
 
