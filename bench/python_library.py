@@ -128,12 +128,12 @@ def main():
             study.version, f"bench/python_library.py --runs {args.runs}", f"simulated logs; {results_page.here()}"),
         "| measured | result | required |", "|---|---|---|", *("| " + " | ".join(row) + " |" for row in rows), "",
         f"The time of the import is the median of {4 * args.runs} processes. The time of a simulation is the shortest of {args.runs * CALLS:,} calls, in",
-        "alternating processes of the two languages. Both languages used a `MALLOC_TRIM_THRESHOLD_` of 256 MiB. With the default value, the",
+        "alternating processes of the two languages. The processes of both languages used a `MALLOC_TRIM_THRESHOLD_` of 256 MiB. With the default value, the",
         "small C++ program returns memory to the system after each call, so the next call takes longer.", "",
         "## Identification", "",
         "| program | processor time [s] | fitted: tp1 [mm] | held out: steps [mm] | held out: sp2 [mm] |", "|---|---|---|---|---|",
         *("| " + " | ".join(row) + " |" for row in fits), "",
-        f"Both programs start at the published parameters and at {STARTS - 1} other parameter sets. SciPy's `least_squares` calls a simulator in C",
+        f"SciPy and softgrip start at the published parameters and at {STARTS - 1} other parameter sets. SciPy's `least_squares` calls a simulator in C",
         f"(`bench/sysid_peer_simulator.c`) through ctypes. The processor time is that of the complete program on all cores, as the median of {args.runs}",
         "runs. In this time, `softgrip.identify()` also computes intervals, warnings and the report.", ""])
     args.page.write_text(text)

@@ -66,7 +66,7 @@ def page(results, command, version):
              f"| resolved to a wrong cause | {share(wrong, asked)} |",
              f"| still ambiguous, with the true cause listed | {len(open_still)} |",
              f"| of the ambiguous verdicts: no command and no gauge can separate the causes (lags of valve and sensor) | {len(twins)} |",
-             f"| other results (unexplained, partly, failed) | {len(others)} |", ""]
+             f"| all other results of an investigation (verdict `unexplained` or `partly_explained`, or a failed run) | {len(others)} |", ""]
     for title, chosen in (("the campaign's", [r for r in asked if not r["poor"]]),
                           ("one log of triangles", [r for r in asked if r["poor"]])):
         if chosen:

@@ -146,7 +146,7 @@ def changing_text():
         "`twin`: stiffening is named although the sensor scale is nonlinear, or the reverse. `listed`: the true cause is named after a wrong cause,",
         "or is listed as an alternative. `unnamed`: a change is reported, but no cause is named. `missed`: the finger is reported as unchanged. `wrong`: only a wrong cause is named. The coverage of the intervals is computed for changes whose true cause",
         "is named first, and for parameters that have the same meaning in the simulation and in the result. The valve of the textbook family and the regulator of the model structure follow the same standard (ISO 6358, a controller",
-        "with integral action). These cases therefore do not show the performance on a valve that does not follow this standard."]
+        "with integral action). The textbook cases therefore do not show the performance on a valve that does not follow ISO 6358."]
 
 
 def main():

@@ -287,13 +287,12 @@ within the day, and a temperature coefficient of the gain of {100 * GAIN_PER_C["
 
 ## Detected changes
 
-{told}`warned on day` is the day on which the changed difference between the fingers was first reported. This report can be `unclear`: it then does
-not name the changed finger. `shared` is a change of the rig and not of a single finger. On day 60, the left finger was replaced by a finger that is {100 * (NEW_FINGER - 1):.0f} % softer. The maintenance record
+{told}`warned on day` is the day on which the changed difference between the fingers was first reported. An `unclear` report does not name the changed finger. `shared` is a change of the rig and not of a single finger. On day 60, the left finger was replaced by a finger that is {100 * (NEW_FINGER - 1):.0f} % softer. The maintenance record
 contains this replacement, so the control charts of the finger started with a new reference.
 
 ## Healthy days
 
-These simulated lives of {DAYS} days contain only weather and wear. Each life has two fingers, with nine indicators per finger. For independent days, the stated
+The simulated lives of {DAYS} days contain only weather and wear. Each life has two fingers, with nine indicators per finger. For independent days, the stated
 average is one false alarm in 3650 points of a finger, which is {2 * args.healthy * DAYS / 3650:.2f} for {2 * args.healthy} fingers. The table
 states the fingers with an alarm, and the lives with a reported change of the rig:
 
@@ -302,8 +301,7 @@ states the fingers with an alarm, and the lives with a reported change of the ri
 {counts}
 The estimated temperature coefficient of the gain is {min(slopes, default=0):.4f} to {max(slopes, default=0):.4f} mm per °C.
 
-{lists}An active alarm hides further alarms of the same indicator. Without a thermometer, the weather causes the shared changes of the gain in these lives. These warnings are true, but not
-useful. The results are limited in three ways: all simulated fingers are of one type, they follow the ambient temperature
+{lists}An active alarm hides further alarms of the same indicator. Without a thermometer, the weather causes the shared changes of the gain in these lives. Warnings of shared changes are true in this case, but not useful. The results are limited in three ways: all simulated fingers are of one type, they follow the ambient temperature
 without delay, and only the weather is correlated from day to day.
 """
 

@@ -108,8 +108,8 @@ def page(args, figures):
                  f"scripts/workflow_campaign.py --work DIR --rows {rows} --cores {args.cores} --batch {args.batch} --page {args.page}",
                  f"{os.cpu_count()} processors, which other programs used, too"),
              "The column *load* is the 1-minute load of the machine. Each row runs `softgrip identify --threads 1` for another simulated finger, with a "
-             "log of 25 s at 20 Hz. Such short rows are the workflow's worst case, because its overhead per row does not depend on the "
-             "duration of a row.", "",
+             "log of 25 s at 20 Hz. Short rows are the worst case of the workflow, because the "
+             "overhead per row does not depend on the duration of a row.", "",
              "| method | wall time | per row | load | models, hash over all |", "|---|---|---|---|---|"]
     for name, seconds, (digest, count), load in figures["ways"]:
         lines.append(f"| {name} | {seconds:.0f} s | {seconds / rows:.2f} s | {load:.1f} | {count}, `{digest}` |")

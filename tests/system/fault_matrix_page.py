@@ -20,7 +20,7 @@ from the first affected message to the tick in which the fault latched.
 - *spoiled*: a write does not arrive unchanged, so the safe action of the daemon has no effect. Only the protection of board and bench is
 effective (relief valve, dump valve in the emergency-stop circuit).
 
-In every cell, these conditions are also checked. After the fault, no output moved away from rest. When the cause is gone, the
+In every cell, the following conditions are also checked. After the fault, no output moved away from rest. When the cause is gone, the
 fault can be acknowledged, and the acknowledgement causes no motion. The recordings contain every tick that the loop executed,
 and `run.json` contains the fault.
 """
