@@ -115,9 +115,9 @@ def main():
     rows = [
         ("`import softgrip`, wall time and processor time", f"{with_numpy[0]:.3f} and {with_numpy[1]:.3f} s",
          f"less than {MOST_IMPORT_S} s"),
-        ("the same without NumPy", f"{without_numpy[0]:.3f} and {without_numpy[1]:.3f} s", f"less than {MOST_IMPORT_S} s"),
+        ("import without NumPy: elapsed and processor time", f"{without_numpy[0]:.3f} and {without_numpy[1]:.3f} s", f"less than {MOST_IMPORT_S} s"),
         (f"`Model.simulate()` of {SAMPLES:,} samples from C++", f"{cpp_us:.1f} µs", "-"),
-        ("the same from Python", f"{python_us:.1f} µs: {overhead:+.1f} %", f"at most {MOST_OVERHEAD_PERCENT} % more")]
+        ("a simulation of 10,000 samples from Python, compared with C++", f"{python_us:.1f} µs: {overhead:+.1f} %", f"at most {MOST_OVERHEAD_PERCENT} % more")]
     fits = [(name, f"{seconds:.2f}", f"{found['rmse_mm']:.4f}", *(f"{one:.4f}" for one in found["held_out_rmse_mm"]))
             for name, found, seconds in (("SciPy", scipy, scipy_s), ("`softgrip.identify()`", ours, ours_s))]
     text = "\n".join([

@@ -98,7 +98,7 @@ def cases(logs):
             GIVEN, [logs.made(TWIN, 100, 100, 5)], healthy(logs.made)),
         "3 healthy logs and 1 of another finger, 100 s at 100 Hz each": lambda: diagnose(
             GIVEN, [logs.made(GIVEN, 100, 100, 5)], healthy(logs.made)),
-        "the same with measured pressure": lambda: diagnose(
+        "3 healthy logs and 1 of another finger, with measured pressure": lambda: diagnose(
             GIVEN, [logs.measured(GIVEN, 100, 100, 5)], healthy(logs.measured)),
         "600 s at 1 kHz, published structure": lambda: (
             "identify", ["--structure", "auto", "--data", logs.made(TWIN, 600, 1000, 6)]),

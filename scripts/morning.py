@@ -23,9 +23,10 @@ HEAD = """# A morning at the bench
 This page shows the output of softgrip for common faults, and what to do. `scripts/morning.py` ran the commands below, with
 `softgrip-rig` in place of the board, and wrote this page. A test runs the commands again and compares their output with
 this page. Times are shown as hh:mm:ss, measured numbers are rounded, and `[...]` marks omitted lines. `softgrip watch`
-shows the same state live. Its keys are `s`, `v`, `r`, `a` and `g` ([commands](../reference/commands.md#with-a-daemon)). The
-first picture shows `softgrip watch` in 80 columns, while both fingers hold a part. The second shows it in 60 columns, after
-a sensor failed during a hold and recovered. `scripts/watch_pictures.py` drew both from a real terminal:
+shows the state of the daemon live. Its keys are `s`, `v`, `r`, `a` and `g`
+([commands](../reference/commands.md#with-a-daemon)). The first picture shows `softgrip watch` in 80 columns, while both
+fingers hold a part. The second shows it in 60 columns, after a sensor failed during a hold and recovered.
+`scripts/watch_pictures.py` drew both from a real terminal:
 
 ![watch at 80 columns: both fingers hold a part](../pictures/watch-80.svg)
 

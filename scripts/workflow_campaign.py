@@ -114,7 +114,7 @@ def page(args, figures):
     for name, seconds, (digest, count), load in figures["ways"]:
         lines.append(f"| {name} | {seconds:.0f} s | {seconds / rows:.2f} s | {load:.1f} | {count}, `{digest}` |")
     whole_s = figures["whole_s"]
-    lines += ["", f"The models are {'the same, byte by byte' if same else 'NOT the same'}.", "",
+    lines += ["", f"The models of all methods are {'identical, byte by byte' if same else 'NOT identical'}.", "",
               f"A workflow was killed with SIGKILL after {first_s:.0f} s, when {done} of {rows} rows were done, and started again. It took "
               f"{second_s:.0f} s more, in total {first_s + second_s:.0f} s, compared with {whole_s:.0f} s for an undisturbed workflow directly "
               f"before. Of the rows that were done, {twice} {'was' if twice == 1 else 'were'} run twice."]
