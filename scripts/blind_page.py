@@ -167,7 +167,7 @@ def detection_limits(results):
     which 90 % were found."""
     singles = [r for r in results if len(r["causes"]) == 1 and not is_outside(r["causes"][0])]
     strengths = sorted({r["strength"] for r in singles}, reverse=True)
-    lines = ["| cause | " + " | ".join(f"found at {s:g} x noise" for s in strengths) + " | smallest strength with at least 90 % found |",
+    lines = ["| cause | " + " | ".join(f"found at {s:g} x noise" for s in strengths) + " | smallest strength at which the cause is found in at least 90 % of the cases |",
              "|---|" + "---|" * (len(strengths) + 1)]
     for cause in sorted({r["causes"][0] for r in singles}):
         rates = {s: share([r for r in singles if r["causes"][0] == cause and r["strength"] == s], "right",

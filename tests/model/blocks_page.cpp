@@ -19,13 +19,14 @@ const std::string file_name = std::string(SOFTGRIP_SOURCE_DIR) + "/docs/referenc
 std::string_view what_it_does(Kind kind) {
   switch (kind) {
     case Kind::pressure:
-      return "kPa to kPa, in series";
+      return "The block changes the pressure [kPa], in series with the other blocks.";
     case Kind::element:
-      return "kPa to mm; the displacements of all elements add";
+      return "The block computes a displacement [mm] from the pressure [kPa]. The displacements of all "
+             "elements are added.";
     case Kind::displacement:
-      return "mm to mm, in series";
+      return "The block changes the displacement [mm], in series with the other blocks.";
     case Kind::reading:
-      return "mm to mm, once per reading";
+      return "The block changes each reading [mm].";
   }
   return "";
 }
@@ -33,17 +34,18 @@ std::string_view what_it_does(Kind kind) {
 std::string_view how_undone(Inverse inverse) {
   switch (inverse) {
     case Inverse::implicit:
-      return "inverted together with the actuator";
+      return "The feedforward inverts the block together with the actuator.";
     case Inverse::lead:
-      return "compensated by a lead, so that its output is the planned pressure";
+      return "The feedforward compensates the block by a lead, so that the output of the block is the "
+             "planned pressure.";
     case Inverse::preview:
-      return "compensated with the future value of the reference";
+      return "The feedforward compensates the block with the future value of the reference.";
     case Inverse::play:
-      return "half the band is added in the direction of motion";
+      return "The feedforward adds half of the band in the direction of motion.";
     case Inverse::bound:
-      return "no inverse; limits the reference";
+      return "The block has no inverse, so the feedforward limits the reference.";
     case Inverse::ignored:
-      return "not compensated";
+      return "The feedforward does not compensate the block.";
   }
   return "";
 }
@@ -66,7 +68,7 @@ void write_block(std::ostream& out, const BlockDescriptor& descriptor) {
   const BlockInfo& info = descriptor.info;
   out << "\n### `" << info.id << "`: " << info.title << "\n\n" << info.meaning << "\n\n";
   out << "    " << info.equation << "\n\n";
-  out << "Acts on: " << what_it_does(info.kind) << ". In the feedforward: " << how_undone(info.inverse) << "."
+  out << what_it_does(info.kind) << " " << how_undone(info.inverse)
       << (info.repeatable ? " A chain may contain it more than once." : "") << "\n\n";
   out << "| key | unit | typical | allowed | no effect at | meaning |\n|---|---|---|---|---|---|\n";
   for (const ParameterSpec& spec : descriptor.parameters) write_parameter(out, spec);
