@@ -6,13 +6,12 @@ the feedforward of the identified model, PID alone, and the scheme of the paper.
                                 [--frequencies-hz 0.05 0.1 0.2 0.5]
 
 Each finger (tests/blind/textbook) is identified twice from its own campaign: with `softgrip identify --structure auto` and with
-`--structure bouc_wen`. Then tests/blind/textbook/rig.cpp simulates four copies of it in real time on Modbus TCP, and softgripd's
-loop follows the same sines on all four at 200 Hz. In the first run, four PIDs follow a sine of 0.2 Hz, with the gains of `softgrip
-tune` for sensitivities of at most 2, 1.6, 1.3 and 1.15; the better two are kept. In the second run, four controllers follow all
-sines: the identified model's feedforward with PID, the two PIDs, and the paper's scheme, which is the inverse of the Bouc-Wen
-element with PID. The first and the last use the gains of `softgrip tune`. The error is the root mean square of reading minus
-reference, each reading with the reference of its own time, from the second cycle on. The table also states the error without the
-noise of the sensor, which adds its own mean square to every scheme.
+`--structure bouc_wen`. Then tests/blind/textbook/rig.cpp simulates four copies of the finger in real time on Modbus TCP, and softgripd tracks one sine
+with all four copies at 200 Hz. In the first run, four PID controllers track a sine of 0.2 Hz. The gains are those of `softgrip tune` for maximum sensitivities
+of 2, 1.6, 1.3 and 1.15. The two PID controllers with the smallest errors are used in the second run. In the second run, four controllers track the sines of all frequencies: the feedforward of the identified model with PID, the
+two PID controllers, and the scheme of the paper, which is the inverse of the Bouc-Wen element with PID. The two controllers
+with a feedforward use the gains of `softgrip tune`. The error is the root mean square of reading minus reference at the time of the reading, from the second cycle on. The noise of
+the sensor adds its mean square to the error of every scheme, so the table also states the error without this noise.
 """
 import argparse
 import concurrent.futures
@@ -179,14 +178,14 @@ def page(results, frequencies_hz, command, version):
     raw = [x for hz in frequencies_hz for x in ratios(results, hz, "identified", float)]
     exact = [best_pid(r, hz) / NOISE_MM for r in results for hz in frequencies_hz]
     meaning = (f"With an identified model and PID, the tracking error is {statistics.median(raw):.1f} times smaller than with the "
-               f"best PID, where a perfect controller reaches {statistics.median(exact):.1f} times.")
+               f"best PID. The error of a perfect controller would be {statistics.median(exact):.1f} times smaller.")
     lines = [*results_page.head("Textbook fingers in closed loop", meaning, version, command,
                                 f"{len(results)} simulated fingers in real time on Modbus TCP, 200 Hz"),
              " ".join(__doc__.split("\n\n")[2].replace("(tests/blind/textbook)", "(`tests/blind/textbook`)").split()), "",
              f"There are {len(results)} fingers. The amplitude of the sines is 25 % of the span. The sensor's noise is "
-             f"{NOISE_MM} mm, so the error of no scheme can be smaller.", "",
-             "| frequency | identified model and PID | best PID alone | paper's scheme | smaller error than the best PID, median | "
-             "worst | without the noise, median | paper's scheme, median |", "|---|---|---|---|---|---|---|---|"]
+             f"{NOISE_MM} mm, so no scheme can have a smaller error.", "",
+             "| frequency | identified model and PID | best PID alone | paper's scheme | identified model and PID: smaller error than the best PID, median | "
+             "smallest of these factors | factor without the noise, median | paper's scheme: smaller error than the best PID, median |", "|---|---|---|---|---|---|---|---|"]
     for hz in frequencies_hz:
         median = [statistics.median(r["errors_mm"][hz, "identified"] for r in results),
                   statistics.median(best_pid(r, hz) for r in results),
@@ -197,8 +196,8 @@ def page(results, frequencies_hz, command, version):
                      f" | {statistics.median(read):.1f} times | {min(read):.1f} times | {statistics.median(free):.1f} times | "
                      f"{statistics.median(paper):.1f} times |")
     lines += ["", f"Over all fingers and frequencies, the error of the readings is {statistics.median(raw):.1f} times smaller than with the "
-              f"best PID ({statistics.median(exact):.1f} times for a finger that follows exactly). Without the noise it is "
-              f"{statistics.median(every):.1f} times smaller.", "", "## Errors of the readings, for each finger", "",
+              f"best PID. If a finger followed the reference exactly, this error would be {statistics.median(exact):.1f} times smaller. Without the noise of the sensor, the error is "
+              f"{statistics.median(every):.1f} times smaller than with the best PID.", "", "## Errors of the readings, for each finger", "",
               "| make | seed | reference | " + " | ".join(f"{hz:g} Hz: identified, best PID, paper" for hz in frequencies_hz) + " |",
               "|---" * (3 + len(frequencies_hz)) + "|"]
     for r in results:
