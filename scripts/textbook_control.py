@@ -5,13 +5,15 @@ the feedforward of the identified model, PID alone, and the scheme of the paper.
     scripts/textbook_control.py --work DIR [--build build/release] [--fingers 10] [--side-by-side 5] [--page PAGE.md]
                                 [--frequencies-hz 0.05 0.1 0.2 0.5]
 
-Each finger (tests/blind/textbook) is identified twice from its own campaign: with `softgrip identify --structure auto` and with
-`--structure bouc_wen`. Then tests/blind/textbook/rig.cpp simulates four copies of the finger in real time on Modbus TCP, and softgripd tracks one sine
-with all four copies at 200 Hz. In the first run, four PID controllers track a sine of 0.2 Hz. The gains are those of `softgrip tune` for maximum sensitivities
-of 2, 1.6, 1.3 and 1.15. The two PID controllers with the smallest errors are used in the second run. In the second run, four controllers track the sines of all frequencies: the feedforward of the identified model with PID, the
-two PID controllers, and the scheme of the paper, which is the inverse of the Bouc-Wen element with PID. The two controllers
-with a feedforward use the gains of `softgrip tune`. The error is the root mean square of reading minus reference at the time of the reading, from the second cycle on. The noise of
-the sensor adds its mean square to the error of every scheme, so the table also states the error without this noise.
+Each finger (tests/blind/textbook) is identified twice from its own campaign: with `softgrip identify --structure auto` and
+with `--structure bouc_wen`. Then tests/blind/textbook/rig.cpp simulates four copies of the finger in real time on Modbus
+TCP, and softgripd tracks one sine with all four copies at 200 Hz. In the first run, four PID controllers track a sine of
+0.2 Hz. The gains are those of `softgrip tune` for maximum sensitivities of 2, 1.6, 1.3 and 1.15. The two PID controllers
+with the smallest errors are used in the second run. In the second run, four controllers track the sines of all frequencies:
+the feedforward of the identified model with PID, the two PID controllers, and the scheme of the paper, which is the inverse
+of the Bouc-Wen element with PID. The two controllers with a feedforward use the gains of `softgrip tune`. The error is the
+root mean square of reading minus reference at the time of the reading, from the second cycle on. The noise of the sensor
+adds its mean square to the error of every scheme, so the table also states the error without this noise.
 """
 import argparse
 import concurrent.futures
