@@ -118,7 +118,7 @@ def page(rows, command, planned, variation, version):
                            ("true cause named or listed", ("first", "twin", "listed"))):
             lines.append(f"| strength {strength}: {name} | {f'at least {wanted} %' if len(good) == 1 else '-'} | "
                          f"{interval(sum(r['outcome'] in good for r in own), len(own))} | {len(own)} |")
-        lines.append(f"| strength {strength}: only another cause named | - | "
+        lines.append(f"| strength {strength}: only a wrong cause is named | - | "
                      f"{interval(sum(r['outcome'] == 'wrong' for r in own), len(own))} | {len(own)} |")
     told = [one["held"] for r in changed for one in r["intervals"]]
     lines.append(f"| 95 % intervals that contain the true value | 92 to 97 % | {interval(sum(told), len(told))} | {len(told)} |")
