@@ -144,8 +144,8 @@ IDENTIFICATION_TEXT = [
     "(`bench/foreign/scipy_bouc_wen.py`). For B, *output error* and *SciPy* estimate only the offset, from the first 5 % (at least 2 s).",
     "With the drive *command*, no method uses the measured pressure. With the drive *measured*, the measured pressure is the input of every model.",
     "The held-out errors of `piezo` and `hydraulic` were known when the rule for the initial state of the linear model was chosen.",
-    "The errors on `asu_softarm` and `hydraulic` were known when the start at rest, the bounded response, the second lag and the",
-    "resonance of *auto* were added, so the counts on these sets are not an independent evaluation of these additions.",
+    "The errors on `asu_softarm` and `hydraulic` were known when the start at rest, the bounded response, the second lag, the",
+    "rate limit and the resonance of *auto* were added, so the counts on these sets are not an independent evaluation of these additions.",
     "The smallest error of each row is bold. *linear better*: the error of the linear model is more than 10 % smaller than that of *auto*.",
     "In the column *structure of auto*, a creep ladder is a chain of Kelvin-Voigt elements."]
 
