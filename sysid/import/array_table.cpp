@@ -18,7 +18,7 @@ double finite_or_none(double value) {
 
 void ArrayCollector::add(const std::string& name, const std::string& unit, std::size_t rows,
                          std::size_t columns, const std::vector<double>& values) {
-  if (!has_room(rows, columns)) return pass_over(name, too_large);
+  if (!has_room(rows, columns)) return skip(name, too_large);
   if (values.size() != rows * columns || values.size() < 2) return;
   values_ += values.size();
   const bool is_vector = rows == 1 || columns == 1;
@@ -26,7 +26,7 @@ void ArrayCollector::add(const std::string& name, const std::string& unit, std::
   const bool lies = !is_vector && columns > rows;
   const std::size_t count = is_vector ? 1 : std::min(rows, columns);
   const std::size_t length = values.size() / count;
-  if (count > widest_matrix) return pass_over(name, std::to_string(count) + " columns");
+  if (count > widest_matrix) return skip(name, std::to_string(count) + " columns");
   for (std::size_t k = 0; k < count; ++k) {
     TableColumn column;
     const std::string number = std::to_string(k + 1);
@@ -39,7 +39,7 @@ void ArrayCollector::add(const std::string& name, const std::string& unit, std::
   }
 }
 
-void ArrayCollector::pass_over(const std::string& name, const std::string& what) {
+void ArrayCollector::skip(const std::string& name, const std::string& what) {
   notes_.push_back("'" + document::shown(name) + "' is skipped: " + what);
 }
 

@@ -27,10 +27,9 @@ class ArrayCollector {
   void add(const std::string& name, const std::string& unit, std::size_t rows, std::size_t columns,
            const std::vector<double>& values);
   void note(std::string what) { notes_.push_back(std::move(what)); }
-  /// Adds a note that the array `name` is skipped. @param what  the reason.
-  void pass_over(const std::string& name, const std::string& what);
-  /// Returns true if the table with an additional array of this size has at most most_values values. Call
-  /// this function before the values are read.
+  /// Adds a note that the array `name` is skipped. `what` states the reason.
+  void skip(const std::string& name, const std::string& what);
+  /// Returns true if an array of this size still fits within most_values. Call it before the values are read.
   [[nodiscard]] bool has_room(std::size_t rows, std::size_t columns) const {
     return columns == 0 || rows <= (most_values - values_) / columns;
   }

@@ -15,11 +15,10 @@ constexpr double day_s = 86400;
 /// Largest time step across an overflow, as a multiple of the usual step of the clock. Across a larger step,
 /// rows may be missing, so the overflow is not corrected.
 constexpr double longest_step = 3;
-/// Two clocks with different origins count as one clock if their difference varies by at most this share of
-/// the usual time step.
-constexpr double wandering_share = 0.5;
-/// Two clocks with the same origin count as one clock if they differ by at most this share of the usual time
-/// step.
+/// Two clocks with different origins count as one if their difference varies by at most this share of the
+/// usual step.
+constexpr double variation_share = 0.5;
+/// Two clocks with the same origin count as one if they differ by at most this share of the usual step.
 constexpr double equal_share = 0.05;
 constexpr double rising_share = 0.9;
 /// Two time columns can count as one clock only if at most this share of the rows has a time in just one of
@@ -191,7 +190,7 @@ bool same_clock(const ForeignTable& table, const Mapping& mapping, std::size_t a
   const Extent spread = finite_extent(differences);
   const Extent span = finite_extent(*first);
   const bool other_origin = std::abs(differences.front()) > span.highest - span.lowest;
-  if (other_origin) return spread.highest - spread.lowest <= wandering_share * step;
+  if (other_origin) return spread.highest - spread.lowest <= variation_share * step;
   return std::max(std::abs(spread.lowest), std::abs(spread.highest)) <= equal_share * step;
 }
 

@@ -102,14 +102,14 @@ void collect_members(hid_t dataset, hid_t type, const std::string& name, std::si
     const Handle kind(H5Tget_member_type(type, static_cast<unsigned>(i)), H5Tclose);
     if (!member || !is_number(kind.get())) continue;
     if (!arrays.has_room(rows, 1)) {
-      arrays.pass_over(name + "." + member.get(), too_large);
+      arrays.skip(name + "." + member.get(), too_large);
       continue;
     }
     const Handle one(H5Tcreate(H5T_COMPOUND, sizeof(double)), H5Tclose);
     H5Tinsert(one.get(), member.get(), 0, H5T_NATIVE_DOUBLE);
     std::vector<double> values(rows);
     if (H5Dread(dataset, one.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-      arrays.pass_over(name + "." + member.get(), "this dataset cannot be read");
+      arrays.skip(name + "." + member.get(), "it cannot be read");
     } else {
       arrays.add(name + "." + member.get(), {}, rows, 1, values);
     }
@@ -134,23 +134,22 @@ void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arr
   const Handle space(H5Dget_space(dataset), H5Sclose);
   std::array<hsize_t, 2> size{1, 1};
   const int rank = H5Sget_simple_extent_ndims(space.get());
-  if (rank < 1 || rank > 2) return arrays.pass_over(name, std::to_string(rank) + " dimensions");
+  if (rank < 1 || rank > 2) return arrays.skip(name, std::to_string(rank) + " dimensions");
   H5Sget_simple_extent_dims(space.get(), size.data(), nullptr);
-  if (size[0] == 0 || size[1] == 0) return arrays.pass_over(name, "empty");
-  if (!arrays.has_room(size[0], size[1])) return arrays.pass_over(name, too_large);
-  if (H5Tget_size(type.get()) > most_type_bytes)
-    return arrays.pass_over(name, "a single value has more than 1 MiB");
+  if (size[0] == 0 || size[1] == 0) return arrays.skip(name, "empty");
+  if (!arrays.has_room(size[0], size[1])) return arrays.skip(name, too_large);
+  if (H5Tget_size(type.get()) > most_type_bytes) return arrays.skip(name, "one value has more than 1 MiB");
   if (chunk_bytes(dataset, type.get()) > most_chunk_bytes)
-    return arrays.pass_over(name, "the chunks of the dataset have more than 256 MiB");
+    return arrays.skip(name, "its chunks have more than 256 MiB");
   if (H5Tget_class(type.get()) == H5T_COMPOUND && rank == 1)
     return collect_members(dataset, type.get(), name, size[0], arrays);
   const std::string matlab_class = attribute_text(dataset, "MATLAB_class");
   if (!is_number(type.get()) || !is_matlab_number(matlab_class))
-    return arrays.pass_over(
-        name, matlab_class.empty() ? "no numbers" : "MATLAB's " + matlab_class + ", no numbers");
+    return arrays.skip(name,
+                       matlab_class.empty() ? "no numbers" : "MATLAB's " + matlab_class + ", no numbers");
   std::vector<double> values(size[0] * size[1]);
   if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    return arrays.pass_over(name, "this dataset cannot be read");
+    return arrays.skip(name, "it cannot be read");
   if (matlab_class.empty()) {
     arrays.add(name, unit_of(dataset), size[0], size[1], by_columns(values, size[0], size[1]));
   } else {
@@ -200,7 +199,7 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* data) 
   if (!walk.refused.empty()) return 1;
   const Handle object(H5Oopen(group, name, walk.access), H5Oclose);
   if (!object) {
-    walk.arrays.pass_over(path, "this object cannot be opened");
+    walk.arrays.skip(path, "it cannot be opened");
     return 0;
   }
   const H5I_type_t kind = H5Iget_type(object.get());

@@ -123,14 +123,14 @@ class MatCollector {
       return;
     }
     if (!is_numeric(variable) || shape.rows * shape.columns == 0) {
-      if (!is_numeric(variable) || variable.rank != 2) arrays_.pass_over(name, what_it_is(variable));
+      if (!is_numeric(variable) || variable.rank != 2) arrays_.skip(name, what_it_is(variable));
       return;
     }
-    if (variable.isComplex != 0) return arrays_.pass_over(name, what_it_is(variable));
-    if (!arrays_.has_room(shape.rows, shape.columns)) return arrays_.pass_over(name, too_large);
+    if (variable.isComplex != 0) return arrays_.skip(name, what_it_is(variable));
+    if (!arrays_.has_room(shape.rows, shape.columns)) return arrays_.skip(name, too_large);
     const bool read = Mat_VarReadDataAll(file_, &variable) == 0;
     const std::vector<double> values = read ? values_of(variable, shape.count()) : std::vector<double>{};
-    if (values.empty()) return arrays_.pass_over(name, "this array cannot be read");
+    if (values.empty()) return arrays_.skip(name, "it cannot be read");
     arrays_.add(name, unit, shape.rows, shape.columns, values);
   }
 

@@ -81,7 +81,7 @@ class McapReader {
     if (cut_off_bytes_ > 0)
       table_.notes.push_back("the file is cut off: its last " + std::to_string(cut_off_bytes_) +
                              " bytes are left out");
-    for (const auto& [topic, said] : passed_over_)
+    for (const auto& [topic, said] : skipped_)
       table_.notes.push_back("topic '" + document::shown(topic, 40) +
                              "' is skipped: " + std::to_string(said.second) + " messages in '" +
                              document::shown(said.first, 40) + "', not in JSON");
@@ -199,7 +199,7 @@ class McapReader {
     if (!scan.good() || found == topics_.end()) return refuse("a message refers to an unknown channel");
     const Topic& of = found->second;
     if (of.encoding != "json") {
-      auto& said = passed_over_[of.name];
+      auto& said = skipped_[of.name];
       said.first = of.encoding;
       ++said.second;
       return;
@@ -436,8 +436,8 @@ class McapReader {
   std::map<std::uint16_t, Topic> topics_;
   /// Topics whose messages become rows of the table.
   std::vector<McapTopic> read_;
-  /// Encoding and number of messages of each skipped topic.
-  std::map<std::string, std::pair<std::string, std::size_t>> passed_over_;
+  /// Per skipped topic: encoding and number of messages.
+  std::map<std::string, std::pair<std::string, std::size_t>> skipped_;
   std::set<std::string> arrays_;
   std::vector<std::uint64_t> log_times_;
   std::size_t rows_ = 0;

@@ -411,10 +411,10 @@ class TdmsReader {
     std::map<std::tuple<double, double, std::size_t>, std::string> times;
     std::optional<Stamp> first_start;
     for (TdmsChannel& channel : channels_) {
-      if (channel.type == TdmsType::string && channel.has_index) arrays_.pass_over(channel.name, "a text");
+      if (channel.type == TdmsType::string && channel.has_index) arrays_.skip(channel.name, "a text");
       if (channel.values.empty()) continue;
       if (channel.needs_scale) {
-        arrays_.pass_over(channel.name, "the values of this channel are not scaled");
+        arrays_.skip(channel.name, "its values are not scaled");
         continue;
       }
       const std::size_t count = channel.values.size();
