@@ -7,9 +7,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Regularisation that is added to the diagonal of the scaled matrix, whose elements are 1. The minimum is
-/// then unique even if the matrix is singular.
-constexpr double hair = 1e-13;
+/// Regularisation that is added to the unit diagonal, so that a singular matrix also has a unique minimum.
+constexpr double regularisation = 1e-13;
 
 /// Primal active-set method on scaled variables.
 class ActiveSet {
@@ -109,9 +108,8 @@ BoundedSolution solve_bounded(const Eigen::MatrixXd& gram, const Eigen::VectorXd
   const Eigen::VectorXd scale =
       gram.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 1.0; });
   Eigen::MatrixXd g = scale.asDiagonal() * gram * scale.asDiagonal();
-  g.diagonal().array() += hair;
-  // The right-hand side is scaled so that its largest magnitude is 1, because multipliers are compared with
-  // 1e-12.
+  g.diagonal().array() += regularisation;
+  // The right-hand side is scaled to a maximum of 1, because multipliers are compared with 1e-12.
   const Eigen::VectorXd scaled_b = scale.cwiseProduct(b);
   const double size = std::max(scaled_b.cwiseAbs().maxCoeff(), 1e-300);
   const Eigen::VectorXd right = scaled_b / size;

@@ -31,10 +31,10 @@ constexpr double not_far = 1.3;
 /// Two results count as the same minimum if their distance in the coordinates of the fit is below this value.
 constexpr double same_place = 0.02;
 
-/// Reports the progress of several threads, one call at a time.
-class Teller {
+/// Reports the progress of several threads. The calls are serialised.
+class ProgressReporter {
  public:
-  Teller(const ShowProgress& show, std::size_t starts)
+  ProgressReporter(const ShowProgress& show, std::size_t starts)
       : show_(show), progress_{0, starts, std::numeric_limits<double>::infinity(), {}} {}
   void finished(double rmse_mm) {
     const std::lock_guard lock(mutex_);
@@ -78,11 +78,11 @@ std::vector<std::size_t> places(const FitSpace& space, const std::vector<SearchR
 /// Searches from all start points on thinned records.
 std::vector<SearchResult> look(const SeparableSearch& few, const std::vector<FitPoint>& starts,
                                unsigned threads, const ShowProgress& progress) {
-  Teller teller(progress, starts.size());
+  ProgressReporter reporter(progress, starts.size());
   std::vector<SearchResult> results(starts.size());
   parallel_for(starts.size(), threads, [&](std::size_t i) {
     results[i] = few.run(starts[i], search_iterations);
-    teller.finished(results[i].rmse_mm);
+    reporter.finished(results[i].rmse_mm);
   });
   const double lowest = lowest_rmse_mm(results);
   const std::vector<double> order_s = branch_time_constants_s(starts.front().model);
@@ -131,7 +131,7 @@ std::vector<SearchResult> search(const FitSpace& space, const std::vector<Record
     return search_separable(*separable, space, records, starts, threads, progress);
   }
   std::vector<SearchResult> results(starts.size());
-  Teller teller(progress, starts.size());
+  ProgressReporter reporter(progress, starts.size());
   const auto residuals = residuals_for(records, space);
   parallel_for(starts.size(), threads, [&](std::size_t i) {
     MinimiseOptions coarse;
@@ -139,7 +139,7 @@ std::vector<SearchResult> search(const FitSpace& space, const std::vector<Record
     coarse.tolerance = 1e-6;
     const Minimum minimum = minimise(*residuals, space.z(starts[i]), coarse);
     results[i] = {space.point(minimum.z), minimum.rmse_mm, minimum.iterations, minimum.converged};
-    teller.finished(results[i].rmse_mm);
+    reporter.finished(results[i].rmse_mm);
   });
   return results;
 }

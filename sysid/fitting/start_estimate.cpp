@@ -69,8 +69,8 @@ struct Trust {
 /// A trial of an initial state, and the residual of the first readings with this state.
 struct Trial {
   StartState start;
-  /// -2 times the logarithm of the posterior probability of the state.
-  double misfit = std::numeric_limits<double>::infinity();
+  double cost = std::numeric_limits<double>::infinity();  ///< -2 times the logarithm of the posterior
+                                                          ///< probability
   Trust left;
 };
 
@@ -144,8 +144,8 @@ class StartSearch {
       trial.start.unsettled_mm[b] = numbers[static_cast<Eigen::Index>(b + 1)];
     trial.left = {std::max(left.squaredNorm() / static_cast<double>(y.size()), smallest_mm2),
                   independent_among(left)};
-    const double misfit = weight * left.squaredNorm() + (precision_.array() * numbers.array().square()).sum();
-    if (std::isfinite(misfit)) trial.misfit = misfit;
+    const double cost = weight * left.squaredNorm() + (precision_.array() * numbers.array().square()).sum();
+    if (std::isfinite(cost)) trial.cost = cost;
     return trial;
   }
 
@@ -153,7 +153,7 @@ class StartSearch {
     Trial best;
     for (const StartState& start : starts) {
       Trial trial = with_creep(start, trust);
-      if (trial.misfit < best.misfit) best = std::move(trial);
+      if (trial.cost < best.cost) best = std::move(trial);
     }
     return best;
   }
@@ -180,7 +180,7 @@ class StartSearch {
     // A single stroke may not determine the initial state. The noise would then select a state, so the usual
     // state is preferred.
     const Trial usual = with_creep(turned(rest, highest_kpa_, lowest_kpa_), best.left);
-    return usual.misfit < best.misfit + square(rejected_at) ? usual : best;
+    return usual.cost < best.cost + square(rejected_at) ? usual : best;
   }
 
   void prepare_creep() {
