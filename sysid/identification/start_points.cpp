@@ -128,11 +128,12 @@ model::Model base_model(const std::vector<Record>& records, std::size_t branches
   model::Model model;
   model.name = "identified";
   if (!records.empty()) model.output_unit = records.front().output_unit;
-  model.source = "start values from the scale of the data";
-  const double levelling = 1 / std::max(scale.largest_kpa, 1e-6);
-  model = model::with_block(std::move(model), {model::block_type<model::BoucWen>(),
-                                               {0.6 * gain, 0.3 * gain, levelling, levelling, 1}});
-  // k0 is so large that alpha alone is the instantaneous gain. The data determine only the sum alpha + 1/k0.
+  model.source = "starting values from the data's scale";
+  const double saturation_per_kpa = 1 / std::max(scale.largest_kpa, 1e-6);
+  model = model::with_block(std::move(model),
+                            {model::block_type<model::BoucWen>(),
+                             {0.6 * gain, 0.3 * gain, saturation_per_kpa, saturation_per_kpa, 1}});
+  // k0 is rigid, so alpha alone is the instantaneous gain. The data determine only the sum alpha + 1/k0.
   std::vector<double> creep{1e9};
   const double slowest = std::max(scale.longest_s / 4, 1.0);
   for (std::size_t b = 0; b < branches; ++b) {

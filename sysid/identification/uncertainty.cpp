@@ -172,9 +172,9 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
   for (Index i = 0; i < n; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const FreeParameter& p = residuals.space().free()[at];
-    const double hair = 1e-6 * std::max(1.0, std::abs(z[at]));
+    const double tolerance = 1e-6 * std::max(1.0, std::abs(z[at]));
     u.without_effect[at] = jacobian.col(i).norm() <= 1e-9 * largest;
-    u.at_bound[at] = z[at] <= p.lower_z() + hair || z[at] >= p.upper_z() - hair;
+    u.at_bound[at] = z[at] <= p.lower_z() + tolerance || z[at] >= p.upper_z() - tolerance;
     if (!u.without_effect[at] && !u.at_bound[at]) keep.push_back(i);
   }
   if (keep.empty()) return u;
