@@ -36,9 +36,9 @@ struct BaseStructure {
   bool resonance = false;      ///< true: a second-order mode follows this map (with_resonance())
   bool envelopes = false;      ///< true: the play operators are generalised ones with nonlinear envelopes
   bool hinged_creep =
-      false;  ///< true: above each threshold pressure (hinge), a short chain of creep branches is added
-  /// True: the zero of each record drifts along a piecewise linear curve; this is no part of the finger.
-  bool wandering = false;
+      false;                ///< pressure-dependent creep: a short chain above each threshold pressure (hinge)
+  bool zero_drift = false;  ///< a piecewise linear drift of the zero of each record, which is not a part of
+                            ///< the finger
   /// The published element: one lag, Bouc-Wen, and two Kelvin-Voigt branches with fitted time constants.
   bool published = false;
 

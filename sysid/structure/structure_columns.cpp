@@ -171,9 +171,9 @@ ColumnLayout::ColumnLayout(const BaseStructure& structure, const StructureGrid& 
     const bool open = record.start_unknown && branches_ > 0;
     unsettled_.push_back(open ? count_ : -1);
     if (open) count_ += static_cast<Eigen::Index>(branches_);
-    const double knots = structure.wandering ? std::ceil(record.length_s() / knot_interval_s) : 0;
+    const double knots = structure.zero_drift ? std::ceil(record.length_s() / knot_interval_s) : 0;
     knots_.push_back(static_cast<std::size_t>(knots));
-    wandering_.push_back(count_);
+    zero_drift_.push_back(count_);
     count_ += static_cast<Eigen::Index>(knots);
   }
 }
@@ -275,7 +275,7 @@ void StructureColumns::write_own() {
       }
       for (std::size_t k = 0; k < layout_.knots(r); ++k) {
         const double knots_away = since_s / ColumnLayout::knot_interval_s - static_cast<double>(k + 1);
-        columns_(row, layout_.wandering(r) + static_cast<Eigen::Index>(k)) =
+        columns_(row, layout_.zero_drift(r) + static_cast<Eigen::Index>(k)) =
             std::max(0.0, 1 - std::abs(knots_away));
       }
       ++row;

@@ -39,7 +39,7 @@ class ColumnLayout {
   /// Returns the first of the knots() columns of a piecewise linear drift. The knots begin at the first
   /// sample of the record and have a distance of `knot_interval_s`. The first knot has no column, because the
   /// drift is 0 there.
-  [[nodiscard]] Eigen::Index wandering(std::size_t record) const { return wandering_[record]; }
+  [[nodiscard]] Eigen::Index zero_drift(std::size_t record) const { return zero_drift_[record]; }
   [[nodiscard]] std::size_t knots(std::size_t record) const { return knots_[record]; }
   static constexpr double knot_interval_s = 20;
   [[nodiscard]] Eigen::Index count() const { return count_; }
@@ -52,7 +52,7 @@ class ColumnLayout {
 
  private:
   std::size_t hysteretic_, branches_, hinges_, hinge_branches_;
-  std::vector<Eigen::Index> offset_, unsettled_, wandering_;
+  std::vector<Eigen::Index> offset_, unsettled_, zero_drift_;
   std::vector<std::size_t> knots_;
   Eigen::Index count_ = 0;
 };

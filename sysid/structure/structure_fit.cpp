@@ -328,15 +328,15 @@ FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure
   return fit;
 }
 
-std::vector<Record> without_wandering(std::vector<Record> records, BaseStructure structure,
-                                      const StructureFitOptions& options) {
-  structure.wandering = true;
+std::vector<Record> without_zero_drift(std::vector<Record> records, BaseStructure structure,
+                                       const StructureFitOptions& options) {
+  structure.zero_drift = true;
   const FittedStructure fit = fit_form(records, structure, grid_for(records), options);
   const ColumnLayout layout(fit.structure, fit.grid, records);
   const Eigen::MatrixXd columns = structure_columns(records, fit.structure, fit.grid, fit.numbers);
   Eigen::Index row = 0;
   for (const RowPlace& place : rows_of(records)) {
-    const Eigen::Index first = layout.wandering(place.record);
+    const Eigen::Index first = layout.zero_drift(place.record);
     const auto knots = static_cast<Eigen::Index>(layout.knots(place.record));
     records[place.record].reading_mm[place.sample] -=
         columns.row(row++).segment(first, knots).dot(fit.weights.segment(first, knots));

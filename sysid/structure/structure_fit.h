@@ -45,9 +45,9 @@ struct FittedStructure {
                                        const StructureGrid& grid, const StructureFitOptions& options,
                                        const NonlinearNumbers* near = nullptr);
 
-/// Removes the drift of the zero from the readings. For this, the structure is fitted together with a drift
-/// of each record, and the fitted drift is subtracted.
-[[nodiscard]] std::vector<Record> without_wandering(std::vector<Record> records, BaseStructure structure,
-                                                    const StructureFitOptions& options);
+/// Removes the drift of the zero from the readings: fits the structure with a drift of the zero of each
+/// record, and subtracts the fitted drift.
+[[nodiscard]] std::vector<Record> without_zero_drift(std::vector<Record> records, BaseStructure structure,
+                                                     const StructureFitOptions& options);
 
 }  // namespace softgrip::sysid

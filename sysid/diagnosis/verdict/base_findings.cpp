@@ -230,7 +230,7 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
     });
   }
   views.emplace_back([&](const Readings& all) {
-    return without_wandering(all, {.delay = question.drive == Drive::command}, {});
+    return without_zero_drift(all, {.delay = question.drive == Drive::command}, {});
   });
   std::optional<BetterStructure> better;
   auto view = views.begin();

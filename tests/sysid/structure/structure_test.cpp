@@ -149,7 +149,7 @@ TEST(WithoutWandering, TakesADriftAwayAndLeavesWhatTheFingerDoes) {
     drifting.displacement_mm[i] += drift_mm * std::sin(2 * M_PI * drifting.time_s[i] / period_s);
   const auto moved_mm = [](const Log& log) {
     const std::vector<Record> records = make_records({log}, {});
-    const std::vector<Record> left = without_wandering(records, {}, {});
+    const std::vector<Record> left = without_zero_drift(records, {}, {});
     std::vector<double> moved(records[0].size());
     for (std::size_t i = 0; i < moved.size(); ++i)
       moved[i] = records[0].reading_mm[i] - left[0].reading_mm[i];
