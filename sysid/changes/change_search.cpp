@@ -48,7 +48,7 @@ Ties ties_in(const LaterReadings& readings, std::uint64_t seed) {
   return [&readings, seed](const ScoredEffect& best, const ScoredEffect& other) {
     const Effect& effect = best.fit.fitted.effect;
     const Effect& another = other.fit.fitted.effect;
-    if (another.id == effect.twin) return true;
+    if (another.id == effect.indistinguishable) return true;
     const double dearer = price_per_row(readings, effect) - price_per_row(readings, another);
     return !is_better(
         compare(paired_losses(readings, other.fit.white, best.fit.white), best.tolerance + dearer, seed));

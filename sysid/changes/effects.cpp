@@ -124,7 +124,7 @@ class Collector {
     effect.title = cause.title;
     effect.station = cause.station;
     effect.form = form;
-    effect.twin = cause.indistinguishable;
+    effect.indistinguishable = cause.indistinguishable;
     effect.is_ideal = cause.is_ideal;
     effect.appears = cause.appears;
     return effect;

@@ -33,9 +33,9 @@ struct Effect {
   std::vector<double> nothing;
   /// Adds the effect with these parameter values to an extension.
   std::function<void(Extension&, const std::vector<double>&)> apply;
-  /// Id of a cause that gives equal readings for every command; empty: no such cause.
-  std::string twin = {};
-  /// Number of parameters that only define the reference of the effect, such as an additional gain.
+  /// Id of a cause with equal readings for every command; empty: none.
+  std::string indistinguishable = {};
+  /// Number of parameters that only define the reference of the effect.
   std::size_t nuisance_numbers = 0;
   /// True if no mechanism matches this effect exactly.
   bool is_ideal = false;

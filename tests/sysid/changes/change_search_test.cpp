@@ -117,7 +117,7 @@ TEST_F(ChangeSearch, DeclaredTwinsAlwaysTie) {
   std::vector<ScoredEffect> ranked = ranked_effects(later, effects, {}, {}, 1);
   const Ties ties = ties_in(later, 1);
   EXPECT_FALSE(ties(ranked.front(), ranked.back()));
-  ranked.front().fit.fitted.effect.twin = ranked.back().fit.fitted.effect.id;
+  ranked.front().fit.fitted.effect.indistinguishable = ranked.back().fit.fitted.effect.id;
   EXPECT_TRUE(ties(ranked.front(), ranked.back()));
 }
 
