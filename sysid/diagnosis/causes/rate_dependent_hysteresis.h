@@ -59,12 +59,12 @@ struct RateDependentHysteresis {
   struct Growing : Following<model::RateDependentWidth> {
     static Starts starts(const Scales& s) { return sized("growth", {0.06, 0.2, 0.6}, s); }
   };
-  /// Form of the cause: the saturation of the hysteresis changes with the rate.
-  struct Levelling : Following<model::RateDependentLevelling> {
+  /// The saturation of the hysteresis changes with the rate.
+  struct Saturating : Following<model::RateDependentLevelling> {
     static Starts starts(const Scales& s) { return sized("levelling", {-0.3, 0.5, 3.0}, s); }
   };
 
-  using Forms = List<Relaxing, Growing, Levelling>;
+  using Forms = List<Relaxing, Growing, Saturating>;
 };
 
 }  // namespace softgrip::sysid::causes

@@ -46,8 +46,8 @@ struct SensorDrift {
     }
   };
 
-  /// Form of the cause: the zero follows a slow sinusoid.
-  struct Wander : FormOf<model::SensorWander> {
+  /// The zero follows a slow sinusoid.
+  struct Sinusoidal : FormOf<model::SensorWander> {
     /// Returns start points with different periods, eight phases and two amplitudes.
     static Starts starts(const Scales& s) {
       Starts starts;
@@ -83,7 +83,7 @@ struct SensorDrift {
     }
   };
 
-  using Forms = List<Steady, WarmUp, Wander, Knots>;
+  using Forms = List<Steady, WarmUp, Sinusoidal, Knots>;
 };
 
 }  // namespace softgrip::sysid::causes

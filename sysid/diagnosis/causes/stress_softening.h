@@ -27,8 +27,8 @@ struct StressSoftening {
       return every({{"softening_per_kpa", {0.05 / s.largest_kpa, 0.3 / s.largest_kpa}}});
     }
   };
-  /// Form of the cause: the softening saturates at large pressures.
-  struct Levelling : FormOf<model::StressSoftening> {
+  /// The softening saturates at large pressures.
+  struct Saturating : FormOf<model::StressSoftening> {
     static Starts starts(const Scales& s) {
       return every({{"softening_per_kpa", {0.5 / s.largest_kpa}},
                     {"levelling_per_kpa", {1.0 / s.largest_kpa, 5.0 / s.largest_kpa}}});
@@ -49,7 +49,7 @@ struct StressSoftening {
     }
   };
 
-  using Forms = List<Proportional, Levelling, PseudoElastic>;
+  using Forms = List<Proportional, Saturating, PseudoElastic>;
 };
 
 }  // namespace softgrip::sysid::causes
