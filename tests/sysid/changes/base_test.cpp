@@ -39,10 +39,10 @@ double left_of_mm(const Base& base, const std::vector<Log>& logs) {
 /// A drift of the sensor zero does not depend on the command. A held-out block and its neighbouring blocks
 /// contain the same drift. The filter bank must not learn the drift from the neighbours.
 TEST(Base, LeavesOfAnotherDayWhatItLeavesOfHealthyLogsHeldOut) {
-  const test::Finger wandering{.wander_mm = 0.1};
-  const Base base = base_of(test::logs_of(wandering, 1));
+  const test::Finger drifting{.drift_mm = 0.1};
+  const Base base = base_of(test::logs_of(drifting, 1));
   EXPECT_GT(base.left_mm, 0.06);
-  const double later_mm = left_of_mm(base, test::logs_of(wandering, 5));
+  const double later_mm = left_of_mm(base, test::logs_of(drifting, 5));
   EXPECT_NEAR(later_mm, base.left_mm, 0.25 * base.left_mm);
 }
 

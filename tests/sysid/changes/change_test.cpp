@@ -160,8 +160,8 @@ TEST(Change, AGainThatFollowsTheTemperatureNeedNotBeWhatItWasOnTheHealthyDay) {
   EXPECT_NEAR(d->causes[0].size.value, 100 * 0.01 / (1 + 0.01 * (24 - 15)), 0.1);
 }
 
-TEST(Change, AZeroThatWanderedOnTheHealthyDayTooIsNoChange) {
-  const auto d = diagnose_change(logs_of({.wander_mm = 0.1}, 1), logs_of({.wander_mm = 0.1}, 5));
+TEST(Change, AZeroThatDriftedOnTheHealthyDayTooIsNoChange) {
+  const auto d = diagnose_change(logs_of({.drift_mm = 0.1}, 1), logs_of({.drift_mm = 0.1}, 5));
   ASSERT_TRUE(d) << d.error();
   EXPECT_EQ(d->verdict, ChangeVerdict::unchanged) << change_sentence(*d);
 }

@@ -23,10 +23,9 @@ struct Finger {
   double valve_lag_s = 0;
   double per_c = 0;  ///< relative change of the gain per degree above 15 degC
   bool with_temperature = false;
-  double bend_per_mm = 0;  ///< stiffening with the displacement; a displacement of 12 mm stays unchanged
-  double crescent_mm = 0;  ///< width [mm] of a hysteresis loop that rises along a parabola and falls along a
-                           ///< line
-  double wander_mm = 0;    ///< amplitude of a drift of the zero with a period of about 15 s
+  double bend_per_mm = 0;  ///< stiffens with the displacement; at 12 mm the displacement is unchanged
+  double crescent_mm = 0;  ///< width of a loop that rises along a parabola and falls along a line
+  double drift_mm = 0;     ///< amplitude of a drift of the zero with a period of about 15 s
 };
 
 /// Returns a command of ramps to random pressures, holds, and ramps to 0. `seed` determines the pressures and
@@ -85,9 +84,9 @@ inline Log log_of(const Finger& finger, unsigned seed, bool with_pressure = fals
     between = std::clamp(between, part * part, part);
     y += 4 * finger.crescent_mm * (between - 0.5 * (part + part * part));
     y *= (1 + 12 * finger.bend_per_mm) / (1 + finger.bend_per_mm * std::max(y, 0.0));
-    const double wander = finger.wander_mm * std::sin(t * 0.4 + phase + std::sin(t * 0.17 + 3 * phase));
+    const double drift = finger.drift_mm * std::sin(t * 0.4 + phase + std::sin(t * 0.17 + 3 * phase));
     log.time_s.push_back(t);
-    log.displacement_mm.push_back(std::min(y, finger.stop_mm) + finger.zero_mm + wander +
+    log.displacement_mm.push_back(std::min(y, finger.stop_mm) + finger.zero_mm + drift +
                                   0.03 * noise(random));
     if (finger.with_temperature) log.temperature_c.push_back(temperature_c);
     if (with_pressure) log.pressure_kpa.push_back(p + 0.03 * noise(random));

@@ -110,12 +110,12 @@ TEST_F(DiagnoseCommand, FilledInPositionsTellTheFingerFromTheSensor) {
 
   std::string filled = "gauge_mm,displacement_mm\n";
   const std::string asked = read("result/gauge_positions.csv");
-  double wander_mm = 0.03;
+  double error_mm = 0.03;
   for (std::size_t at = asked.find('\n') + 1; at < asked.size(); at = asked.find('\n', at) + 1) {
     const double position_mm = std::stod(asked.substr(at));
     filled +=
-        asked.substr(at, asked.find(',', at) - at) + "," + std::to_string(position_mm + wander_mm) + "\n";
-    wander_mm = -wander_mm;
+        asked.substr(at, asked.find(',', at) - at) + "," + std::to_string(position_mm + error_mm) + "\n";
+    error_mm = -error_mm;
   }
   write("result/gauge_positions.csv", filled);
   ASSERT_EQ(run(command + " --gauge result/gauge_positions.csv"), 0) << read("err.txt");
