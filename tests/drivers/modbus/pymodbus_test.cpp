@@ -251,8 +251,8 @@ TEST(PymodbusOnALine, TwoModulesAreWrittenAndRead) {
   EXPECT_DOUBLE_EQ(readings[0].command_readback_kpa, 100);
 
   settings.modules[1].unit = 3;
-  ModbusBoard stranger(settings);
-  EXPECT_EQ(stranger.connect(500ms), BusStatus::disconnected)
+  ModbusBoard second_client(settings);
+  EXPECT_EQ(second_client.connect(500ms), BusStatus::disconnected)
       << "a serial line can have only one Modbus client";
 }
 
