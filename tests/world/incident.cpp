@@ -56,13 +56,13 @@ struct Share {
   double share;
 };
 constexpr std::array shares{
-    Share{Kind::start, 20},         Share{Kind::hasty, 3},        Share{Kind::stop, 4},
-    Share{Kind::vent, 6},           Share{Kind::release, 4},      Share{Kind::acknowledge, 14},
-    Share{Kind::flood, 2},          Share{Kind::terminate, 1},    Share{Kind::kill, 1},
-    Share{Kind::pause, 10},         Share{Kind::pause_late, 6},   Share{Kind::pause_all, 6},
-    Share{Kind::line, 6},           Share{Kind::replies_lost, 3}, Share{Kind::slow_line, 2},
-    Share{Kind::write_refused, 2},  Share{Kind::foreign, 2},      Share{Kind::sensor_stuck, 2},
-    Share{Kind::sensor_lost, 2},    Share{Kind::line_leaks, 2},   Share{Kind::part_gone, 6},
+    Share{Kind::start, 20},         Share{Kind::interrupted_start, 3}, Share{Kind::stop, 4},
+    Share{Kind::vent, 6},           Share{Kind::release, 4},           Share{Kind::acknowledge, 14},
+    Share{Kind::flood, 2},          Share{Kind::terminate, 1},         Share{Kind::kill, 1},
+    Share{Kind::pause, 10},         Share{Kind::pause_late, 6},        Share{Kind::pause_all, 6},
+    Share{Kind::line, 6},           Share{Kind::replies_lost, 3},      Share{Kind::slow_line, 2},
+    Share{Kind::write_refused, 2},  Share{Kind::foreign, 2},           Share{Kind::sensor_stuck, 2},
+    Share{Kind::sensor_lost, 2},    Share{Kind::line_leaks, 2},        Share{Kind::part_gone, 6},
     Share{Kind::emergency_stop, 3}, Share{Kind::disk_full, 2},
 };
 
@@ -116,7 +116,7 @@ Incident draw_one(Drawing& drawing, const Draw& draw, Nanoseconds at) {
     case Kind::start:
       one.target = drawing.below(draw.sequences);
       break;
-    case Kind::hasty:
+    case Kind::interrupted_start:
       one.target = drawing.below(draw.sequences);
       one.value = drawing.uniform() < 0.5 ? 0 : 1;
       break;
@@ -199,7 +199,7 @@ std::string text_of(const Incident& incident) {
     case Kind::start:
       text += fmt::format(" sequence {}", incident.target);
       break;
-    case Kind::hasty:
+    case Kind::interrupted_start:
       text += fmt::format(" of sequence {}{}", incident.target, incident.value > 0 ? ", by a vent" : "");
       break;
     case Kind::flood:

@@ -12,8 +12,8 @@ namespace softgrip::world {
 
 struct Incident {
   enum class Kind : std::uint8_t {
-    start,  ///< a client starts the sequence number `target`
-    hasty,  ///< a client sends a start, which another client stops (`value` 0) or vents immediately
+    start,              ///< a client starts the sequence number `target`
+    interrupted_start,  ///< a start, which another client stops (`value` 0) or vents immediately
     stop,
     vent,
     release,

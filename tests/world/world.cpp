@@ -381,7 +381,7 @@ void World::to_daemon(const Incident& incident) {
     case Kind::start:
       ask(Request::Kind::start, library_.sequences[incident.target % library_.sequences.size()]);
       break;
-    case Kind::hasty:
+    case Kind::interrupted_start:
       ask(Request::Kind::start, library_.sequences[incident.target % library_.sequences.size()]);
       ask(incident.value > 0 ? Request::Kind::vent : Request::Kind::stop);
       break;
