@@ -22,7 +22,7 @@
 #include "tools/command_line/configuration.h"
 #include "tools/command_line/output.h"
 #include "tools/commands/commands.h"
-#include "tools/commissioning/doubts.h"
+#include "tools/commissioning/plausibility_warnings.h"
 #include "tools/commissioning/procedure.h"
 #include "tools/commissioning/rig_update.h"
 #include "tools/commissioning/snippet.h"
@@ -161,9 +161,9 @@ bool confirmed(calibrate::TerminalOperator& terminal, const Clock& clock, const 
 /// Prints the warnings about the results. Returns true if the results may be written to the files.
 bool accepted(const rig::RigFile& rig, const calibrate::Results& results, const CalibrateOptions& options,
               calibrate::TerminalOperator& terminal, const Clock& clock, const StopRequest& stop) {
-  const std::vector<std::string> odd = calibrate::doubts(rig, results);
-  for (const std::string& sentence : odd) std::fprintf(stderr, "doubtful: %s\n", sentence.c_str());
-  if (odd.empty() || !options.write || options.yes) return true;
+  const std::vector<std::string> warnings = calibrate::plausibility_warnings(rig, results);
+  for (const std::string& sentence : warnings) std::fprintf(stderr, "doubtful: %s\n", sentence.c_str());
+  if (warnings.empty() || !options.write || options.yes) return true;
   return confirmed(terminal, clock, stop, "write the points into " + rig.path + " nevertheless?");
 }
 

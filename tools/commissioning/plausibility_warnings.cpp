@@ -1,4 +1,4 @@
-#include "tools/commissioning/doubts.h"
+#include "tools/commissioning/plausibility_warnings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,8 @@ constexpr double step_s = 0.01;
 
 /// Warns if the new calibration line deviates too far from the old line at the lower or the upper limit.
 void compare_lines(const std::string& what, const drivers::TwoPoints& before, const drivers::TwoPoints& now,
-                   double lowest, double highest, const std::string& unit, std::vector<std::string>& doubts) {
+                   double lowest, double highest, const std::string& unit,
+                   std::vector<std::string>& warnings) {
   double worst = 0;
   double at = lowest;
   for (const double value : {lowest, highest}) {
@@ -27,9 +28,9 @@ void compare_lines(const std::string& what, const drivers::TwoPoints& before, co
   }
   const double share = std::abs(worst) / (highest - lowest);
   if (!(share > most_share_off)) return;
-  doubts.push_back(
-      fmt::format("{}: at the point where the calibration line in the rig file gives {:.4g} {}, the new line "
-                  "gives {:.4g} {}, a difference of {:.0f} % of the range",
+  warnings.push_back(
+      fmt::format("{}: where the line of the rig file gives {:.4g} {}, the new line gives {:.4g} {}, a "
+                  "difference of {:.0f} % of the range",
                   what, at, unit, at + worst, unit, 100 * share));
 }
 
@@ -49,20 +50,20 @@ double model_mm(const control::ChannelSettings& channel, double kpa, const Motio
 }
 
 void compare_with_model(const control::ChannelSettings& channel, const Motion& motion, const Line& line,
-                        std::vector<std::string>& doubts) {
+                        std::vector<std::string>& warnings) {
   const double moved_mm = std::abs(line.points.y1 - line.points.y0);
   const double expected_mm =
       std::abs(model_mm(channel, motion.high_kpa, motion) - model_mm(channel, motion.low_kpa, motion));
   if (!(std::abs(moved_mm - expected_mm) > most_share_off * expected_mm)) return;
-  doubts.push_back(fmt::format(
-      "sensor: between {:.4g} and {:.4g} kPa the gauge reading changes by {:.4g} mm, but the "
-      "model predicts {:.4g} mm, so the gauge, the calibration of the valve or the model is wrong",
-      motion.low_kpa, motion.high_kpa, moved_mm, expected_mm));
+  warnings.push_back(
+      fmt::format("sensor: between {:.4g} and {:.4g} kPa the gauge reading changes by {:.4g} mm, but the "
+                  "model predicts {:.4g} mm: the gauge, the calibration of the valve or the model is wrong",
+                  motion.low_kpa, motion.high_kpa, moved_mm, expected_mm));
 }
 
 }  // namespace
 
-std::vector<std::string> doubts(const rig::RigFile& rig, const Results& results) {
+std::vector<std::string> plausibility_warnings(const rig::RigFile& rig, const Results& results) {
   const drivers::ChannelWiring& wiring = rig.wiring[results.channel];
   const control::ChannelSettings& channel = rig.settings.channels[results.channel];
   const control::LimitSettings& limits = channel.limits;

@@ -14,8 +14,8 @@ namespace softgrip::tools::calibrate {
 inline constexpr double most_share_off = 0.2;
 
 /// Compares each calibrated line with the line in the rig file. Returns one warning for each line whose
-/// deviation exceeds `most_share_off`. Also compares the motion of the finger between the two pressures with
-/// the prediction of its model, and warns if the deviation exceeds this share.
-[[nodiscard]] std::vector<std::string> doubts(const rig::RigFile& rig, const Results& results);
+/// deviation exceeds `most_share_off`. Also warns if the motion of the finger between the two pressures
+/// deviates by more than this share from the motion of its model. The list is empty if there is no warning.
+[[nodiscard]] std::vector<std::string> plausibility_warnings(const rig::RigFile& rig, const Results& results);
 
 }  // namespace softgrip::tools::calibrate

@@ -12,7 +12,7 @@
 
 #include "base/files.h"
 #include "rig/rig_file.h"
-#include "tools/commissioning/doubts.h"
+#include "tools/commissioning/plausibility_warnings.h"
 
 namespace softgrip::tools::calibrate::rig_update_test {
 namespace {
@@ -138,41 +138,40 @@ TEST_F(RigUpdateTest, AFileThatSomebodyChangedMeanwhileIsLeftAlone) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 
-TEST_F(RigUpdateTest, ALineNearTheOldOneIsNotDoubted) {
+TEST_F(RigUpdateTest, ALineNearTheOldOneGivesNoWarning) {
   Results results = sensor({2, 5.1, 8, 35.3});
   results.valve = ValveResult{line({1, 10, 7, 71}), std::nullopt, true};
-  EXPECT_TRUE(doubts(rig_, results).empty());
+  EXPECT_TRUE(plausibility_warnings(rig_, results).empty());
 }
 
-TEST_F(RigUpdateTest, ALineFarFromTheOldOneIsDoubted) {
+TEST_F(RigUpdateTest, ALineFarFromTheOldOneGivesAWarning) {
   Results results = sensor({2, 5, 8, 26});
   results.valve = ValveResult{line({0, 0, 10, 75}), line({0, 0, 10, 130}), false};
-  const auto odd = doubts(rig_, results);
-  ASSERT_EQ(odd.size(), 3U);
-  EXPECT_EQ(odd[0],
-            "valve: at the point where the calibration line in the rig file gives 60 kPa, the new line gives "
-            "45 kPa, a difference of "
+  const auto warnings = plausibility_warnings(rig_, results);
+  ASSERT_EQ(warnings.size(), 3U);
+  EXPECT_EQ(warnings[0],
+            "valve: where the line of the rig file gives 60 kPa, the new line gives 45 kPa, a difference of "
             "25 % of the range");
-  EXPECT_EQ(odd[1].rfind("pressure monitor: ", 0), 0U);
-  EXPECT_EQ(odd[2].rfind("sensor: ", 0), 0U);
+  EXPECT_EQ(warnings[1].rfind("pressure monitor: ", 0), 0U);
+  EXPECT_EQ(warnings[2].rfind("sensor: ", 0), 0U);
 }
 
-TEST_F(RigUpdateTest, AGaugeThatDoesNotGoWithTheModelIsDoubted) {
-  const auto doubted = [&](double travel_mm) {
+TEST_F(RigUpdateTest, AGaugeThatDoesNotGoWithTheModelGivesAWarning) {
+  const auto warnings_with = [&](double travel_mm) {
     Results results = sensor({2, 5, 2 + travel_mm / 5, 5 + travel_mm});
     results.motion = Motion{10, 40, 3, 12};
-    return doubts(rig_, results);
+    return plausibility_warnings(rig_, results);
   };
-  ASSERT_FALSE(doubted(3).empty());
-  EXPECT_NE(doubted(3)[0].find("the gauge reading changes by 3 mm, but the model predicts "),
+  ASSERT_FALSE(warnings_with(3).empty());
+  EXPECT_NE(warnings_with(3)[0].find("the gauge reading changes by 3 mm, but the model predicts "),
             std::string::npos)
-      << doubted(3)[0];
-  const std::string sentence = doubted(3)[0];
+      << warnings_with(3)[0];
+  const std::string sentence = warnings_with(3)[0];
   const double model_mm = std::stod(sentence.substr(sentence.find("predicts ") + 9));
   EXPECT_GT(model_mm, 8);
-  EXPECT_TRUE(doubted(model_mm).empty());
-  EXPECT_TRUE(doubted(0.85 * model_mm).empty());
-  EXPECT_FALSE(doubted(1.3 * model_mm).empty());
+  EXPECT_TRUE(warnings_with(model_mm).empty());
+  EXPECT_TRUE(warnings_with(0.85 * model_mm).empty());
+  EXPECT_FALSE(warnings_with(1.3 * model_mm).empty());
 }
 
 }  // namespace
