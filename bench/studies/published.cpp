@@ -167,9 +167,9 @@ std::vector<double> explicit_inverse(const model::Model& element, const std::vec
   }
   // Compute the factor by which a small error grows within one sample if the reference is constant.
   chain.reset(0);
-  constexpr double hair_kpa = 1e-6;
-  chain.step(tick_s, hair_kpa);
-  growth = (alpha * hair_kpa - chain.after(model::Station::actuator)) / alpha / hair_kpa;
+  constexpr double small_kpa = 1e-6;
+  chain.step(tick_s, small_kpa);
+  growth = (alpha * small_kpa - chain.after(model::Station::actuator)) / alpha / small_kpa;
   return pressures;
 }
 

@@ -79,18 +79,19 @@ void print_cause(const sysid::NamedCause& named) {
               std::string(named.cause.id).c_str(), fixed(named.heldout_gain_percent.value, 1).c_str(),
               fixed(named.heldout_gain_percent.lower, 1).c_str(),
               fixed(named.heldout_gain_percent.upper, 1).c_str());
-  std::size_t passed_over = 0;
+  std::size_t undetermined = 0;
   for (const sysid::CauseParameter& p : named.parameters) {
     // If a cause has many parameters, print only those that the logs determine.
     if (named.parameters.size() > most_undetermined && !p.determined()) {
-      ++passed_over;
+      ++undetermined;
       continue;
     }
     const std::string interval = p.has_interval ? "(" + sysid::text_of(p.ci95, p.value, " .. ") + ")" : "";
     std::printf("      %-22s %s %s\n", p.name.c_str(), significant(p.value, 5).c_str(), interval.c_str());
   }
-  if (passed_over > 0)
-    std::printf("      %zu parameters that these logs do not determine are in diagnosis.json\n", passed_over);
+  if (undetermined > 0)
+    std::printf("      %zu parameters that these logs do not determine are in diagnosis.json\n",
+                undetermined);
   for (const sysid::Cause& alternative : named.alternatives) {
     std::printf("      alternative cause: %s explains the data equally well\n",
                 std::string(alternative.id).c_str());
