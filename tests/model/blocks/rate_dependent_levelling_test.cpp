@@ -11,9 +11,9 @@
 namespace softgrip::model::testing::rate_dependent_levelling_test {
 namespace {
 
-Model levelled(double levelling) {
-  const Model model{"levelled", "test", {BlockSpec{block_type<BoucWen>(), {0.35, 0.2, 0.03, 0.05, 1}}}};
-  return with_block(model, {block_type<RateDependentLevelling>(), {levelling, 15.0, 0.08}});
+Model saturating(double saturation) {
+  const Model model{"saturating", "test", {BlockSpec{block_type<BoucWen>(), {0.35, 0.2, 0.03, 0.05, 1}}}};
+  return with_block(model, {block_type<RateDependentLevelling>(), {saturation, 15.0, 0.08}});
 }
 
 struct Move {
@@ -21,18 +21,18 @@ struct Move {
 };
 const std::vector<Move> moves{{40, 1}, {40, 0.5}, {12, 0.2}, {33, 3}, {5, 0.1}, {5, 1}, {50, 0.01}, {0, 2}};
 
-// Compares the chain with an integration of the equation in steps of 10 us. The chain uses the input rate at
-// the beginning of each of its steps.
-TEST(RateDependentLevelling, LevelsTheChainsBoucWenOffByItsEquation) {
-  for (const double levelling : {1.5, -0.6}) {
-    Chain<double> chain(levelled(levelling));
+// Compares the chain, which uses the rate at the beginning of each step, with an integration of the equation
+// in steps of 10 us.
+TEST(RateDependentLevelling, SaturatesTheChainsBoucWenByItsEquation) {
+  for (const double saturation : {1.5, -0.6}) {
+    Chain<double> chain(saturating(saturation));
     double p = 0, h = 0, r = 0;
     for (const Move& move : moves) {
       const auto steps = static_cast<int>(std::lround(move.duration_s / 1e-5));
       const double d = (move.to_kpa - p) / steps, dt = move.duration_s / steps;
       const double way = d > 0 ? 1 : d < 0 ? -1 : 0;
       for (int i = 0; i < steps; ++i) {
-        const double eta = 0.05 * (1 + levelling * r / (r + 15));
+        const double eta = 0.05 * (1 + saturation * r / (r + 15));
         const auto slope = [&](double x) {
           return 0.2 - (0.03 + (x * way >= 0 ? eta : -eta)) * std::fabs(x);
         };
@@ -48,7 +48,7 @@ TEST(RateDependentLevelling, LevelsTheChainsBoucWenOffByItsEquation) {
 }
 
 TEST(RateDependentLevelling, SlowMotionKnowsNothingOfIt) {
-  Chain<double> plain(levelled(0.0)), soon(levelled(0.8));
+  Chain<double> plain(saturating(0.0)), soon(saturating(0.8));
   for (const double p : {40.0, 12.0, 33.0, 0.0}) EXPECT_NEAR(soon.step(1e6, p), plain.step(1e6, p), 1e-4);
 }
 

@@ -12,13 +12,13 @@
 namespace softgrip::model::testing::rate_dependent_width_test {
 namespace {
 
-// Returns a Bouc-Wen element whose loop becomes wider with the input rate. If the second parameter is not 0,
-// the saturation of the element also depends on the input rate.
-Model widened(double growth, double levelling = 0) {
+// Returns a Bouc-Wen element whose loop becomes wider with the input rate. The second parameter makes its
+// saturation depend on the rate, too.
+Model widened(double growth, double saturation = 0) {
   Model model{"widened", "test", {BlockSpec{block_type<BoucWen>(), {0.35, 0.2, 0.03, 0.05, 1}}}};
   model = with_block(model, {block_type<RateDependentWidth>(), {growth, 15.0, 0.08}});
-  if (levelling == 0) return model;
-  return with_block(model, {block_type<RateDependentLevelling>(), {levelling, 15.0, 0.08}});
+  if (saturation == 0) return model;
+  return with_block(model, {block_type<RateDependentLevelling>(), {saturation, 15.0, 0.08}});
 }
 
 struct Move {
