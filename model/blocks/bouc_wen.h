@@ -152,18 +152,18 @@ class BoucWen {
     widening_ = AveragedRate<T>(rate);
   }
 
-  /// Increases eta by up to `rate.share` of its value, at pressure rates far above `rate.half_kpa_per_s`.
-  /// During a segment, eta is constant and has its value at the beginning of the segment.
-  void level_off(const BoucWenRate<T>& rate) {
+  /// Increases eta by up to `rate.share` of its value at pressure rates far above `rate.half_kpa_per_s`.
+  /// During a segment, eta keeps the value that it has at the beginning of the segment.
+  void saturate_earlier(const BoucWenRate<T>& rate) {
     follows_rate_ = true;
-    levelling_ = AveragedRate<T>(rate);
+    saturation_ = AveragedRate<T>(rate);
     eta_ = (growing_[0] + growing_[1] - shrinking_[0] - shrinking_[1]) * 0.25;
     more_eta_ = T(0.0);
   }
 
   void reset(const T& input) {
     widening_.reset();
-    levelling_.reset();
+    saturation_.reset();
     more_eta_ = T(0.0);
     hysteresis_ = T(0.0);
     direction_ = value_of(input) < 0.0 ? -1.0 : 1.0;
@@ -206,9 +206,9 @@ class BoucWen {
     const T one(1.0);
     const T wide_before = 1.0 + widening_.share_of(one);
     widening_.step(change, in.duration_s);
-    levelling_.step(change, in.duration_s);
+    saturation_.step(change, in.duration_s);
     const T wide = 1.0 + widening_.share_of(one);
-    more_eta_ = levelling_.share_of(eta_);
+    more_eta_ = saturation_.share_of(eta_);
     output_ = alpha_ * pressure_ - hysteresis_ * wide;
     const T together = (hysteresis_ - before) * (wide - wide_before) * (1.0 / 12.0);
     return {in.duration_s, begin, output_,
@@ -357,8 +357,8 @@ class BoucWen {
   int exponent_;
   double direction_ = 1.0;
   bool follows_rate_ = false;
-  AveragedRate<T> widening_;
-  AveragedRate<T> levelling_;
+  AveragedRate<T> widening_;    // for the width of the loop
+  AveragedRate<T> saturation_;  // for eta
   T eta_{0.0};
   T more_eta_{0.0};
   T hysteresis_{0.0};

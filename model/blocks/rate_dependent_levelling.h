@@ -29,7 +29,7 @@ class RateDependentLevelling : public BoucWenPart<T> {
       : rate_{values[0], values[1], values[2]} {}
 
   void shape(BoucWen<T>& hysteresis) const {
-    if (!is_zero(rate_.share)) hysteresis.level_off(rate_);
+    if (!is_zero(rate_.share)) hysteresis.saturate_earlier(rate_);
   }
 
  private:

@@ -27,7 +27,7 @@ class StressSoftening {
                 Typical{0.02}, Within{0.0, 10.0}, Scale{0.01}, Neutral{0.0}, IfLeftOut{0.0})};
 
   StressSoftening(std::span<const T> values, const Preparation&)
-      : softening_per_kpa_(values[0]), levelling_per_kpa_(values[1]) {}
+      : softening_per_kpa_(values[0]), saturation_per_kpa_(values[1]) {}
 
   void reset(const T& input) {
     largest_kpa_ = greater(input, T(0.0));
@@ -62,7 +62,7 @@ class StressSoftening {
  private:
   template <class U>
   [[nodiscard]] U map(const U& p, const U& largest) const {
-    return p * (1.0 + softening_per_kpa_ * largest / (1.0 + levelling_per_kpa_ * largest));
+    return p * (1.0 + softening_per_kpa_ * largest / (1.0 + saturation_per_kpa_ * largest));
   }
 
   // At pressures below the largest pressure so far, the map is a straight line.
@@ -89,7 +89,7 @@ class StressSoftening {
   [[nodiscard]] T added(const T& p) const { return map(p, p) - p; }
 
   T softening_per_kpa_;
-  T levelling_per_kpa_;
+  T saturation_per_kpa_;
   T largest_kpa_{0.0};
   T output_{0.0};
 };
