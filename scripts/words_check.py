@@ -51,7 +51,7 @@ SAMPLE = 60
 # the next version of their schema, the programs still write them.
 PUBLIC_NAMES = {
     "deficit_mm", "doubts", "levelling", "levelling_growing_per_kpa", "levelling_per_kpa", "levelling_shrinking_per_kpa",
-    "mended", "misfit", "rate_dependent_levelling", "slipped_cycles", "slips", "slips_took_long", "slips_woken_late", "staircase",
+    "mended", "misfit", "slipped_cycles", "slips", "slips_took_long", "slips_woken_late", "staircase",
     "stands", "structure_left", "wander_cos_mm", "wander_kpa", "wander_period_s", "wander_sin_mm"}
 
 
