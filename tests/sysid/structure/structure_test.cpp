@@ -225,7 +225,8 @@ TEST(IdentifyStructure, FindsAFingerOfPlays) {
   EXPECT_LT(continuation_rmse_mm(play_finger(), found->model, SignalName::tp2, 0), 3 * 0.03)
       << "prediction error on a log that was not fitted";
   EXPECT_FALSE(model::position_of<model::ValveLag>(found->model)) << "the simulated finger has no second lag";
-  EXPECT_FALSE(model::position_of<model::RateLimit>(found->model)) << "the simulated finger has no rate limit";
+  EXPECT_FALSE(model::position_of<model::RateLimit>(found->model))
+      << "the simulated finger has no rate limit";
   EXPECT_FALSE(model::position_of<model::Inertia>(found->model)) << "the simulated finger has no resonance";
   ASSERT_FALSE(found->structure->ablation.empty());
   for (const auto& without : found->structure->ablation) {
