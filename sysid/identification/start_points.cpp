@@ -128,7 +128,7 @@ model::Model base_model(const std::vector<Record>& records, std::size_t branches
   model::Model model;
   model.name = "identified";
   if (!records.empty()) model.output_unit = records.front().output_unit;
-  model.source = "starting values from the data's scale";
+  model.source = "start values from the scale of the data";
   const double saturation_per_kpa = 1 / std::max(scale.largest_kpa, 1e-6);
   model = model::with_block(std::move(model),
                             {model::block_type<model::BoucWen>(),

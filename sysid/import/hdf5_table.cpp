@@ -109,7 +109,7 @@ void collect_members(hid_t dataset, hid_t type, const std::string& name, std::si
     H5Tinsert(one.get(), member.get(), 0, H5T_NATIVE_DOUBLE);
     std::vector<double> values(rows);
     if (H5Dread(dataset, one.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-      arrays.skip(name + "." + member.get(), "it cannot be read");
+      arrays.skip(name + "." + member.get(), "this dataset cannot be read");
     } else {
       arrays.add(name + "." + member.get(), {}, rows, 1, values);
     }
@@ -138,9 +138,10 @@ void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arr
   H5Sget_simple_extent_dims(space.get(), size.data(), nullptr);
   if (size[0] == 0 || size[1] == 0) return arrays.skip(name, "empty");
   if (!arrays.has_room(size[0], size[1])) return arrays.skip(name, too_large);
-  if (H5Tget_size(type.get()) > most_type_bytes) return arrays.skip(name, "one value has more than 1 MiB");
+  if (H5Tget_size(type.get()) > most_type_bytes)
+    return arrays.skip(name, "a single value has more than 1 MiB");
   if (chunk_bytes(dataset, type.get()) > most_chunk_bytes)
-    return arrays.skip(name, "its chunks have more than 256 MiB");
+    return arrays.skip(name, "the chunks of the dataset have more than 256 MiB");
   if (H5Tget_class(type.get()) == H5T_COMPOUND && rank == 1)
     return collect_members(dataset, type.get(), name, size[0], arrays);
   const std::string matlab_class = attribute_text(dataset, "MATLAB_class");
@@ -149,7 +150,7 @@ void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arr
                        matlab_class.empty() ? "no numbers" : "MATLAB's " + matlab_class + ", no numbers");
   std::vector<double> values(size[0] * size[1]);
   if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    return arrays.skip(name, "it cannot be read");
+    return arrays.skip(name, "this dataset cannot be read");
   if (matlab_class.empty()) {
     arrays.add(name, unit_of(dataset), size[0], size[1], by_columns(values, size[0], size[1]));
   } else {
@@ -199,7 +200,7 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* data) 
   if (!walk.refused.empty()) return 1;
   const Handle object(H5Oopen(group, name, walk.access), H5Oclose);
   if (!object) {
-    walk.arrays.skip(path, "it cannot be opened");
+    walk.arrays.skip(path, "this object cannot be opened");
     return 0;
   }
   const H5I_type_t kind = H5Iget_type(object.get());

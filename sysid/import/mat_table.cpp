@@ -130,7 +130,7 @@ class MatCollector {
     if (!arrays_.has_room(shape.rows, shape.columns)) return arrays_.skip(name, too_large);
     const bool read = Mat_VarReadDataAll(file_, &variable) == 0;
     const std::vector<double> values = read ? values_of(variable, shape.count()) : std::vector<double>{};
-    if (values.empty()) return arrays_.skip(name, "it cannot be read");
+    if (values.empty()) return arrays_.skip(name, "this array cannot be read");
     arrays_.add(name, unit, shape.rows, shape.columns, values);
   }
 

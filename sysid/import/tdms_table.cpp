@@ -414,7 +414,7 @@ class TdmsReader {
       if (channel.type == TdmsType::string && channel.has_index) arrays_.skip(channel.name, "a text");
       if (channel.values.empty()) continue;
       if (channel.needs_scale) {
-        arrays_.skip(channel.name, "its values are not scaled");
+        arrays_.skip(channel.name, "the values of this channel are not scaled");
         continue;
       }
       const std::size_t count = channel.values.size();

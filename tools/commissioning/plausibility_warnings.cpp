@@ -29,8 +29,8 @@ void compare_lines(const std::string& what, const drivers::TwoPoints& before, co
   const double share = std::abs(worst) / (highest - lowest);
   if (!(share > most_share_off)) return;
   warnings.push_back(
-      fmt::format("{}: where the line of the rig file gives {:.4g} {}, the new line gives {:.4g} {}, a "
-                  "difference of {:.0f} % of the range",
+      fmt::format("{}: at the point where the calibration line in the rig file gives {:.4g} {}, the new line "
+                  "gives {:.4g} {}, a difference of {:.0f} % of the range",
                   what, at, unit, at + worst, unit, 100 * share));
 }
 
@@ -55,10 +55,10 @@ void compare_with_model(const control::ChannelSettings& channel, const Motion& m
   const double expected_mm =
       std::abs(model_mm(channel, motion.high_kpa, motion) - model_mm(channel, motion.low_kpa, motion));
   if (!(std::abs(moved_mm - expected_mm) > most_share_off * expected_mm)) return;
-  warnings.push_back(
-      fmt::format("sensor: between {:.4g} and {:.4g} kPa the gauge reading changes by {:.4g} mm, but the "
-                  "model predicts {:.4g} mm: the gauge, the calibration of the valve or the model is wrong",
-                  motion.low_kpa, motion.high_kpa, moved_mm, expected_mm));
+  warnings.push_back(fmt::format(
+      "sensor: between {:.4g} and {:.4g} kPa the gauge reading changes by {:.4g} mm, but the "
+      "model predicts {:.4g} mm, so the gauge, the calibration of the valve or the model is wrong",
+      motion.low_kpa, motion.high_kpa, moved_mm, expected_mm));
 }
 
 }  // namespace

@@ -150,7 +150,8 @@ TEST_F(RigUpdateTest, ALineFarFromTheOldOneGivesAWarning) {
   const auto warnings = plausibility_warnings(rig_, results);
   ASSERT_EQ(warnings.size(), 3U);
   EXPECT_EQ(warnings[0],
-            "valve: where the line of the rig file gives 60 kPa, the new line gives 45 kPa, a difference of "
+            "valve: at the point where the calibration line in the rig file gives 60 kPa, the new line gives "
+            "45 kPa, a difference of "
             "25 % of the range");
   EXPECT_EQ(warnings[1].rfind("pressure monitor: ", 0), 0U);
   EXPECT_EQ(warnings[2].rfind("sensor: ", 0), 0U);
