@@ -254,7 +254,7 @@ class WorkbookReader {
     if (with_numbers.size() > 1)
       return refuse(
           std::to_string(with_numbers.size()) + " sheets have rows of numbers: " + listed(with_numbers),
-          "to select one sheet, use --sheet");
+          std::string(select_sheet_hint));
     if (!found)
       return refuse("no sheet has two rows of numbers in two or more columns",
                     "the sheets are " + listed(names()));

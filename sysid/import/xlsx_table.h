@@ -10,6 +10,10 @@
 
 namespace softgrip::sysid {
 
+/// Hint of the problem that a workbook has several sheets with rows of numbers. Callers recognise the problem
+/// by this hint.
+inline constexpr std::string_view select_sheet_hint = "to select one sheet, use --sheet";
+
 /// Reads the sheet that `options.sheet` names. If this option is empty, reads the only sheet with rows of
 /// numbers. If several sheets have rows of numbers, a problem lists these sheets. The cells are read like the
 /// cells of a text (text_table.h), so a workbook gives the same table as CSV with the same cells. The line

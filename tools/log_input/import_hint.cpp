@@ -7,6 +7,7 @@
 #include "sysid/import/conversion.h"
 #include "sysid/import/foreign_file.h"
 #include "sysid/import/proposal.h"
+#include "sysid/import/xlsx_table.h"
 #include "sysid/logs/log.h"
 
 namespace softgrip::tools {
@@ -25,7 +26,7 @@ std::string import_hint(const std::string& path) {
   const std::string end = "--out " + shell_word(file.stem().stem().string() + "_log.csv");
   if (!table) {
     const document::Problem& problem = problems.list().front();
-    const bool needs_sheet = problem.hint.starts_with("--sheet");
+    const bool needs_sheet = problem.hint == sysid::select_sheet_hint;
     return needs_sheet ? path + ": " + problem.message + ": " + begin + "--sheet NAME " + end + "\n" : "";
   }
   const sysid::Proposal proposal = sysid::propose(*table, {}, true);
