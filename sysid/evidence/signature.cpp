@@ -85,7 +85,7 @@ std::string_view recording_for(Appears appears) {
     case Appears::anywhere:
       break;
   }
-  return "repeat the recording of the same run";
+  return "record the same run again";
 }
 
 }  // namespace softgrip::sysid

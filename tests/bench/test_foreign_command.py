@@ -103,7 +103,7 @@ class Command(ForeignCase):
         self.assertAlmostEqual(case["plain"]["over_bound"], 3)
         self.assertTrue(all(case["load_1min"] is not None and case["wall_s"] >= 0 for case in results["cases"]))
         page = self.page.read_text()
-        for text in ("2 of 2 repeated runs without a change are reported as changed. 1 of 1", "| softgrip 1.2.3 | ", "| runs without a change: reported as changed | at most 1 of 12 | 2 of 2 |",
+        for text in ("2 of 2 repeated runs without a change are reported as changed. The labelled cause is named or listed for 1 of 1", "| softgrip 1.2.3 | ", "| runs without a change: reported as changed | at most 1 of 12 | 2 of 2 |",
                      "sensor_drift or backlash (1.25 mm)", "| a worn gear | backlash |", "Another laboratory"):
             self.assertIn(text, page)
         self.assertIn("[3/3] changes data: a + b -> c ... changed: sensor_drift (listed)", printed)

@@ -140,7 +140,7 @@ class Health(unittest.TestCase):
                 (lambda: health(self.recordings, broken), softgrip.MalformedFile, "model.yaml was changed"),
                 (lambda: health(self.recordings, self.at / "nowhere"), softgrip.NoResult, "no baseline of `left`"),
                 (lambda: health(self.at / "nothing", self.baseline), softgrip.NoResult, "no recording can be compared"),
-                (lambda: health(self.recordings, self.baseline, notes=self.at / "bad.yaml"), softgrip.MalformedFile, "no date"),
+                (lambda: health(self.recordings, self.baseline, notes=self.at / "bad.yaml"), softgrip.MalformedFile, "not a date"),
                 (lambda: health(self.recordings, self.baseline, notes=self.at / "none"), softgrip.MalformedFile, "none"),
                 (lambda: health(self.recordings, self.baseline, points="week"), softgrip.InvalidArgument, "^points: 'week'"),
                 (lambda: health(self.recordings, self.baseline, false_alarm_points=float("nan")), softgrip.InvalidArgument,

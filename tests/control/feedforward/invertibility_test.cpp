@@ -14,6 +14,7 @@
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_regulator.h"
 #include "model/blocks/pressure_saturation.h"
+#include "model/blocks/rate_limit.h"
 #include "model/blocks/valve_deadband.h"
 #include "model/catalogue.h"
 #include "model/named.h"
@@ -154,7 +155,7 @@ TEST(Invertibility, EveryBlockIsUndoneOrNamed) {
                             info.inverse == model::Inverse::ignored ||
                             info.inverse == model::Inverse::implicit ||
                             model::is<model::PressureSaturation, model::AsymmetricValveLag, model::ChamberLag,
-                                      model::PressureRegulator, model::ValveDeadband>(info);
+                                      model::RateLimit, model::PressureRegulator, model::ValveDeadband>(info);
       EXPECT_TRUE(harmless) << info.id;
     } else if (info.inverse != model::Inverse::implicit) {
       EXPECT_NE(answer.error().text.find(info.id), std::string::npos) << answer.error().text;

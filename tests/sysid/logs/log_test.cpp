@@ -119,7 +119,7 @@ std::vector<Bad> bad_logs() {
       {"CommandConstant", with_log([](Log& log) {
          for (double& p : log.pressure_command_kpa) p = 20;
        }),
-       2, 8, "20 kPa from start to end", "motion"},
+       2, 8, "20 kPa from start to end", "the pressure changes"},
       {"SensorDead", with_log([](Log& log) {
          for (double& y : log.displacement_mm) y = 3;
        }),
@@ -127,7 +127,7 @@ std::vector<Bad> bad_logs() {
       {"SensorClips", with_log([](Log& log) {
          for (double& y : log.displacement_mm) y = std::min(y, 8.0);
        }),
-       34, 29, "extreme value 8 mm", "clips"},
+       34, 29, "extreme value 8 mm", "saturates"},
       {"ReadingsMissing", with_log([](Log& log) {
          for (std::size_t i = 40; i < 91; ++i) log.displacement_mm[i] = std::nan("");
        }),
