@@ -73,7 +73,7 @@ cat "$work"/cyclictest.* | row 'cyclictest'
 for what in 'loop wake-up' 'bus wake-up' 'loop compute' 'exchange' 'reading age'; do
   for file in "$work"/softgripd.[0-9]*; do bins_of "$file" "$what"; done | row "softgripd $what"
 done
-for what in 'Ticks' 'Slips, woken late' 'Slips, took long' 'Exchanges' 'Failed exchanges'; do
+for what in 'Ticks' 'Overruns, woken late' 'Overruns, took long' 'Exchanges' 'Failed exchanges'; do
   total=0
   for file in "$work"/softgripd.[0-9]*; do total=$((total + $(count_of "$file" "$what"))); done
   printf 'softgripd %s: %d\n' "${what,}" "$total"

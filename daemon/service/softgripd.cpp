@@ -150,17 +150,17 @@ ExitCode safe_outputs(const Arguments& arguments) {
 tl::expected<void, std::string> write_histograms(const std::string& path, const daemon::Daemon& daemon) {
   const daemon::LoopStatistics& loop = daemon.loop_statistics();
   const daemon::BusStatistics& bus = daemon.bus_statistics();
-  return write_file(
-      path,
-      fmt::format(
-          "{}{}{}{}{}# Ticks: {}\n"
-          "# Slips, woken late: {}\n"  // words-ok: scripts read this line
-          "# Slips, took long: {}\n"   // words-ok: scripts read this line
-          "# Exchanges: {}\n# Failed exchanges: {}\n",
-          loop.wake_up.cyclictest_text("loop wake-up, us"), loop.compute.cyclictest_text("loop compute, us"),
-          loop.reading_age.cyclictest_text("reading age, us"), bus.wake_up.cyclictest_text("bus wake-up, us"),
-          bus.exchange.cyclictest_text("exchange, us"), loop.ticks.value(), loop.overruns_woken_late.value(),
-          loop.overruns_took_long.value(), bus.exchanges.value(), bus.failures.value()));
+  return write_file(path, fmt::format("{}{}{}{}{}# Ticks: {}\n"
+                                      "# Overruns, woken late: {}\n"
+                                      "# Overruns, took long: {}\n"
+                                      "# Exchanges: {}\n# Failed exchanges: {}\n",
+                                      loop.wake_up.cyclictest_text("loop wake-up, us"),
+                                      loop.compute.cyclictest_text("loop compute, us"),
+                                      loop.reading_age.cyclictest_text("reading age, us"),
+                                      bus.wake_up.cyclictest_text("bus wake-up, us"),
+                                      bus.exchange.cyclictest_text("exchange, us"), loop.ticks.value(),
+                                      loop.overruns_woken_late.value(), loop.overruns_took_long.value(),
+                                      bus.exchanges.value(), bus.failures.value()));
 }
 
 ExitCode run(const Arguments& arguments) {

@@ -57,7 +57,7 @@ def softgripd(folder):
     expect("real time: all requested settings verified" in done.stdout, f"softgripd: {done.stdout}")
     text = path.read_text()
     wake_up = re.search(r"# Histogram \(loop wake-up, us\)\n(.*?)\n#", text, re.DOTALL).group(1)
-    slips = sum(int(number) for number in re.findall(r"# Slips, .*: (\d+)", text))
+    slips = sum(int(number) for number in re.findall(r"# Overruns, .*: (\d+)", text))
     failed = int(re.search(r"# Failed exchanges: (\d+)", text).group(1))
     return histogram(wake_up.splitlines()), slips, failed
 
