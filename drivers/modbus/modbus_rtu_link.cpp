@@ -101,11 +101,14 @@ Board::Budget ModbusRtuLink::cost(std::span<const TransactionSize> transactions,
   const auto number = [](std::size_t value) { return std::to_string(value); };
   Board::Budget cost;
   cost.exchange_s = wire_s + silences_s + count * answer_s;
-  cost.explanation = format_of(line_) + ", " + plan + ": " + number(bytes) + " bytes " +
-                     milliseconds(wire_s) + " + " + number(2 * transactions.size()) + " silences of " +
-                     milliseconds(seconds(silence())) + " " + milliseconds(silences_s) + " + " +
-                     number(transactions.size()) + (transactions.size() == 1 ? " answer" : " answers") +
-                     " of " + milliseconds(answer_s) + " (" + source + ")";
+  const auto product = [&](std::size_t times, double each_s) {
+    return number(times) + " x " + milliseconds(each_s) + " = " +
+           milliseconds(static_cast<double>(times) * each_s);
+  };
+  cost.explanation = format_of(line_) + ", " + plan + ": " + number(bytes) + " bytes (" +
+                     milliseconds(wire_s) + ") + silences (" +
+                     product(2 * transactions.size(), seconds(silence())) + ") + response times (" +
+                     product(transactions.size(), answer_s) + "; " + source + ")";
   return cost;
 }
 

@@ -400,8 +400,9 @@ TEST(ModbusRtuLink, TheCostAddsUp) {
   EXPECT_NEAR(cost.exchange_s, 9.69e-3 + 2 * 21e-3, 1e-4);
   EXPECT_EQ(
       cost.explanation,
-      "115200 8N1, plan: 31 bytes 2.69 ms + 4 silences of 1.75 ms 7 ms + 2 answers of 21 ms (turnaround 5 "
-      "ms and adapter 16 ms, not measured because the board has not been connected yet)");
+      "115200 8N1, plan: 31 bytes (2.69 ms) + silences (4 x 1.75 ms = 7 ms) + response times (2 x 21 ms = "
+      "42 ms; turnaround 5 ms and adapter 16 ms, not measured because the board has not been connected "
+      "yet)");
 }
 
 TEST(SerialPort, CharactersAndFormats) {
