@@ -7,15 +7,16 @@
 
 namespace softgrip::model {
 
-/// p follows u with -1 / venting <= p' <= 1 / filling. Exact for straight input: where the pressure meets
-/// the command, two segments are passed on. With a parameter of 0, the pressure follows immediately in that
-/// direction.
+/// The pressure p follows the command u with -1 / venting_s_per_kpa <= p' <= 1 / filling_s_per_kpa. Exact for
+/// a linear input: the segment is divided where the pressure reaches the command. If a parameter is 0, the
+/// pressure is not limited in the direction of this parameter.
 template <class T>
 class RateLimit {
  public:
   static constexpr BlockInfo info =
       block_info("rate_limit", Station::valve, Kind::pressure, Inverse::bound, "Rate limit",
-                 "The pressure changes at a limited rate.", "p follows u, -1 / venting <= p' <= 1 / filling");
+                 "The pressure changes at a limited rate.",
+                 "p follows u, -1 / venting_s_per_kpa <= p' <= 1 / filling_s_per_kpa");
   static constexpr std::array parameters{
       parameter("filling_s_per_kpa", "s/kPa", "shortest time in which the pressure rises by 1 kPa",
                 Typical{0.005}, Within{0.0, 1000.0}, Scale{0.005}, Neutral{0.0}),

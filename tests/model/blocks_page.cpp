@@ -81,13 +81,15 @@ void write_block(std::ostream& out, const BlockDescriptor& descriptor) {
 std::string page() {
   std::ostringstream out;
   out << "# Blocks\n\n"
-         "A model file lists blocks by station. The signal passes through the stations from left"
-         " to right, and through the blocks of a station from top to bottom:\n\n"
+         "A model file lists the blocks of each component of the gripper: the valve, the actuator, the "
+         "load and the sensor. The signal passes through the components in this order, and through the "
+         "blocks of a component in the order of the model file:\n\n"
          "    command [kPa] -> valve -> actuator -> load -> sensor -> reading [mm]\n\n"
          "In the equations, u is the command, p the pressure, y the input displacement of the "
          "block, z its output, and t the time since the start of the first log. An apostrophe is"
-         " the derivative with respect to time. Inside a station, blocks are sorted by their "
-         "input: pressure, elements, displacement, reading.\n\n"
+         " the derivative with respect to time. For each component, this page first lists the blocks that "
+         "change the pressure, then those that compute a displacement from the pressure, change the "
+         "displacement, and change the reading.\n\n"
          "The column \"typical\" is a parameter value at which the block has a visible effect. "
          "The column \"no effect at\" is the value at which the block has no effect; \"-\" means"
          " that the parameter has no such value. A model file must state every parameter that is"
@@ -103,7 +105,7 @@ std::string page() {
   for (const BlockDescriptor& descriptor : catalogue()) {
     if (first || descriptor.info.station != station) {
       station = descriptor.info.station;
-      out << "\n## Station `" << name_of(station) << "`\n";
+      out << "\n## Component `" << name_of(station) << "`\n";
       first = false;
     }
     write_block(out, descriptor);
