@@ -69,8 +69,8 @@ std::vector<double> without_model(const std::optional<Regulator>& regulator, con
   return regulator ? driven.drive_kpa : std::vector<double>(driven.size(), 0.0);
 }
 
-/// Returns the estimated initial state of a run that was not fitted. The offset is 0, because the comparison
-/// of runs estimates the zero.
+/// Returns the estimated initial state of a run to which the model was not fitted. Sets the offset of the
+/// sensor reading in this state to 0 mm, because the comparison of runs estimates this offset.
 StartState start_of(const model::Model& model, const Record& record) {
   if (model.blocks.empty()) return {};
   StartState start = estimated_start(model, record);

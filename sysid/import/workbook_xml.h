@@ -15,9 +15,10 @@ namespace softgrip::sysid {
 
 /// Returns an XML name without its namespace prefix: "x:row" gives "row".
 [[nodiscard]] std::string_view local_name(std::string_view name);
-/// Returns the first child of a node that has the local name `name`, or the value of the attribute with this
-/// local name.
+/// Returns the first child element of `node` whose local name is `name`; an empty node if there is none.
 [[nodiscard]] pugi::xml_node child_of(const pugi::xml_node& node, std::string_view name);
+/// Returns the value of the first attribute of `node` whose local name is `name`; an empty text if there is
+/// none.
 [[nodiscard]] std::string_view attribute_of(const pugi::xml_node& node, std::string_view name);
 
 /// Returns true for "1" and "true", the two spellings of a true value in XML.

@@ -25,7 +25,8 @@ inline constexpr std::size_t enough_readings = 40'000;
 /// samples, each of the two gets the local mean of the command. Otherwise the jump would be early or late by
 /// up to one interval. Where the command changes its slope without a jump, it is not changed.
 [[nodiscard]] Record thinned_record(const Record& record, std::size_t stride);
-/// Thins a record to the longest interval between kept samples that does not exceed `interval_s`.
+/// Keeps every n-th sample of a record. n is the largest number for which the mean interval between kept
+/// samples is at most `interval_s`; it is at least 1.
 [[nodiscard]] Record thinned_to(const Record& record, double interval_s);
 /// Thins a record like thinned_to() and replaces each kept reading by the mean of the readings around it. The
 /// noise decreases with the square root of the number of averaged readings. A motion is preserved if it is

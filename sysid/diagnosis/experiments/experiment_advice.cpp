@@ -29,8 +29,8 @@ std::string instead_of_waveform(const Cause& one, const Cause& other, const std:
            "moves with the load is not caused by the sensor";
   }
   if (has(one, Advice::leave_vented) && has(other, Advice::leave_vented)) {
-    return "leave the finger vented for an hour and record the zero of the sensor, because no waveform of "
-           "the menu separates " +
+    return "leave the finger vented for an hour and record the zero offset of the sensor, because no "
+           "waveform in softgrip's list of experiments separates " +
            names;
   }
   return {};
@@ -59,8 +59,8 @@ std::vector<std::string> advice_for(std::string_view one, std::string_view other
   if (facts.separable) return advice;
   std::string instead = instead_of_waveform(first, second, names, facts.gauge_made);
   if (instead.empty() && advice.empty()) {
-    instead = "no waveform of the menu separates " + names +
-              " within the limits of the rig: a separation requires less noise or a higher pressure";
+    instead = "no waveform in softgrip's list of experiments separates " + names +
+              " within the limits of the rig: a separation requires less sensor noise or a higher pressure";
   }
   if (!instead.empty()) advice.push_back(std::move(instead));
   return advice;

@@ -215,7 +215,8 @@ class GaugeStepTest : public InvestigationTest {
     options_.play = [this](const sysid::NextExperiment&,
                            const std::string&) -> tl::expected<sysid::Log, NotPlayed> {
       ++plays_;
-      return tl::unexpected(NotPlayed{false, "no waveform of the menu separates these causes"});
+      return tl::unexpected(
+          NotPlayed{false, "no waveform in the list of experiments separates these causes"});
     };
     options_.take_gauge = [this](const std::vector<double>& positions_mm, const std::string& folder) {
       ++checks_;
