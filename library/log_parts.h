@@ -21,7 +21,8 @@ struct NeededUnit {
 /// Returns the unit of a model, which logs for this model must have too.
 [[nodiscard]] NeededUnit needed_for(const Model& model);
 
-/// Checks logs in the same way as the `softgrip` commands, and converts them. Throws InvalidArgument.
+/// Converts public logs to logs of sysid/, after the checks that the `softgrip` commands make. Throws
+/// InvalidArgument if a log fails a check.
 /// @param argument       name of the argument, for messages
 /// @param measured_stay  see sysid::begin_before_first_command()
 [[nodiscard]] std::vector<sysid::Log> checked_logs(const std::string& argument, const std::vector<Log>& logs,

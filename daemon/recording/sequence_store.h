@@ -29,8 +29,8 @@ class SequenceStore {
   [[nodiscard]] std::shared_ptr<const LoadedSequence> find(std::uint32_t request) const;
   /// Removes the sequence of a request whose start was refused, or whose start did not reach the loop.
   void drop(std::uint32_t request);
-  /// Removes the sequences of requests before `request`. A later start was accepted, so these sequences do
-  /// not run.
+  /// Removes the sequences of all requests with a number below `request`. The loop has accepted the start of
+  /// `request`, so it never runs these sequences.
   void drop_before(std::uint32_t request);
 
  private:

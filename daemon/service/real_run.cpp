@@ -367,8 +367,8 @@ void RealRun::note_and_keep(const BoardLock& lock) {
                           kept.error()));
 }
 
-/// Removes the stored copy of the rig if all outputs are at rest. As long as a finger may be pressurised, the
-/// safe outputs need the rig of this run.
+/// Removes the stored copy of the rig file if all outputs are at rest. While a finger may be pressurised, the
+/// copy is kept, because it contains the safe outputs of this run.
 void RealRun::forget_if_rested() {
   if (outcome_.safe_state_confirmed && !outcome_.pressure_left_on) forget_rig(parts_.rig.path);
 }

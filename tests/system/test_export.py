@@ -158,7 +158,7 @@ class Signals(bench.BenchTest):
         for arguments in (("run.xlsx",), ("run",), ("run.csv2",), ("-", "--format", "mat"), ("x.csv", "--format", "tdms")):
             self.export(*arguments, expect=2)
         self.export("absent.csv", source="absent", expect=4)
-        self.assertIn("a model can only be exported as .c", self.export("m.csv", source=MODEL, expect=2).stderr)
+        self.assertIn("can only be exported as .c", self.export("m.csv", source=MODEL, expect=2).stderr)
         self.assertIn("keep their own times", self.export("run.mat", "--rate-hz", "100", expect=2).stderr)
         before = (self.folder / "run/run.csv").read_bytes()
         self.assertIn("not overwritten", self.export("run/run.csv", source="run/run.csv", expect=2).stderr)

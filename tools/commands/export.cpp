@@ -105,8 +105,9 @@ std::optional<ExitCode> refused(const ExportOptions& options, const std::string&
   if (const auto code = refuse_overwriting({options.out}, {options.input})) return code;
   if (format == "c") return std::nullopt;
   if (is_yaml(options.input))
-    return fail(ExitCode::usage,
-                options.input + " is not a recording, log or series: a model can only be exported as .c");
+    return fail(ExitCode::usage, options.input +
+                                     " is a YAML file, not a recording, log or series. If it is a model, it "
+                                     "can only be exported as .c");
   if (options.rate_hz)
     return fail(ExitCode::usage,
                 "--rate-hz is permitted only with --format c, because samples keep their own times");

@@ -16,10 +16,10 @@ class DaemonLine {
   /// this object.
   DaemonLine(std::string path, Gateway& gateway) : path_(std::move(path)), gateway_(gateway) {}
 
-  /// Connects if there is no connection, and passes the lines that the daemon has sent to the gateway. Does
-  /// not wait.
+  /// Connects to the daemon if there is no connection, and passes the lines received from the daemon to the
+  /// gateway. Does not wait.
   void receive(Nanoseconds now);
-  /// Sends the requests that the gateway has prepared to the daemon.
+  /// Takes the prepared requests from the gateway and sends them to the daemon.
   void send();
   /// Returns the descriptor of the connection for poll(), or -1 if there is no connection.
   [[nodiscard]] int descriptor() const noexcept { return client_ ? client_->descriptor() : -1; }
