@@ -63,8 +63,8 @@ void CommandWatch::execute(const std::string& name, const std::optional<Block>& 
   Command& asked = commands_[static_cast<std::size_t>(cause->command)];
   check(plc::command_of(static_cast<plc::CommandCode>(asked.code)) == name, asked_before,
         "the executed command differs from the requested one");
-  check(!asked.executed, executed_once, "a command is executed again");
-  check(!asked.read_as_refused, true_end, "a command was read as refused, but is executed");
+  check(!asked.executed, executed_once, "a command is executed twice");
+  check(!asked.read_as_refused, true_end, "a command that the gateway reported as refused is executed");
   check(asked.code != start_code || cause->halts == halts_, outlives_nothing,
         "the block of the start is older than a stop or a vent");
   check(asked.code != start_code || !owed_, reaction_kept,
@@ -101,7 +101,7 @@ void CommandWatch::gateway_died() {
 
 void CommandWatch::read_refused(int command) {
   Command& asked = commands_[static_cast<std::size_t>(command)];
-  check(!asked.executed || asked.over, true_end, "a command was executed, but is read as refused");
+  check(!asked.executed || asked.over, true_end, "the gateway reports an executed command as refused");
   asked.read_as_refused = true;
 }
 

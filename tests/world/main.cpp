@@ -191,8 +191,9 @@ Sum run_jobs(const Library& library, const Options& options) {
   return all;
 }
 
-/// Prints one line per tool. Returns false if a tool produced no result, or if a kind of incident never
-/// occurred during its calls.
+/// Prints one line per tool. Returns false if a tool was tested in at least `enough_worlds` simulated worlds
+/// and one of its counts (calls, results, pauses, gaps or faults) is 0. If the tools take turns in
+/// sufficiently many worlds, also returns false if a tool was tested in fewer than `enough_worlds` worlds.
 bool tell_tools(const Options& options, const Sum& sum) {
   bool eventful = true;
   for (std::size_t i = 1; i < tool_count; ++i) {

@@ -49,7 +49,8 @@ struct Campaign {
 
 /// Draws logs with three kinds of commands in turn: triangles, steps, and sums of sines.
 std::vector<Log> draw_campaign(const Campaign& campaign);
-/// Removes the samples of a log that are not recorded.
+/// Removes the first `log.unrecorded` samples from a log and from its answer. They are simulated, but the
+/// recording begins after them.
 void drop_unrecorded(Log& log, Answer& answer);
 double duration_s(const std::vector<Log>& logs);
 
