@@ -24,13 +24,13 @@ This page shows the output of softgrip for common faults, and what to do. `scrip
 `softgrip-rig` in place of the board, and wrote this page. A test runs the commands again and compares their output with
 this page. Times are shown as hh:mm:ss, measured numbers are rounded, and `[...]` marks omitted lines. `softgrip watch`
 shows the state of the daemon live. Its keys are `s`, `v`, `r`, `a` and `g`
-([commands](../reference/commands.md#with-a-daemon)). The first picture shows `softgrip watch` in 80 columns, while both
-fingers hold a part. The second shows it in 60 columns, after a sensor failed during a hold and recovered.
-`scripts/watch_pictures.py` drew both from a real terminal:
+([commands](../reference/commands.md#with-a-daemon)). The first picture shows `softgrip watch` in 80 columns while both
+fingers hold a part. The second picture shows `softgrip watch` in 60 columns after a sensor failed during a hold and
+recovered. `scripts/watch_pictures.py` drew the two pictures from a real terminal:
 
 ![watch at 80 columns: both fingers hold a part](../pictures/watch-80.svg)
 
-![watch at 60 columns: a sensor was lost in a hold, pressure stays on](../pictures/watch-60.svg)
+![watch at 60 columns: after a sensor failed during a hold, the fingers remain pressurised](../pictures/watch-60.svg)
 """
 
 WRONG_RECIPE = """name: pick_nut

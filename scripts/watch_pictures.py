@@ -92,7 +92,7 @@ def record(out):
             self.emulated.ask("clear blind")
             narrow.wait_for("The cause is gone")
             self.write_picture(narrow, "watch-60.svg",
-                               "softgrip watch at 60 columns: a sensor was lost in a hold, pressure stays on")
+                               "softgrip watch at 60 columns: after a sensor failed during a hold, the fingers remain pressurised")
 
     return unittest.TextTestRunner(verbosity=0).run(Recording()).wasSuccessful()
 
