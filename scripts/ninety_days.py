@@ -248,7 +248,7 @@ def fingers_in(lives, temperature, key):
 
 
 def listed(lives, temperature, key):
-    return "".join(f"- life {number + 1}: {'; '.join(told[temperature][key])}\n" for number, told in enumerate(lives)
+    return "".join(f"- simulation {number + 1}: {'; '.join(told[temperature][key])}\n" for number, told in enumerate(lives)
                    if told[temperature][key]) or "- none\n"
 
 
@@ -263,7 +263,7 @@ def page(args, seen, eventful, healthy, wall_s):
         f"{fingers_in(healthy, temperature, 'alone')} of {2 * args.healthy} | "
         f"{sum(bool(told[temperature]['warnings']) for told in healthy)} of {args.healthy} |\n" for temperature in TOGETHER)
     lists = "".join(f"Alarms of both fingers together, {NAMES[t]}:\n\n{listed(healthy, t, 'false')}\n"
-                    f"Warnings of the rig, {NAMES[t]}:\n\n{listed(healthy, t, 'warnings')}\n"
+                    f"Warnings of a change of the rig, {NAMES[t]}:\n\n{listed(healthy, t, 'warnings')}\n"
                     f"Alarms of a finger judged alone, {NAMES[t]}:\n\n{listed(healthy, t, 'alone')}\n" for t in TOGETHER)
     told = "".join(f"### {NAMES[t].capitalize()}\n\n| change | finger | on day | warned on day | "
                    f"alarm on day | after grips | indicators in "
@@ -279,29 +279,29 @@ def page(args, seen, eventful, healthy, wall_s):
         results_page.version_of(args.build), f"scripts/ninety_days.py --healthy {args.healthy} --seed {args.seed} --page "
         "docs/results/ninety-days.md", f"simulated rig, virtual time, {len(HOURS)} grips a day of two fingers")
     return "\n".join(head) + f"""
-{(args.healthy + 1) * DAYS * len(HOURS)} recordings of `softgrip run` were evaluated{took}. The changes are simulated in the model of the finger; `softgrip health` reads only the recordings.
+{(args.healthy + 1) * DAYS * len(HOURS)} recordings of `softgrip run` were evaluated{took}. The changes are simulated in the model of the finger. `softgrip health` reads only the recordings, so it does not know the changes.
 
-Every simulated life has weather of {WEATHER_C:g} °C (standard deviation, with a correlation of {WEATHER_STAYS:g} from day to day), a variation of {DAY_C:g} °C
-within the day, and a temperature coefficient of the gain of {100 * GAIN_PER_C["left"]:g} (left) and {100 * GAIN_PER_C["right"]:g} (right) % per °C. The position of the parts varies by
-{PART_MM:g} mm (standard deviation), and the wear is {-100 * WEAR_PER_DAY * DAYS:.1g} % in ninety days. The rig has one thermometer with a noise of {working_life.THERMOMETER_NOISE_C:g} °C. Every life is evaluated twice: with the recorded temperatures, and without them, as for a rig without a thermometer.
+Each simulation covers {DAYS} days of one rig with two fingers. The daily temperature has a standard deviation of {WEATHER_C:g} °C, and the correlation of two consecutive days is {WEATHER_STAYS:g}. Within a day, it varies sinusoidally with an amplitude of {DAY_C:g} °C.
+The gain of the left finger changes by {100 * GAIN_PER_C["left"]:g} % per °C, and the gain of the right finger by {100 * GAIN_PER_C["right"]:g} % per °C. The standard deviation of the position of the parts is
+{PART_MM:g} mm. Wear reduces the gain by {-100 * WEAR_PER_DAY * DAYS:.1g} % in ninety days. The rig has one thermometer with a noise of {working_life.THERMOMETER_NOISE_C:g} °C. The recordings of each simulation are evaluated twice: with the recorded temperatures, and without them, as for a rig without a thermometer.
 
 ## Detected changes
 
-{told}`warned on day` is the day on which the changed difference between the fingers was first reported. An `unclear` report does not name the changed finger. `shared` is a change of the rig and not of a single finger. On day 60, the left finger was replaced by a finger that is {100 * (NEW_FINGER - 1):.0f} % softer. The maintenance record
-contains this replacement, so the control charts of the finger started with a new reference.
+{told}`warned on day` is the day on which `softgrip health` first reported that the difference between the fingers had changed. An `unclear` report does not name the changed finger. `shared` means that the indicator changed for both fingers because the rig changed. On day 60, the left finger was replaced by a finger that is {100 * (NEW_FINGER - 1):.0f} % softer. The maintenance record
+contains this replacement, so `softgrip health` monitored the new finger with a new reference.
 
 ## Healthy days
 
-The simulated lives of {DAYS} days contain only weather and wear. Each life has two fingers, with nine indicators per finger. For independent days, the stated
-average is one false alarm in 3650 points of a finger, which is {2 * args.healthy * DAYS / 3650:.2f} for {2 * args.healthy} fingers. The table
-states the fingers with an alarm, and the lives with a reported change of the rig:
+In {args.healthy} simulations of {DAYS} days, only the weather and the wear change the fingers. `softgrip health` monitors nine indicators of each finger. The alarm limits are set for
+on average one false alarm in 3650 daily points of a finger, if the days are independent. For {2 * args.healthy} fingers in {DAYS} days, {2 * args.healthy * DAYS / 3650:.2f} false alarms are therefore expected.
+The table shows how many fingers had an alarm, and in how many simulations a change of the rig was reported:
 
-| | fingers in alarm, judged together | fingers in alarm, each judged alone | lives with a warning of the rig |
+| | fingers with an alarm, both fingers judged together | fingers with an alarm, each finger judged alone | simulations with a warning of a change of the rig |
 |---|---|---|---|
 {counts}
 The estimated temperature coefficient of the gain is {min(slopes, default=0):.4f} to {max(slopes, default=0):.4f} mm per °C.
 
-{lists}An active alarm hides further alarms of the same indicator. Without a thermometer, the weather causes the shared changes of the gain in these lives. Warnings of shared changes are true in this case, but not useful. The results are limited in three ways: all simulated fingers are of one type, they follow the ambient temperature
+{lists}An active alarm hides further alarms of the same indicator. Without a thermometer, the weather causes the reported changes of the gain of both fingers. The warnings of these changes are correct, but they are not useful. The results have three limitations: all simulated fingers are of one type, their temperature equals the ambient temperature
 without delay, and only the weather is correlated from day to day.
 """
 
