@@ -167,7 +167,7 @@ def detection_limits(results):
     which 90 % were found."""
     singles = [r for r in results if len(r["causes"]) == 1 and not is_outside(r["causes"][0])]
     strengths = sorted({r["strength"] for r in singles}, reverse=True)
-    lines = ["| cause | " + " | ".join(f"found at {s:g} x noise" for s in strengths) + " | smallest strength at which the cause is found in at least 90 % of the cases |",
+    lines = ["| cause | " + " | ".join(f"found at strength {s:g}" for s in strengths) + " | smallest strength at which the cause is found in at least 90 % of the cases |",
              "|---|" + "---|" * (len(strengths) + 1)]
     for cause in sorted({r["causes"][0] for r in singles}):
         rates = {s: share([r for r in singles if r["causes"][0] == cause and r["strength"] == s], "right",
@@ -178,7 +178,7 @@ def detection_limits(results):
                 break
             limit = s
         cells = " | ".join("-" if math.isnan(rates[s]) else f"{rates[s]:.0f} %" for s in strengths)
-        lines.append(f"| {cause} | {cells} | {f'{limit:g} x noise' if limit else 'not reached'} |")
+        lines.append(f"| {cause} | {cells} | {f'{limit:g}' if limit else 'not reached'} |")
     return lines
 
 
@@ -197,9 +197,10 @@ def table(results):
 def meaning(rows):
     measured = {what: text.split(" (")[0] for what, _, text, _ in rows}
     found = [measured.get(f"true cause named, or listed in an ambiguous verdict, at strength {strength}", "-") for strength in (8, 2)]
-    return (f"In simulated fingers, the diagnosis names or lists the true cause in {found[0]} of the cases at 8 times the noise, "
-            f"and in {found[1]} at 2 times. It names a cause of its library for "
-            f"{measured.get('effects outside the library: a cause of the library is named', '-')} of the effects outside its library.")
+    return (f"If a hidden effect causes an error of 8 times the sensor noise in a simulated finger, the diagnosis names or lists the "
+            f"true cause in {found[0]} of the cases, and in {found[1]} at 2 times the noise. If the effect is not in the library of "
+            f"causes, the diagnosis names a cause of the library in "
+            f"{measured.get('effects outside the library: a cause of the library is named', '-')} of the cases.")
 
 
 def write(path, results, planned, command, variation, version):
@@ -213,17 +214,15 @@ def write(path, results, planned, command, variation, version):
     unreachable = sum(not r.get("reachable", True) for r in results)
     lines = [*results_page.head("Blind campaign", meaning(summary(results)), version, command,
                                 f"{len(results)} simulated cases{of_planned}"),
-             "In each case, a separate program simulates a finger with a hidden effect and writes logs. `softgrip diagnose` reads these "
-             "logs, and a model of the finger without the effect whose parameters have errors of a few per cent. Strength is the excess error that the effect leaves in the refitted model, in units of "
-             "the noise (0.04 mm).",
+             "In each case, a separate program simulates a finger with a hidden effect and writes logs. `softgrip diagnose` reads these logs and a model of the finger without the effect. The parameters of this model have errors of a few per cent. The strength of an effect is the RMS of the displacement change that a refit of the model cannot absorb, divided by the sensor noise (0.04 mm).",
              "", variation, "", "| measure | target | measured (95 % interval) | cases |", "|---|---|---|---|"]
     lines += [f"| {what} | {target} | {measured} | {count} |" for what, target, measured, count in summary(results)]
     walls = [r["wall_s"] for r in results if "wall_s" in r]
     lines += ["", f"Median wall time of a diagnosis: {statistics.median(walls):.1f} s (three logs of 8,000 samples). In "
               f"{unreachable} cases, the effect cannot physically reach the required strength and has its largest possible size.",
               "", f"![Outcomes by hidden cause]({bars_path.name})", "",
-              f"![Named cause by hidden cause, in percent]({confusion_path.name})", "", "A cause counts as found if it is named alone or listed in an ambiguous verdict.", "",
+              f"![Named cause by hidden cause, in percent]({confusion_path.name})", "", "A cause is counted as found if it is named alone or is listed in an ambiguous verdict.", "",
               *detection_limits(results), "", *table(results), "",
               "Right: only the true cause is named. In a case without an effect, right means that no cause is named and no error remains unexplained. For an effect outside the library, right "
-              "means the verdict `unexplained`. Missed: no cause is named although there is an effect. Wrong: a cause is named that is not present, alone or together with the true cause."]
+              "means the verdict `unexplained`. Missed: no cause is named although there is an effect. Wrong: a cause that is not present is named, alone or together with the true cause."]
     path.write_text("\n".join(lines) + "\n")

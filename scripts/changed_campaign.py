@@ -98,9 +98,9 @@ def meaning(changed, still):
         return interval(sum(r["outcome"] in good for r in among), len(among)).split(" (")[0]
 
     first = [share([r for r in changed if r["strength"] == strength], ("first",)) for strength in (1, 0.15)]
-    return (f"A change of a simulated finger since its healthy logs is named first in {first[0]} of the cases at the usual "
-            f"strength, and in {first[1]} at 0.15 of it. {share(still, ('unchanged',))} of the unchanged fingers are reported as "
-            "unchanged.")
+    return (f"If a simulated finger has changed since its healthy logs, the diagnosis names the true cause first in {first[0]} of the "
+            f"cases at strength 1, and in {first[1]} at strength 0.15. It reports {share(still, ('unchanged',))} of the unchanged fingers "
+            "as unchanged.")
 
 
 def page(rows, command, planned, variation, version):
@@ -140,13 +140,11 @@ def page(rows, command, planned, variation, version):
 def changing_text():
     return [
         "In each case, the healthy logs of a finger (campaign 0 of its seed; 3 logs unless stated) are simulated without a hidden cause. The later logs (campaign 1) have different",
-        "waveforms and different noise, and contain one hidden cause or no cause. At strength 1, the excess error is 8 times the noise of 0.04 mm; the other campaigns",
-        "call this strength 8. At strength 0.15, the excess error is 0.048 mm.",
-        "In the later logs, the zero of the sensor and the temperature differ from those of the healthy logs. The outcomes are: `first`: the true cause is named first.",
-        "`twin`: stiffening is named although the sensor scale is nonlinear, or the reverse. `listed`: the true cause is named after a wrong cause,",
+        "waveforms and different noise, and contain one hidden cause or no cause. The excess error of a change is the RMS of the displacement change that a refit of the model cannot absorb. At strength 1, the excess error is 8 times the sensor noise of 0.04 mm. The other campaigns call this strength 8. At strength 0.15, the excess error is 0.048 mm.",
+        "The zero offset of the sensor and the temperature differ between the healthy and the later logs. The outcomes are: `first`: the true cause is named first.",
+        "`twin`: stiffening is named although the sensor scale is nonlinear, or a nonlinear sensor scale is named although the finger stiffens. `listed`: the true cause is named after a wrong cause,",
         "or is listed as an alternative. `unnamed`: a change is reported, but no cause is named. `missed`: the finger is reported as unchanged. `wrong`: only a wrong cause is named. The coverage of the intervals is computed for changes whose true cause",
-        "is named first, and for parameters that have the same meaning in the simulation and in the result. The valve of the textbook family and the regulator of the model structure follow the same standard (ISO 6358, a controller",
-        "with integral action). The textbook cases therefore do not show the performance on a valve that does not follow ISO 6358."]
+        "is named first, and for parameters that have the same meaning in the simulation and in the result. The valve that is simulated in the textbook family and the regulator in the models of softgrip use the same equations (ISO 6358, a controller with integral action). The textbook cases therefore do not show the performance on a valve that does not follow ISO 6358."]
 
 
 def main():

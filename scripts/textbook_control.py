@@ -179,15 +179,15 @@ def page(results, frequencies_hz, command, version):
     every = [x for hz in frequencies_hz for x in ratios(results, hz, "identified", beyond_noise)]
     raw = [x for hz in frequencies_hz for x in ratios(results, hz, "identified", float)]
     exact = [best_pid(r, hz) / NOISE_MM for r in results for hz in frequencies_hz]
-    meaning = (f"With an identified model and PID, the tracking error is {statistics.median(raw):.1f} times smaller than with the "
-               f"best PID. The error of a perfect controller would be {statistics.median(exact):.1f} times smaller.")
-    lines = [*results_page.head("Textbook fingers in closed loop", meaning, version, command,
+    meaning = (f"With the feedforward of an identified model and a PID controller, the RMS tracking error is {statistics.median(raw):.1f} times smaller than with the "
+               f"best PID controller alone. Because of the sensor noise, it could be at most {statistics.median(exact):.1f} times smaller.")
+    lines = [*results_page.head("Tracking control of fingers that are simulated with equations from textbooks", meaning, version, command,
                                 f"{len(results)} simulated fingers in real time on Modbus TCP, 200 Hz"),
              " ".join(__doc__.split("\n\n")[2].replace("(tests/blind/textbook)", "(`tests/blind/textbook`)").split()), "",
-             f"There are {len(results)} fingers. The amplitude of the sines is 25 % of the span. The sensor's noise is "
-             f"{NOISE_MM} mm, so no scheme can have a smaller error.", "",
-             "| frequency | identified model and PID | best PID alone | paper's scheme | identified model and PID: smaller error than the best PID, median | "
-             "smallest of these factors | factor without the noise, median | paper's scheme: smaller error than the best PID, median |", "|---|---|---|---|---|---|---|---|"]
+             f"There are {len(results)} fingers. The amplitude of the sines is 25 % of the span. The standard deviation of the sensor noise is "
+             f"{NOISE_MM} mm. The RMS error contains this noise, so no controller can have a smaller error.", "",
+             "| frequency | error: identified model and PID | error: best PID alone | error: scheme of the paper | error of the best PID / error of identified model and PID, median | "
+             "smallest of these ratios | this ratio without the sensor noise, median | error of the best PID / error of the scheme of the paper, median |", "|---|---|---|---|---|---|---|---|"]
     for hz in frequencies_hz:
         median = [statistics.median(r["errors_mm"][hz, "identified"] for r in results),
                   statistics.median(best_pid(r, hz) for r in results),
@@ -197,8 +197,8 @@ def page(results, frequencies_hz, command, version):
         lines.append(f"| {hz:g} Hz | " + " | ".join(f"{m:.3f} mm" for m in median) +
                      f" | {statistics.median(read):.1f} times | {min(read):.1f} times | {statistics.median(free):.1f} times | "
                      f"{statistics.median(paper):.1f} times |")
-    lines += ["", f"Over all fingers and frequencies, the error of the readings is {statistics.median(raw):.1f} times smaller than with the "
-              f"best PID. If a finger followed the reference exactly, this error would be {statistics.median(exact):.1f} times smaller. Without the noise of the sensor, the error is "
+    lines += ["", f"With the identified model and PID, the RMS error of the readings is {statistics.median(raw):.1f} times smaller than with the "
+              f"best PID (median over all fingers and frequencies). If a finger followed the reference exactly, this error would be {statistics.median(exact):.1f} times smaller. Without the sensor noise, the error is "
               f"{statistics.median(every):.1f} times smaller than with the best PID.", "", "## Errors of the readings, for each finger", "",
               "| make | seed | reference | " + " | ".join(f"{hz:g} Hz: identified, best PID, paper" for hz in frequencies_hz) + " |",
               "|---" * (3 + len(frequencies_hz)) + "|"]

@@ -53,7 +53,7 @@ def summary(rows):
 
     for columns, most in HELD_OUT_AT_MOST.items():
         among = [r for r in clean if r["columns"] == columns]
-        line(f"without an effect, {columns_text(columns)}: held-out error at most {most:g} times the noise", "100 %",
+        line(f"without an effect, {columns_text(columns)}: held-out error at most {most:g} times the sensor noise", "100 %",
              within(among, most), among)
     line("cases without an effect: no wrong cause is named", "at least 97 %",
          share(sum(not r["wrong"] for r in clean), len(clean)), clean)
@@ -62,7 +62,7 @@ def summary(rows):
     wanted = {8: "at least 90 %", 2: "at least 70 %"}
     for strength in sorted({r["strength"] for r in singles}, reverse=True):
         among = [r for r in singles if r["strength"] == strength]
-        line(f"one effect at {strength:g} times the noise: effect found", wanted.get(strength, "-"), found_of(among), among)
+        line(f"one effect of strength {strength:g}: effect found", wanted.get(strength, "-"), found_of(among), among)
     line("one effect: a wrong cause is named", "at most 3 %", wrong_of(singles), singles)
     for size, word in ((2, "two"), (3, "three")):
         among = [r for r in rows if len(r["causes"]) == size]
@@ -94,8 +94,8 @@ def clean_table(rows):
             lines.append((make, columns_text(columns), len(among), median(chosen), f"{max(chosen, default=math.nan):.2f}",
                           median(extended), ", ".join(f"{name} ({n})" for name, n in own.most_common()),
                           instead(among)))
-    return table(("make", "columns", "cases", "held-out error / noise, median", "held-out error / noise, largest",
-                  "held-out error / noise of the diagnosis' model, median", "own physics named", "wrongly named"), lines)
+    return table(("make", "columns", "cases", "held-out error of `identify` / noise, median", "held-out error of `identify` / noise, largest",
+                  "held-out error of the model of the diagnosis / noise, median", "own physics named", "wrongly named"), lines)
 
 
 def split_table(rows, key, text=str):
@@ -107,7 +107,7 @@ def split_table(rows, key, text=str):
         by_strength = [found_of([r for r in among if r["strength"] == s]) for s in strengths]
         if among:
             lines.append((text(value), len(among), *by_strength, wrong_of(among), instead(among)))
-    return table((key, "cases", *(f"found at {s:g} x noise" for s in strengths), "wrong", "wrongly named"), lines)
+    return table((key, "cases", *(f"found at strength {s:g}" for s in strengths), "wrong", "wrongly named"), lines)
 
 
 def cause_table(rows):
@@ -122,7 +122,7 @@ def cause_table(rows):
         lines.append((cause, *(f"{sum(len(r['found']) for r in some)} of {len(some)}" for some in at),
                       share(sum(len(r["found"]) for r in among), len(among)),
                       sum(len(r["alone"]) for r in among), in_part, instead(among)))
-    return table(("cause", *(f"found at {s:g} x noise" for s in strengths), "found in total", "named alone", "only listed as a partial cause",
+    return table(("cause", *(f"found at strength {s:g}" for s in strengths), "found in total", "named alone", "only listed as a partial cause",
                   "wrongly named"), lines)
 
 
@@ -136,9 +136,10 @@ def wrong_table(rows):
 
 def meaning(rows):
     measured = {what: text.split(" (")[0] for what, _, text, _ in summary(rows)}
-    found = [measured.get(f"one effect at {strength} times the noise: effect found", "-") for strength in (8, 2)]
-    return (f"In fingers and valves that share no equation with softgrip, the diagnosis finds the true cause in {found[0]} of the "
-            f"cases at 8 times the noise, and in {found[1]} at 2 times. It names a wrong cause in "
+    found = [measured.get(f"one effect of strength {strength}: effect found", "-") for strength in (8, 2)]
+    return (f"The fingers and valves are simulated with equations from textbooks that softgrip does not use. If the hidden effect "
+            f"changes the displacement by 8 times the sensor noise, the diagnosis finds the true cause in {found[0]} of the cases, and in "
+            f"{found[1]} at 2 times the noise. It names a wrong cause in "
             f"{measured.get('one effect: a wrong cause is named', '-')} of the cases.")
 
 
@@ -153,24 +154,14 @@ def made(results, planned):
 
 
 INTRODUCTION = """\
-The simulated cases share no equation with the models of softgrip. The valve follows ISO 6358 and has a PI-controlled spool with overlap and pilot hysteresis. There are five types (makes) of
-fingers: generalised play operators, Maxwell-slip elements, Preisach relays, a tube of slices of rubber with a Prony series, and
-play operators with fractional creep. All types have creep with time constants over five decades and a slightly nonlinear
-characteristic. Each
-case has three logs. The noise is 0.04 mm for readings, 0.05 kPa for pressures and 0.3 kPa for supplies.
+The simulation uses none of the equations of softgrip's models. The flow through the simulated valve follows ISO 6358. A PI controller positions its spool, which has overlap and pilot hysteresis. There are five types of fingers (column `make`), which differ in the simulation of the hysteresis and the creep: generalised play operators, Maxwell-slip elements, Preisach relays, a rubber tube that is divided into slices and has a Prony series, and play operators with fractional creep. All types have creep with time constants over five decades and a slightly nonlinear characteristic.
+Each case has three logs. The standard deviation of the noise is 0.04 mm for the displacement readings, 0.05 kPa for the measured pressures and 0.3 kPa for the supply pressures.
 
-Strength is the RMS of the change of the displacement that the effect causes over the campaign, divided by the noise. It does
-not include the part that a refit can absorb. A refit can absorb any zero and gain, and any hysteresis width, curvature and
-creep that fingers of this make can have. For a leak, the complete effect is included.
-*Own physics* are mechanisms that the simulated finger and valve have even without the hidden effect. Only mechanisms whose removal changes
-the displacement by more than 25 % of the noise are included. If a named cause is own physics of the case, it is not counted as
-wrong. If the hidden cause is also own physics (for example an additional valve lag) and is named, it is counted as found.
+The strength of an effect is the RMS of the displacement change that the effect causes in the logs of the case, divided by the sensor noise of 0.04 mm. The part of the change that a refit of the model can absorb is not included. A refit can absorb any change of the zero offset and of the gain. It can also absorb any hysteresis width, curvature and creep that fingers of this type can have. For a leak, the complete change is included.
+*Own physics* are mechanisms that the simulated finger and valve have even without the hidden effect. A mechanism is included only if its removal changes the displacement by more than 25 % of the sensor noise. A named cause is not counted as wrong if it describes own physics of the case. A named hidden cause is counted as found even if it also describes own physics (for example an additional valve lag).
 
-The diagnosis starts from a plain Bouc-Wen model of another finger (`tests/blind/textbook/given.yaml`), as if a model had been identified on one finger and were then used for a second finger of the same type. `--given commissioned` starts from the model of `softgrip identify --structure
-auto` that was fitted to different logs of the same finger without the effect. A cause is *found* if it is named or is an alternative
-of a named cause, with any verdict. One named cause is counted for at most one hidden cause. A named cause is *wrong* if this cause is not present and none of its alternatives is present. The held-out error is that of `softgrip identify --structure auto` on interleaved blocks. The input of the model is the measured pressure if it is recorded, otherwise the command. The next column
-is the error of the model of the diagnosis on its held-out blocks. If the pressure is recorded, it is the input of the finger
-model (`--drive measured`), and causes in the valve are found by a comparison of the measured pressure with the command."""
+The diagnosis starts from a plain Bouc-Wen model of another finger (`tests/blind/textbook/given.yaml`). This represents a user who identifies a model on one finger and uses this model for a second finger of the same type. `--given commissioned` starts from the model of `softgrip identify --structure
+auto` that was fitted to different logs of the same finger without the effect. A cause is *found* if it is named or is an alternative of a named cause, with any verdict. One named cause is counted for at most one hidden cause. A named cause is *wrong* if the finger contains neither this cause nor one of its alternatives. The held-out error of `identify` is the error of `softgrip identify --structure auto` on interleaved blocks. The held-out error of the model of the diagnosis is the error on the held-out blocks of the diagnosis. If the pressure is recorded, the measured pressure is the input of the models (`--drive measured`); otherwise the command is the input. If the pressure is recorded, the diagnosis finds causes in the valve by a comparison of the measured pressure with the command."""
 
 
 def write(path, results, planned, command, variation, version):
