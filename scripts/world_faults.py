@@ -118,7 +118,7 @@ def main():
             sys.exit(f"{name} does not hold this once: {old}")
     prepare()
     missed = 0
-    print("| what was put into the code | world of | found by seed | the invariant it violates |\n|---|---|---|---|", flush=True)
+    print("| inserted error | simulated program | first seed that detects the error | violated invariant |\n|---|---|---|---|", flush=True)
     for what, name, old, new, *rest in chosen:
         seconds, tool = [*rest, *DAEMON_ALONE[len(rest):]]
         path = COPY / name

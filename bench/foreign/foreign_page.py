@@ -117,15 +117,14 @@ def changes_section(values):
                 "-" if case["exceeds_spread"] is None else "yes" if case["exceeds_spread"] else "no",
                 "named" if case["named_correctly"] else "listed" if case["listed"] else
                 "wrong alone" if case["wrong_alone"] else "not named"]
-    return ["## Labelled changes", "", "A change exceeds the run-to-run spread if *later* exceeds *bound*.",
+    return ["## Labelled changes", "", "A change exceeds the run-to-run spread if the RMSE *later* is larger than *bound*.",
             "",
             *pair_tables(values, "changes", ["label", "admissible causes", "exceeds spread", "answer"], cells)]
 
 
 STICTION_TEXT = [
     "*phase ratio* is the statistic of Horch's test (A. Horch, Control Engineering Practice 7, 1999, 1221-1231), which `bench/foreign/horch.py` computes without softgrip. The valve sticks",
-    "if the ratio is above 2/3, and does not stick if it is below 1/3. The labels of these loops",
-    "were known when the form of the test was chosen, so these counts are not an independent evaluation of the test."]
+    "if the ratio is above 2/3, and does not stick if it is below 1/3. The authors knew the labels of these loops when they chose the form of the test, so the counts of this test are not an independent evaluation."]
 
 
 def stiction_section(values):
@@ -139,14 +138,13 @@ def stiction_section(values):
 IDENTIFICATION_TEXT = [
     "The values are held-out RMSE in % of the span of the log. If a case has a single log, its first half is fitted, and its second half is predicted by a simulation",
     "from the start of the log. In a case `A -> B`, log A is fitted and log B is predicted. *plain* is `softgrip identify`, *auto* is",
-    "`softgrip identify --structure auto`. *output error* is a linear output-error model of order 3 (`bench/foreign/output_error.py`). The order is 3",
-    "because the published element also has 3 states. *SciPy* is Bouc-Wen with 2 Kelvin-Voigt branches, fitted by `least_squares`",
-    "(`bench/foreign/scipy_bouc_wen.py`). For B, *output error* and *SciPy* estimate only the offset, from the first 5 % (at least 2 s).",
-    "With the drive *command*, no method uses the measured pressure. With the drive *measured*, the measured pressure is the input of every model.",
-    "The held-out errors of `piezo` and `hydraulic` were known when the rule for the initial state of the linear model was chosen.",
-    "The errors on `asu_softarm` and `hydraulic` were known when the start at rest, the bounded response, the second lag, the",
-    "rate limit and the resonance of *auto* were added, so the counts on these sets are not an independent evaluation of these additions.",
-    "The smallest error of each row is bold. *linear better*: the error of the linear model is more than 10 % smaller than that of *auto*.",
+    "`softgrip identify --structure auto`. *output error* is a linear output-error model of order 3 (`bench/foreign/output_error.py`). The order is 3 because the published model of the finger also has 3 states. *SciPy* is Bouc-Wen with 2 Kelvin-Voigt branches, fitted by `least_squares`",
+    "(`bench/foreign/scipy_bouc_wen.py`). On log B, *output error* and *SciPy* estimate only the offset, from the first 5 % of the log (at least 2 s).",
+    "If the column *drive* contains *command*, the command is the input of every model. If it contains *measured*, the measured pressure is the input of every model.",
+    "The authors knew the held-out errors on `piezo` and `hydraulic` when they chose the rule for the initial state of the linear model.",
+    "The authors knew the errors on `asu_softarm` and `hydraulic` when they added these functions to *auto*: the start at rest, the bounded response, the second lag, the",
+    "rate limit and the resonance. The counts on these two sets are therefore not an independent evaluation of these functions.",
+    "The smallest error of each row is bold. The column *linear better* contains yes if the error of the linear model is more than 10 % smaller than that of *auto*.",
     "In the column *structure of auto*, a creep ladder is a chain of Kelvin-Voigt elements."]
 
 
@@ -214,7 +212,7 @@ def head(values, title, command):
     lines = results_page.head(title, meaning(values), values["softgrip"]["version"], command,
                               f"{machine['processors']} processors, {machine['threads']} thread per call, 1-minute load {load}",
                               values["began"][:10])
-    return [*lines, "The time of a case includes all its calls; an identification that two cases share counts for both. "
+    return [*lines, "The time of a case is the duration of all its calls of softgrip; if two cases use the same identification, its duration is counted in each of the two cases. "
             "[How to repeat the measurements](../how-to/measure.md#data-of-other-laboratories)."]
 
 
