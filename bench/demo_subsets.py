@@ -85,14 +85,13 @@ def page(results, verdicts, real, options, version):
                  "names the delay and the lag without an alternative.", version, "bench/demo_subsets.py --build build/release --page docs/results/demo-subsets.md",
                  f"simulated logs, `softgrip simulate` with `{' '.join(options)}`, `softgrip diagnose --model "
                  "config/models/zhang2025.yaml`"),
-             f"The demo's finger has a transport delay of {real['transport_delay']} s and a valve lag of {real['valve_lag']} s. The given",
-             "model has neither. If the logs do not show that there is a lag, the interval of the delay includes the results with and without a lag.", "",
+             f"The demo's finger has a transport delay of {real['transport_delay']} s and a valve lag of {real['valve_lag']} s. The model that is given to `softgrip diagnose` has neither a delay nor a lag. If the logs do not show that there is a lag, the confidence interval of the delay includes the delays estimated with and without a lag.", "",
              "| logs | verdict | transport delay | valve lag |", "|---|---|---|---|"]
     for subset, rows in results.items():
         lines.append(f"| {' + '.join(subset)} | {verdicts[subset]} | {cell(rows.get('transport_delay'))} | "
                      f"{cell(rows.get('valve_lag'))} |")
     wrong = complaints(results, real)
-    lines += ["", "Every interval contains the true value, and additional logs never reduce the number of named causes." if not wrong else "Wrong:"]
+    lines += ["", "Every confidence interval contains the true value, and an additional log never reduces the number of named causes." if not wrong else "Wrong:"]
     return "\n".join(lines + [f"- {sentence}" for sentence in wrong]) + "\n"
 
 

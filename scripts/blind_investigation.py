@@ -55,9 +55,9 @@ def page(results, command, version):
                f"fingers to the true cause, and {len(wrong)} to a wrong one.")
     lines = [*results_page.head("Blind investigations", meaning, version, command,
                                 f"{sum(not r['poor'] for r in results)} ambiguous cases of the campaign and "
-                                f"{sum(r['poor'] for r in results)} that wrote one log of triangles alone"),
-             f"{len(asked)} first diagnoses were ambiguous and listed the true cause. `softgrip investigate` was run on these cases. The simulated finger was the rig, and the gauge check of its sensor was also simulated. The position of the sensor's target has "
-             "an error of 0.01 mm (standard deviation). Each reading is the mean over 2 s, with the noise, quantisation, drift, disturbances and wrong samples of the simulated case.", "",
+                                f"{sum(r['poor'] for r in results)} cases with a single log of triangles"),
+             f"In {len(asked)} cases, the first diagnosis was ambiguous and listed the true cause. `softgrip investigate` was run on these cases with the simulated finger in place of a rig. The gauge check of the sensor was also simulated. The position of the sensor's target has "
+             "an error of 0.01 mm (standard deviation). Each reading is the mean over 2 s, and has the noise, quantisation, drift, disturbances and wrong samples of the simulated case.", "",
              "| ambiguous verdicts | cases, with the 95 % interval of their share |",
              "|---|---|",
              f"| resolved to the true cause | {share(resolved, asked)} |",

@@ -138,8 +138,8 @@ def page(args, rows):
         *results_page.head("Duration for large logs", meaning[0].upper() + meaning[1:] + ".", results_page.version_of(args.build),
                            "scripts/large_logs.py --page", f"{os.cpu_count()} processors, {args.threads} threads, 1-minute load "
                            f"{min(loads):.1f} to {max(loads):.1f}"),
-        f"Required: a diagnosis at most {MOST_S['diagnose']} s, median {MEDIAN_S} s; `identify` at most {MOST_S['identify']} s.", "",
-        "| command | case | rows | answer | took [s] | processor time [s] | at most [s] | load |", "|---|---|---|---|---|---|---|---|",
+        f"Required: a diagnosis takes at most {MOST_S['diagnose']} s and has a median of at most {MEDIAN_S} s; `identify` takes at most {MOST_S['identify']} s.", "",
+        "| command | case | rows | result | duration [s] | processor time [s] | allowed duration [s] | load |", "|---|---|---|---|---|---|---|---|",
         *lines, ""])
 
 

@@ -81,9 +81,9 @@ def page(args, rows, command):
     slowest = sorted(rows, key=lambda r: -r["wall_s"])[:5]
     return "\n".join([
         *results_page.head(
-            "Duration of a diagnosis", f"A diagnosis of three logs takes {median:.1f} s at the median, and at most {longest:.1f} s.",
+            "Duration of a diagnosis", f"A diagnosis of three logs takes {median:.1f} s (median) and at most {longest:.1f} s.",
             results_page.version_of(args.build), command,
-            f"{len(rows)} cases of textbook physics, three logs each, "
+            f"{len(rows)} cases that are simulated with equations from textbooks, three logs each, "
             f"{statistics.median(r['samples'] for r in rows) / 3:.0f} samples in a log (median), {args.threads} threads of "
             f"{os.cpu_count()} processors, closed loop and report included"),
         f"Required: median at most {WANTED['median']} s, longest at most {WANTED['longest']} s. Measured: {median:.1f} s and "
@@ -91,7 +91,7 @@ def page(args, rows, command):
         *table(("", "cases", "median [s]", "longest [s]", "processor time, median [s]"), summary(rows)),
         *table(("stage", "share of the time"), shares(rows)),
         "The five longest diagnoses:", "",
-        *table(("hidden", "strength", "make", "columns", "seed", "verdict", "took [s]"), [
+        *table(("hidden cause", "strength", "type of finger", "columns", "seed", "verdict", "duration [s]"), [
             (" + ".join(r["causes"]) or "nothing", f"{r['strength']:g}", r["make"], r["columns"], r["seed"], r["verdict"],
              f"{r['wall_s']:.1f}") for r in slowest])])
 

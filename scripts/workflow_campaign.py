@@ -107,8 +107,7 @@ def page(args, figures):
                  f"repeats {twice} of the {done} rows that were done.", results_page.version_of(args.build),
                  f"scripts/workflow_campaign.py --work DIR --rows {rows} --cores {args.cores} --batch {args.batch} --page {args.page}",
                  f"{os.cpu_count()} processors, which other programs used, too"),
-             "The column *load* is the 1-minute load of the machine. Each row runs `softgrip identify --threads 1` for another simulated finger, with a "
-             "log of 25 s at 20 Hz. Short rows are the worst case of the workflow, because the "
+             "The column *load* is the 1-minute load of the machine. Each row of the workflow runs `softgrip identify --threads 1` for a different simulated finger, with a log of 25 s at 20 Hz. Short rows are the worst case of the workflow, because the "
              "overhead per row does not depend on the duration of a row.", "",
              "| method | wall time | per row | load | models, hash over all |", "|---|---|---|---|---|"]
     for name, seconds, (digest, count), load in figures["ways"]:

@@ -7,18 +7,15 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import results_page
 
 EXPLANATION = """\
-This page shows the result of every fault in every phase of a grip, with the number of cycles of the control loop and the outputs of the board.
-`tests/system/fault_matrix.yaml` defines the required result of each cell. A cell with another result is marked **WRONG** and fails
-the command. `system.test_fault_matrix` runs some of the cells with every test run.
+The table shows the result of every fault (row) in every phase of a grip (column). It also shows how many cycles of the control loop passed until the fault was detected, and what the board did with its outputs.
+`tests/system/fault_matrix.yaml` defines the required result of each cell. If the measured result of a cell differs from the required result, the cell is marked **WRONG** and the command fails. The test `system.test_fault_matrix` repeats some of the cells in every test run.
 
-- **F103 20/22 vent**: fault F103 latched 20 cycles after its first effect, and the thresholds below allow 22 cycles. The outputs were then vented.
-*board*: the watchdog of the board vented the outputs, because no write was possible. The cycles are ticks in the recording,
-from the first affected message to the tick in which the fault latched.
+- **F103 20/22 vent**: the daemon latched fault F103 20 cycles after the first effect of the fault, and vented the outputs. The thresholds below allow 22 cycles.
+*board*: the watchdog of the board vented the outputs, because no write was possible. A cycle is a tick in the recording. The cycles are counted from the first affected message to the tick in which the fault latched.
 - **waits**: the daemon stays in the state `starting` with its outputs at rest, and becomes idle when the cause is gone.
 - **ridden**: no fault is raised, and the grip has its normal result.
 - **unseen**: the software cannot detect the fault. The note gives the reason and the remaining protection.
-- *spoiled*: a write does not arrive unchanged, so the safe action of the daemon has no effect. Only the protection of board and bench is
-effective (relief valve, dump valve in the emergency-stop circuit).
+- *spoiled*: a write does not arrive unchanged, so the safe action of the daemon has no effect. Only protections outside the software are effective (for example a relief valve, or a dump valve in the emergency-stop circuit).
 
 In every cell, the following conditions are also checked. After the fault, no output moved away from rest. When the cause is gone, the
 fault can be acknowledged, and the acknowledgement causes no motion. The recordings contain every tick that the loop executed,
@@ -57,22 +54,22 @@ def summary(results):
     worst = max(reactions, key=lambda m: m["cycles"] / m["bound"])
     tried = sum(r["attempts"] > 1 for r in results)
     return (f"{len(results)} cells: " + ", ".join(f"{n} {ends}" for ends, n in sorted(count.items())) +
-            f". {len(reactions)} reactions were measured; the reaction that was nearest to its limit took {worst['cycles']} of {worst['bound']} "
-            f"cycles. {tried} cells were repeated after a pause of the machine.")
+            f". {len(reactions)} reactions were measured; the reaction that was nearest to its limit took {worst['cycles']} of the {worst['bound']} "
+            f"allowed cycles. {tried} cells were repeated because the machine had paused during the first run.")
 
 
 def meaning(results):
     wrong, unseen = (sum(bool(kind(r)) for r in results) for kind in (
         lambda r: r["wrong"], lambda r: not r["wrong"] and r["expected"]["ends"] == "unseen"))
-    return (f"{len(results) - wrong} of {len(results)} cells have the required result, but in {unseen} of them the software cannot "
-            "detect the fault. For each of these cells, a note states the remaining protection.")
+    return (f"{len(results) - wrong} of {len(results)} cells have the required result, but in {unseen} of these cells the software cannot "
+            f"detect the fault. For each of the {unseen} cells, a note names the remaining protection.")
 
 
 def page(table, results, build):
     notes = []
     lines = [*results_page.head("Fault matrix", meaning(results), results_page.version_of(build), "scripts/fault_matrix.sh --page",
                                 "real daemon and emulated board over real sockets"), EXPLANATION, summary(results), "", "## Thresholds", "",
-             "The rig is `config/rig_tcp.yaml` with these changes. The allowed numbers of cycles are computed from them:", "",
+             "The tests use the rig file `config/rig_tcp.yaml` with the values in this table. The allowed numbers of cycles are computed from these values:", "",
              "| key | |", "|---|---|"]
     lines += [f"| `{key}` | {value} |" for key, value in table.rig.items()]
     lines += ["", "## The table", "", "| class | fault | " + " | ".join(table.phases) + " |",
