@@ -9,10 +9,10 @@ namespace softgrip::model {
 template <class T>
 class SensorDrift {
  public:
-  static constexpr BlockInfo info =
-      block_info("sensor_drift", Station::sensor, Kind::reading, Inverse::ignored, "Sensor drift",
-                 "The zero of the sensor drifts steadily with the time since the start of the measurements.",
-                 "z = y + rate t");
+  static constexpr BlockInfo info = block_info(
+      "sensor_drift", Station::sensor, Kind::reading, Inverse::ignored, "Sensor drift",
+      "The zero offset of the sensor drifts steadily with the time since the start of the measurements.",
+      "z = y + rate t");
   static constexpr std::array parameters{parameter("rate_mm_per_h", "mm/h", "steady drift", Typical{0.5},
                                                    Within{-1e5, 1e5}, Scale{1.0}, Neutral{0.0})};
 

@@ -15,7 +15,7 @@ class SensorFreeDrift {
  public:
   static constexpr BlockInfo info =
       block_info("sensor_free_drift", Station::sensor, Kind::reading, Inverse::ignored, "Free sensor drift",
-                 "The zero of the sensor drifts along straight lines between knots.",
+                 "The zero offset of the sensor drifts along straight lines between knots.",
                  "z = y + straight lines through knot1, knot2 ... every interval");
   static constexpr std::array parameters{parameter("knot_interval_s", "s", "time between knots",
                                                    Typical{30.0}, Within{0.1, 1e5}, Scale{10.0},

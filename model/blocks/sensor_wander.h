@@ -16,7 +16,7 @@ class SensorWander {
  public:
   static constexpr BlockInfo info =
       block_info("sensor_wander", Station::sensor, Kind::reading, Inverse::ignored, "Sinusoidal sensor drift",
-                 "The zero of the sensor drifts slowly along a sine.",
+                 "The zero offset of the sensor drifts slowly along a sine.",
                  "z = y + a sin(2 pi t/period) + b (cos(2 pi t/period) - 1)");
   static constexpr std::array parameters{
       parameter("wander_sin_mm", "mm", "amplitude a of the drift", Typical{0.1}, Within{-100.0, 100.0},

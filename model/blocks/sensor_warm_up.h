@@ -13,7 +13,7 @@ class SensorWarmUp {
  public:
   static constexpr BlockInfo info = block_info(
       "sensor_warm_up", Station::sensor, Kind::reading, Inverse::ignored, "Sensor warm-up",
-      "The zero of the sensor drifts while the sensor warms up.", "z = y + warm_up (1 - exp(-t/tau))");
+      "The zero offset of the sensor drifts while the sensor warms up.", "z = y + warm_up (1 - exp(-t/tau))");
   static constexpr std::array parameters{parameter("warm_up_mm", "mm", "drift during warm-up", Typical{0.2},
                                                    Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0}),
                                          parameter("warm_up_time_s", "s", "time constant of the warm-up",

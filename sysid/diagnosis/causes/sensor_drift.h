@@ -1,6 +1,6 @@
 #pragma once
-// Defines a cause: the zero of the sensor drifts steadily, during warm-up, sinusoidally, or along a piecewise
-// linear curve.
+// Defines a cause: the zero offset of the sensor drifts steadily, during warm-up, sinusoidally, or along a
+// piecewise linear curve.
 
 #include <algorithm>
 #include <cmath>
@@ -19,13 +19,13 @@ struct SensorDrift {
   static constexpr std::array advice{Advice::leave_vented, Advice::record_temperature};
   static constexpr Appears appears = Appears::at_rest;
   static constexpr WhenChanged when_changed{
-      "the zero of the sensor drifts",
+      "the zero offset of the sensor drifts",
       {"Leave the finger vented for an hour and read the zero every ten minutes.",
        "Check the clamp and the cable of the sensor, and let the sensor warm up before the recording."},
       {{{HealthNumber::zero, Moves::either_way}, {HealthNumber::contact, Moves::either_way}}},
       {SizedBy::Of::largest, "largest drift of the zero", "mm"}};
 
-  /// Form of the cause: the zero drifts at a constant rate.
+  /// Form of the cause: the zero offset drifts at a constant rate.
   struct Steady : FormOf<model::SensorDrift> {
     static Starts starts(const Scales& s) {
       const double rate = 3600 * 0.05 * s.span_mm / s.campaign_s;
@@ -33,7 +33,7 @@ struct SensorDrift {
     }
   };
 
-  /// The zero drifts while the sensor warms up.
+  /// The zero offset drifts while the sensor warms up.
   struct WarmUp : FormOf<model::SensorWarmUp> {
     static Starts starts(const Scales& s) {
       return every(
@@ -46,7 +46,7 @@ struct SensorDrift {
     }
   };
 
-  /// The zero follows a slow sinusoid.
+  /// The zero offset follows a slow sinusoid.
   struct Sinusoidal : FormOf<model::SensorWander> {
     /// Returns start points with different periods, eight phases and two amplitudes.
     static Starts starts(const Scales& s) {
@@ -70,7 +70,7 @@ struct SensorDrift {
     }
   };
 
-  /// Form of the cause: the zero follows a piecewise linear curve.
+  /// Form of the cause: the zero offset follows a piecewise linear curve.
   struct Knots : FormOf<model::SensorFreeDrift> {
     static constexpr bool free_form = true;
     static constexpr std::array<Parameter, 0> fitted{};
