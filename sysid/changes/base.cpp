@@ -30,8 +30,8 @@ constexpr double shortest_finger_bin_s = 0.05, shortest_commanded_bin_s = 0.02;
 /// than that of a pressure, so its order covers at least finger_memory_s.
 constexpr std::size_t whitening_order = 8;
 constexpr double finger_memory_s = 0.4;
-/// Lower limits of the spread between runs: relative spread of the gain, and spread of the zero as a share of
-/// the span. No finger is more repeatable from day to day.
+/// Lower limits of the spread between runs: relative spread of the gain, and spread of the zero offset as a
+/// share of the span. No finger is more repeatable from day to day than these limits.
 constexpr double least_gain_spread = 0.002;
 constexpr double least_zero_share = 0.0005;
 

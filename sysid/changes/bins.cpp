@@ -16,8 +16,8 @@ namespace {
 /// bins are below the limits.
 constexpr std::array class_ends{0.4, 0.7, 0.9};
 
-/// Subtracts the mean of the finite values from the series, because the zero of a run is a separate
-/// parameter.
+/// Subtracts the mean of the finite values from the series, because the zero offset of a run is estimated
+/// separately.
 void subtract_mean(std::vector<double>& series) {
   double sum = 0, count = 0;
   for (const double v : series) {

@@ -38,8 +38,8 @@ inline constexpr CauseWithoutBlock leak{
      {SizedBy::Of::number, "pressure loss per second while the line is closed", "kPa", "loss_kpa_per_s"}},
     Appears::held};
 
-/// A weight or a preload changes gain and zero together. The readings cannot separate this cause from a
-/// change of the finger that coincides with a change of the zero.
+/// A weight or a preload changes the gain and the zero offset together. The readings cannot separate this
+/// cause from a change of the finger that coincides with a change of the zero offset.
 inline constexpr CauseWithoutBlock payload{
     "payload",
     "Payload",

@@ -336,8 +336,8 @@ class Judge {
     return std::nullopt;
   }
 
-  /// Returns true if the zero of the later logs [mm] differs significantly from the mean zero of the healthy
-  /// runs. The difference must exceed that of another healthy run.
+  /// Returns true if the zero offset of the later logs [mm] differs significantly from the mean zero offset
+  /// of the healthy runs. The difference must be larger than expected for a further healthy run.
   [[nodiscard]] bool is_another_zero(double zero_mm) const {
     const auto units = static_cast<double>(base_.units.count());
     return std::abs(zero_mm - base_.zero_mm) >

@@ -86,7 +86,7 @@ struct JudgedChange {
   double explained_mm = 0;  ///< RMS error in the later logs if the model includes the causes
   /// Mean squares of the whitened residual without and with the causes; 1 in the healthy logs.
   double loss_before = 1, loss_left = 1;
-  double zero_mm = 0;  ///< change of the zero since the healthy logs
+  double zero_mm = 0;  ///< change of the sensor's zero offset since the healthy logs
   /// Change of the gain that is within the spread of the healthy logs.
   double gain_percent = 0;
   bool left_over = false;

@@ -17,8 +17,9 @@ struct FittedEffect {
   std::vector<double> numbers;
 };
 
-/// Residuals that the baseline model leaves in later records. Differences of the zero, and a gain within the
-/// variation of the healthy logs, do not count as a change. They are fitted and subtracted.
+/// Residuals that the baseline model leaves in later records. Two differences do not count as a change: a
+/// difference of the zero offset, and a difference of the gain within the variation of the healthy logs. Both
+/// differences are fitted and subtracted.
 class LaterReadings {
  public:
   /// @param later  later records, thinned by thinned_for().

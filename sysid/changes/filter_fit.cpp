@@ -25,8 +25,8 @@ struct Row {
   std::size_t record = 0, bin = 0, unit = 0;
 };
 
-/// Subtracts the mean of each record in each unit from the values. A model does not predict the zero of a
-/// run.
+/// Subtracts the mean of each record in each unit from the values, because a model does not predict the zero
+/// offset of a run.
 Eigen::VectorXd centred(Eigen::VectorXd values, const std::vector<Row>& rows) {
   std::map<std::pair<std::size_t, std::size_t>, std::pair<double, double>> sums;
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -10,7 +10,7 @@ namespace softgrip::sysid {
 
 /// Signal that was recorded behind a regulator.
 enum class ReadBy {
-  gauge,  ///< the pressure; gain and zero of its sensor are fitted
+  gauge,  ///< the pressure; the gain and the zero offset of its sensor are fitted
   /// The displacement, described by a bank of plays and lags with weights that are refitted for each
   /// regulator.
   finger,

@@ -37,8 +37,8 @@ struct BaseStructure {
   bool envelopes = false;      ///< true: the play operators are generalised ones with nonlinear envelopes
   bool hinged_creep =
       false;                ///< pressure-dependent creep: a short chain above each threshold pressure (hinge)
-  bool zero_drift = false;  ///< a piecewise linear drift of the zero of each record, which is not a part of
-                            ///< the finger
+  bool zero_drift = false;  ///< a piecewise linear drift of the zero offset of each record, which is not a
+                            ///< part of the finger
   /// The published element: one lag, Bouc-Wen, and two Kelvin-Voigt branches with fitted time constants.
   bool published = false;
 

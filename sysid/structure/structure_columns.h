@@ -15,7 +15,7 @@ namespace softgrip::sysid {
 
 /// Column indices of a structure. The columns before own() have weights that are not negative, and their
 /// weighted sum is the input of the characteristic. The columns of each record (offset, unsettled creep,
-/// drift of the zero) are added after the characteristic, and their weights may have either sign.
+/// drift of the zero offset) are added after the characteristic, and their weights may have either sign.
 class ColumnLayout {
  public:
   ColumnLayout(const BaseStructure& structure, const StructureGrid& grid, const std::vector<Record>& records);

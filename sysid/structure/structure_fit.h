@@ -45,7 +45,7 @@ struct FittedStructure {
                                        const StructureGrid& grid, const StructureFitOptions& options,
                                        const NonlinearNumbers* near = nullptr);
 
-/// Removes the drift of the zero from the readings: fits the structure with a drift of the zero of each
+/// Removes the drift of the zero offset from the readings. Fits the structure together with a drift of each
 /// record, and subtracts the fitted drift.
 [[nodiscard]] std::vector<Record> without_zero_drift(std::vector<Record> records, BaseStructure structure,
                                                      const StructureFitOptions& options);

@@ -161,8 +161,8 @@ class Errors {
 
   [[nodiscard]] std::size_t count() const { return count_; }
 
-  /// Computes the residuals. If gain and zero of the pressure sensor are fitted, they are written to the
-  /// stage.
+  /// Computes the residuals. If the gain and the zero offset of the pressure sensor are fitted, writes the
+  /// fitted values to the stage.
   void evaluate(ValveStage& stage, std::span<double> out) const {
     const std::vector<std::vector<double>> p = predicted_by(stage);
     if (fit_.sensor != PressureSensorFit::nothing) read_gauge(p, stage);
@@ -205,8 +205,8 @@ class Errors {
     return !fit_.is_fitted || fit_.is_fitted(log, sample);
   }
 
-  /// Fits gain and zero of the pressure sensor, or only its zero, by linear regression of the measured on the
-  /// predicted pressure.
+  /// Fits the zero offset of the pressure sensor, or its gain and zero offset, by linear regression of the
+  /// measured pressure on the predicted pressure.
   void read_gauge(const std::vector<std::vector<double>>& predicted, ValveStage& stage) const {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
     for (std::size_t k = 0; k < logs_.size(); ++k) {

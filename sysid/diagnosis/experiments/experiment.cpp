@@ -209,8 +209,9 @@ class Designer {
     rank();
   }
 
-  /// Computes the separations of the first `count` waveforms of the menu. @param way  linear, or with a
-  /// refit. The refit is more accurate; its result replaces the linear result only if it is smaller.
+  /// Computes the separations of causes for the first `count` waveforms in `menu`.
+  /// @param way  linear, or with a refit. The refit is more accurate; its result replaces the linear result
+  /// only if it is smaller than the linear result.
   void separate(std::size_t count, Way way) {
     parallel_for(count * pairs_.size(), options_.threads, [&](std::size_t job) {
       JudgedWaveform& judged = result_.menu[job / pairs_.size()];

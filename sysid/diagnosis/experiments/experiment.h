@@ -38,7 +38,7 @@ struct Separation {
   double sigma = 0;
 };
 
-/// A waveform of the menu with its predicted separations.
+/// A waveform that an experiment can apply, with the separations of causes that are predicted for it.
 struct JudgedWaveform {
   Waveform waveform;
   double minutes = 0;  ///< duration of the waveform and of the rest before it

@@ -19,7 +19,7 @@ struct Corner {
   double pressure_kpa = 0;
 };
 
-/// One experiment of the menu. Its slew rate never exceeds the limit of the rig.
+/// One waveform that an experiment can apply. Its slew rate never exceeds the limit of the rig.
 struct Waveform {
   std::string name;   ///< id of the waveform: "rest_and_repeat"
   std::string about;  ///< description of the waveform in one line, for display
@@ -28,9 +28,9 @@ struct Waveform {
   [[nodiscard]] double duration_s() const { return corners.empty() ? 0 : corners.back().time_s; }
 };
 
-/// Returns the waveforms of the menu: rest and repeat; triangles at three rates that span a factor of 100;
-/// steps with holds; minor loops; increasing amplitudes; sharp steps. All waveforms are within the limits of
-/// the rig.
+/// Returns all waveforms that experiments can apply: rest and repeat; triangles at three rates that span a
+/// factor of 100; steps with holds; minor loops; increasing amplitudes; sharp steps. All waveforms are within
+/// the limits of the rig.
 [[nodiscard]] std::vector<Waveform> experiment_menu(const RigLimits& limits);
 
 /// Returns the command at times from 0 to the end of the waveform, at intervals of `interval_s`.

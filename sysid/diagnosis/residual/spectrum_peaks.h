@@ -18,7 +18,7 @@ struct Line {
 };
 
 /// Returns the lowest frequency that counts as an oscillation in a campaign of this length [Hz]. A slower
-/// variation counts as a drift of the zero.
+/// variation counts as a drift of the zero offset.
 [[nodiscard]] inline double slowest_oscillation_hz(double campaign_s) {
   return std::max(0.2, 10 / std::max(campaign_s, 1.0));
 }

@@ -178,8 +178,8 @@ class Diagnostician {
                      " readings in total: too few to separate a cause from noise (" +
                      std::to_string(fewest_samples) + " are needed)");
     }
-    // The zero of the first log is arbitrary. If the zero changes from log to log, this is a drift, which is
-    // a possible cause.
+    // The zero offset of the first log is arbitrary. If the zero offset changes from log to log, the sensor
+    // drifts, and drift is a possible cause.
     const bool zero_free = records.front().offset_free && !records.front().start_unknown;
     for (Record& record : records) record.offset_free = zero_free || record.start_unknown;
     d_.sampling = hide_repeated(records);

@@ -25,7 +25,7 @@ struct LostPressure {
 /// Searches for a leak. Returns nullopt in three cases: the fitted gain of the pressure sensor is within the
 /// scale errors; a leak reduces the error significantly less than this gain does; or most of the error that
 /// remains without leak and gain has another cause.
-/// @param scaled  fit of `parts`, which contain no leak, with gain and zero of the sensor.
+/// @param scaled  fit of `parts`, which contain no leak, with gain and zero offset of the pressure sensor.
 [[nodiscard]] std::optional<LostPressure> find_lost_pressure(const std::vector<Log>& logs,
                                                              const MeasuredValve& valve, ValveParts parts,
                                                              const ValveStage& scaled);

@@ -20,9 +20,9 @@ class MeasuredValve {
   /// @param held  true: the command is constant between two samples.
   MeasuredValve(const std::vector<Log>& logs, bool held);
 
-  /// Fits the given parts of the valve model, and gain and zero of the pressure sensor, to all data. The fits
-  /// start at the points `from`.
-  /// @param tolerance  tolerance of the fit; if the result is reported, it must be small.
+  /// Fits the given parts of the valve model, and the gain and the zero offset of the pressure sensor, to all
+  /// data. The fits start at the points `from`.
+  /// @param tolerance  tolerance of the fit; it must be small if the result of the fit is reported.
   [[nodiscard]] ValveStage fit(ValveParts parts, const std::vector<ValveStage>& from, double tolerance = 1e-6,
                                PressureSensorFit sensor = PressureSensorFit::gain_and_zero) const;
 
