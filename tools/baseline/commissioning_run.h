@@ -14,12 +14,12 @@
 
 namespace softgrip::tools {
 
-/// Returns the names of the default experiments from the experiment menu. They cover several pressure levels,
-/// pressure rates from the lowest to 100 times the lowest, holds and small hysteresis loops.
+/// Returns the names of the default experiments (see sysid::experiment_menu()). They cover several pressure
+/// levels, pressure rates from the lowest to 100 times the lowest, holds and small hysteresis loops.
 [[nodiscard]] const std::vector<std::string>& usual_commissioning();
 
 struct CommissioningOptions {
-  std::vector<std::string> experiments;  ///< names of experiments from the experiment menu, each at most once
+  std::vector<std::string> experiments;  ///< names of the experiments to run, each at most once
   /// Rest at zero pressure before each experiment [s], because creep needs about a minute to decay. A
   /// simulated rig needs no rest, because each experiment starts from its initial state.
   double rest_s = 60;

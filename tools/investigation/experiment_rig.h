@@ -28,7 +28,7 @@ struct ExperimentRig {
   [[nodiscard]] const std::string& channel_name() const { return rig.settings.channels[channel].name; }
   /// Returns the rig for run number `occasion`. A simulated rig gets another noise seed for each run.
   [[nodiscard]] ExperimentRig at(std::uint64_t occasion) const;
-  /// Returns the limits of the rig for the menu of experiments.
+  /// Returns the limits of the rig, which determine the waveforms of the experiments.
   /// @param gain_mm_per_kpa  gain of the finger in the logs, with which the displacement is limited; 0:
   /// unknown.
   /// @param known_kpa  largest pressure of the logs. At higher pressures, a smaller share of the displacement

@@ -17,7 +17,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using sysid::Verdict;
 
-/// Largest number of steps of an investigation. It exceeds the number of experiments in any menu.
+/// Largest number of steps of an investigation. It exceeds the number of waveforms that experiments can
+/// apply.
 constexpr std::size_t most_steps = 20;
 
 InvestigationStep step_of(const sysid::Diagnosis& diagnosis, const std::string& folder) {

@@ -297,7 +297,7 @@ steps:
   - move: {displacement_mm: 15, duration_s: 3, settle_s: 3}
 )";
 
-// The zero of the sensor is shifted by 1.5 mm, but the plan assumes a correct sensor. The feedforward must
+// The sensor has a zero offset of 1.5 mm, but the plan assumes a sensor without offset. The feedforward must
 // shift the planned motion by 1.5 mm.
 TEST(SequencePlans, AFingerThatStandsOffItsModelArrivesAllTheSame) {
   for (const char* model : {"zhang2025", "bench_twin"}) {

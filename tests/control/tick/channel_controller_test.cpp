@@ -253,8 +253,7 @@ TEST(ChannelController, AGapInTheReadingsHoldsTheFeedbackAndGoesOn) {
 }
 
 TEST(ChannelController, ResynchronisingFollowsAFingerThatIsNotWhereTheModelIs) {
-  // The controller restarts under two difficulties: the finger still creeps, and the zero of the sensor is
-  // shifted.
+  // The controller restarts while the finger still creeps and the zero offset of the sensor has changed.
   ChannelSettings settings = twin_settings();
   Rig rig(settings, 0.02);
   rig.press(30);

@@ -32,8 +32,8 @@ TEST(Change, AnotherInputAndAnotherZeroAreNoChange) {
   EXPECT_NEAR(d.readings.back().zero_mm, 0.4, 0.03);
 }
 
-/// A payload changes the gain and the zero at the same time. If only the gain has changed, payload must not
-/// be an alternative.
+/// A payload changes the gain and the zero offset at the same time. If only the gain has changed, payload
+/// must not be an alternative.
 TEST(Change, AnotherGainBesideAnotherZeroMayBeAWeight) {
   const auto may_be_a_weight = [](const Finger& later) {
     const ChangeDiagnosis d = changed(later);

@@ -25,7 +25,7 @@ struct Finger {
   bool with_temperature = false;
   double bend_per_mm = 0;  ///< stiffens with the displacement; at 12 mm the displacement is unchanged
   double crescent_mm = 0;  ///< width of a loop that rises along a parabola and falls along a line
-  double drift_mm = 0;     ///< amplitude of a drift of the zero with a period of about 15 s
+  double drift_mm = 0;     ///< amplitude of a drift of the zero offset with a period of about 15 s
 };
 
 /// Returns a command of ramps to random pressures, holds, and ramps to 0. `seed` determines the pressures and

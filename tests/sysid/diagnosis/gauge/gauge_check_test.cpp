@@ -38,7 +38,7 @@ SensorShape end_of_logs(double at_mm) {
   return {{{*model::find_block("sensor_saturation"), {-1e4, at_mm}}}, 0};
 }
 
-/// Returns readings of a gauge. The check does not know the zero and the scale of the gauge.
+/// Returns readings of a gauge. The gauge check does not know the zero offset and the scale of the gauge.
 std::vector<GaugeReading> read(const Sensor& sensor, double noise, std::vector<double> positions,
                                double gauge_zero_mm = 3, double gauge_scale = 1.01) {
   std::mt19937_64 random(5);

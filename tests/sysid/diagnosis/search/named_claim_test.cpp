@@ -79,8 +79,8 @@ TEST(NamedClaim, FailsWhereTheDataNeverShowIt) {
   Case drift("sensor_drift", [](double y_mm, double t_s) { return y_mm + 2 * t_s / 120; });
   ASSERT_FALSE(drift.with.causes.empty());
   EXPECT_EQ(drift.veto(), Veto::none);
-  // If the pressure never rests at 0, the diagnosis cannot distinguish a drift of the zero from a motion of
-  // the finger.
+  // If the pressure never rests at 0 kPa, the diagnosis cannot distinguish a drift of the zero offset from a
+  // motion of the finger.
   for (Record& record : drift.records) {
     for (double& p : record.drive_kpa)
       p += p < 1 ? 20 * normal_at(9, static_cast<std::uint64_t>(&p - record.drive_kpa.data())) : 0;

@@ -61,8 +61,8 @@ TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   }
 }
 
-// If the model generated a log, it must explain this log for every zero of the sensor and every state at the
-// start of the log.
+// A log that was generated with a model must be explained by this model, for every zero offset of the sensor
+// and every state of the model at the start of the log.
 TEST(Diagnosis, AsGivenEstimatesTheOffsetAndTheStart) {
   const model::Model truth = loaded("bench_twin");
   const Log log = simulated(truth, model::SignalName::tp1, 25, noise_mm, 5);
