@@ -26,8 +26,9 @@ namespace {
 /// for the command are shorter, because a valve responds faster than a finger, and because short bins
 /// separate the delay of a finger from its lag.
 constexpr double shortest_finger_bin_s = 0.05, shortest_commanded_bin_s = 0.02;
-/// Order of the autoregression of the residual [bins]. The residual of a finger has a longer correlation time
-/// than that of a pressure, so its order covers at least finger_memory_s.
+/// Order of the autoregression of the residual [bins]. The residual of a displacement has a longer
+/// correlation time than the residual of a pressure. The order for a displacement therefore covers at least
+/// finger_memory_s.
 constexpr std::size_t whitening_order = 8;
 constexpr double finger_memory_s = 0.4;
 /// Lower limits of the spread between runs: relative spread of the gain, and spread of the zero offset as a
@@ -115,7 +116,7 @@ Binned left_by(const Candidate& candidate, const std::vector<Record>& records, c
   return left;
 }
 
-/// Returns the candidate that consists of play operators and creep. Its input is that of the records.
+/// Returns the candidate that consists of play operators and creep. Its input is the input of the records.
 Candidate play_candidate(Drive drive) {
   const BaseStructure play{
       .hysteresis = HysteresisForm::play, .delay = drive == Drive::command, .hinged_creep = true};

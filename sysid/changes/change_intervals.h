@@ -17,7 +17,7 @@ struct EffectIntervals {
 };
 
 /// A healthy unit that was left out of the fit, and the effects that the search finds in this unit. The
-/// finger has not changed in it, so they show the errors of the search.
+/// finger has not changed in this unit, so these values show the errors of the search.
 struct HealthyFits {
   LaterReadings readings;
   std::vector<ScoredEffect> ranked;

@@ -13,13 +13,14 @@ namespace softgrip::sysid {
 /// cause.
 using NullGains = std::map<std::string, double, std::less<>>;
 
-/// Returns the largest expected ratio of two squared errors: that of another run, and the mean of n runs,
-/// each predicted by a fit to the other n - 1 runs. Both errors are differences from a mean: the first from a
-/// mean of n runs, the second from a mean of n - 1 runs. In each of the limits::run_directions directions, n
-/// runs have n - 1 independent differences. The ratio is therefore (1 - 1/n^2) F, where F has run_directions
-/// and run_directions (n - 1) degrees of freedom. The factor is 9.3 for one run, 7.0 for two runs, 4.2 for
-/// three and 3.2 for six. If there is one run, its two halves are used in place of runs. The RMS error of
-/// another run may then be three times as large.
+/// Returns the largest expected value of a ratio. The numerator is the squared error on a further run. The
+/// denominator is the mean of the squared errors on n runs, each predicted by a fit to the other n - 1 runs.
+/// Both errors are differences from a mean: the first from a mean of n runs, the second from a mean of n - 1
+/// runs. In each of the limits::run_directions directions, n runs have n - 1 independent differences. The
+/// ratio is therefore (1 - 1/n^2) F, where F has run_directions and run_directions (n - 1) degrees of
+/// freedom. The factor is 9.3 for one run, 7.0 for two runs, 4.2 for three and 3.2 for six. If there is one
+/// run, its two halves are used in place of runs. The RMS error of another run may then be three times as
+/// large.
 [[nodiscard]] double run_to_run_factor(std::size_t runs);
 
 class Tolerance {

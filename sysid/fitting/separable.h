@@ -37,7 +37,7 @@ struct SeparableShape {
 /// Returns the shape of a separable model; nullopt for any other model.
 [[nodiscard]] std::optional<SeparableShape> separable_shape(const model::Model& model);
 
-/// The parameters of a separable chain. The names are those of the equations at the top of this file.
+/// The parameters of a separable chain. The names are the symbols in the equations at the top of this file.
 struct SeparablePoint {
   double growing_per_kpa = 0;
   double shrinking_per_kpa = 0;
@@ -96,7 +96,7 @@ class SeparableRecord {
   };
   static constexpr Eigen::Index block_rows = 128;
 
-  /// Passes the linear columns and the readings to `sink`. The nonlinear parameters are those of `point`.
+  /// Passes the linear columns and the readings to `sink`. The nonlinear parameters are taken from `point`.
   void linear(const SeparablePoint& point, std::size_t index, Sink& sink) const;
   /// Passes all columns and the residual to `sink`.
   /// @param index  index of the record in point.starts.

@@ -1,6 +1,7 @@
 #pragma once
 // Divides a recorded grip into rest, free motion and holding. The indicators of the finger are computed from
-// free motion, and those of its pressure line from holding. All other samples are not scored.
+// the free motion. The indicators of its pressure line are computed from the time in which the part is held.
+// All other samples are not scored.
 
 #include <cstddef>
 #include <cstdint>

@@ -111,9 +111,9 @@ class MatCollector {
  public:
   MatCollector(mat_t* file, ArrayCollector& arrays) : file_(file), arrays_(arrays) {}
 
-  /// Adds the values of an array. For a structure, an array of structures or a cell, adds the arrays in it.
-  /// Of other variables and too large arrays, libmatio reads only the header, because a compressed variable
-  /// of a few bytes can expand to gigabytes.
+  /// Adds the values of an array. For a structure, an array of structures or a cell, adds the arrays that it
+  /// contains. Of other variables and too large arrays, libmatio reads only the header, because a compressed
+  /// variable of a few bytes can expand to gigabytes.
   void collect(matvar_t& variable, const std::string& name, const std::string& unit, int depth) {
     const Shape shape = shape_of(variable);
     const bool nests =

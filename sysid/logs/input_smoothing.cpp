@@ -162,8 +162,8 @@ Smooth disturbances(const Path& path, double drift_rate) {
 double white_noise_of(std::span<const double> time_s, std::span<const double> values) {
   std::vector<double> deviations;
   for (std::size_t i = 2; i < values.size(); ++i) {
-    // Deviation of a value from the straight line between its neighbours, divided by the factor that makes
-    // its standard deviation equal to that of a single value.
+    // Deviation of a value from the straight line between its neighbours, divided by a factor so that the
+    // standard deviation of the result equals the standard deviation of a single value.
     const double share = (time_s[i - 1] - time_s[i - 2]) / (time_s[i] - time_s[i - 2]);
     const double off = values[i - 1] - (1 - share) * values[i - 2] - share * values[i];
     if (std::isfinite(off))

@@ -23,7 +23,7 @@ constexpr double largest_pressure_kpa = 5000;
 constexpr double largest_displacement_mm = 5000;
 constexpr double longest_median_interval_s = 5;
 /// A gap between two samples is reported if it fulfils three conditions: it is longer than this time [s], it
-/// is longer than `hole_intervals` usual intervals, and the command changes in it.
+/// is longer than `hole_intervals` usual intervals, and the command changes during the gap.
 constexpr double hole_s = 0.5;
 constexpr double hole_intervals = 20;
 constexpr double gap_intervals = 5;

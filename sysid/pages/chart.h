@@ -78,8 +78,8 @@ struct Extent {
   int width = 0;
   int height = 0;
 };
-/// Returns the size of a picture with these rows. The width is that of the widest row, and the height is the
-/// sum of the heights of the rows.
+/// Returns the size of a picture with these rows. The width is the width of the widest row, and the height is
+/// the sum of the heights of the rows.
 [[nodiscard]] Extent extent_of(const ChartRows& rows);
 
 /// Returns the charts as SVG elements within the size extent_of(rows). The y axes of charts in the same

@@ -12,7 +12,7 @@
 namespace softgrip::sysid {
 
 /// Role of a colour. All pictures of a report draw a quantity in the colour of its role. The colours of
-/// curves are those of Okabe and Ito, which people with any kind of colour vision can distinguish.
+/// curves are the palette of Okabe and Ito, which people with any kind of colour vision can distinguish.
 enum class Colour {
   measured,
   model,

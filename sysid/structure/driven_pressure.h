@@ -26,8 +26,8 @@ struct DrivenPressure {
 
 /// Computes the pressure and stores it in `driven`. The function reuses the memory of `driven`, because a
 /// search calls it thousands of times.
-/// @param numbers  nonlinear parameters. Only those of components that `structure` contains (delay, lag,
-/// regulator) are used.
+/// @param numbers  nonlinear parameters. Only the parameters of components that `structure` contains (delay,
+/// lag, regulator) are used.
 void drive(const Record& record, const BaseStructure& structure, const NonlinearNumbers& numbers,
            DrivenPressure& driven);
 

@@ -13,9 +13,9 @@ namespace softgrip::sysid {
 
 /// Chooses a structure and identifies its parameters. With Drive::command and a pressure_kpa column in each
 /// log, the finger is identified from the measured pressure, and the valve from the command and the measured
-/// pressure. The model then contains the valve and the finger, and the scores are those of the finger model.
-/// The members `fixed`, `free`, `start_points`, `exponents`, `robust` and `profile` of `options` are ignored,
-/// because they require a given structure. Returns an error sentence on failure.
+/// pressure. The model then contains the valve and the finger, but the scores evaluate only the model of the
+/// finger. The members `fixed`, `free`, `start_points`, `exponents`, `robust` and `profile` of `options` are
+/// ignored, because they require a given structure. Returns an error sentence on failure.
 [[nodiscard]] tl::expected<Identification, std::string> identify_structure(
     const std::vector<Log>& logs, StructureQuestion question, const IdentifyOptions& options = {});
 

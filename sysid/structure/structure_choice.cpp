@@ -24,8 +24,8 @@ constexpr std::array ridges{1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
 /// Index of the ridge parameter with which the nonlinear parameters are searched from all start points. With
 /// every other ridge parameter, the search starts at the result of this search.
 constexpr std::size_t first_ridge = 2;
-/// Largest number of iterations in a fold. It is small, because the nonlinear parameters of a fold differ
-/// little from those of the fit to all readings.
+/// Largest number of iterations in a fold. This number is small, because the nonlinear parameters of a fold
+/// differ little from the parameters that are fitted to all readings.
 constexpr int fold_iterations = 5;
 
 /// Value `yes`: the chain of creep branches has an additional time constant between each two neighbouring

@@ -78,8 +78,8 @@ class StructureColumns {
                    const StructureGrid& grid);
 
   /// Returns the matrix for the given nonlinear parameters. Parameters that the structure does not have are
-  /// ignored. A column is recomputed only if its parameters differ from those of the previous call. The
-  /// columns that depend on the delay and the lags take most of the time. Idle threads process the records in
+  /// ignored. A column is recomputed only if its parameters have changed since the previous call. The columns
+  /// that depend on the delay and the lags take most of the time. Idle threads process the records in
   /// parallel. The result is valid until the next call.
   [[nodiscard]] const Eigen::MatrixXd& at(const NonlinearNumbers& numbers);
 

@@ -65,7 +65,7 @@ struct Condition {
 
 /// Returns the conditions branch, cycle, amplitude, rate, dwell, history, position, loop (position and
 /// direction of the last motion), campaign_time, temperature and supply, in this order.
-/// @param prediction_mm  one vector per record. The position is that of the model, because a measured
+/// @param prediction_mm  one vector per record. The position is the output of the model, because a measured
 /// position contains the same errors as the residual.
 [[nodiscard]] std::vector<Condition> conditions_of(const std::vector<Record>& records,
                                                    const std::vector<std::vector<double>>& prediction_mm,

@@ -34,7 +34,7 @@ struct Separation {
   std::string other;
   /// Distance in standard deviations of the noise: the root of the sum of squared differences that remain
   /// after a refit. The correlation of the noise is taken into account. There are two cases: `one` is true
-  /// and `other` is refitted, or the reverse. The smaller distance is used.
+  /// and `other` is refitted, or `other` is true and `one` is refitted. The smaller distance is used.
   double sigma = 0;
 };
 

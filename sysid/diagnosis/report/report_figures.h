@@ -12,8 +12,8 @@
 
 namespace softgrip::sysid {
 
-/// Returns the indices of the logs in the order of decreasing error reduction. The reduction is that of the
-/// extended model or, if there is no extended model, that of the recalibrated model.
+/// Returns the indices of the logs in the order of decreasing error reduction. The reduction is computed for
+/// the extended model or, if there is no extended model, for the recalibrated model.
 [[nodiscard]] std::vector<std::size_t> logs_by_gain(const Diagnosis& diagnosis);
 /// Returns true if the pressure changes during at least 10 % of the time. Otherwise the log contains only
 /// pressure steps, and a plot over the pressure shows no loops.

@@ -11,9 +11,9 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A candidate is an alternative only if its mean square is close to that of the best candidate. The
-/// difference may be at most this share of the reduction by the best candidate. This also applies if the
-/// blocks show no significant difference.
+/// A candidate is an alternative only if its mean square error is close to the mean square error of the best
+/// candidate. The difference may be at most this share of the reduction by the best candidate. This also
+/// applies if the blocks show no significant difference.
 constexpr double alternative_share = 0.05;
 
 }  // namespace

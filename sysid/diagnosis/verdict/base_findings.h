@@ -67,7 +67,7 @@ void find_causes_upon(BaseFindings& found, const BaseSearch& search, const Cause
 
 /// Returns true if the richer base structure and its causes have a sufficiently low held-out RMSE compared
 /// with the selection on the given base structure. The following limits apply:
-/// - In general, the RMSE must be below 90 % of that of the selection.
+/// - In general, the RMSE must be below 90 % of the RMSE of the selection.
 /// - If nothing can be named on the given base structure, any lower RMSE is sufficient.
 /// - If the selection is unphysical, any lower mean square is sufficient.
 /// - If the causes are some of those of the selection, and the selection leaves more than the noise, up to

@@ -15,9 +15,9 @@ struct Budget {
   double extended = 0;
   double noise = 0;
 
-  /// Returns the mean square of the refitted model minus that of the noise.
+  /// Returns the mean square error of the refitted model minus the noise variance.
   [[nodiscard]] double excess() const { return std::max(recalibrated - noise, 0.0); }
-  /// Returns the mean square of the extended model minus that of the noise.
+  /// Returns the mean square error of the extended model minus the noise variance.
   [[nodiscard]] double left() const { return std::max(extended - noise, 0.0); }
   /// Returns the share of excess() that one cause explains, from 0 to 100 %. It is measured by the removal of
   /// this cause.

@@ -44,7 +44,7 @@ tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, cons
   auto found = identify(data.records, data.given.model, wide);
   if (found) {
     FitPoint point{found->fitted, rest_starts(found->fitted, data.records)};
-    // The initial states of the records are those of the identification.
+    // The initial states of the records are the states that the identification estimated.
     for (std::size_t k = 0; k < data.records.size(); ++k) point.starts[k] = found->scores[k].start;
     StructureFit other = fit_structure(data.records, {}, point);
     if (other.mean_square_mm2 < best.mean_square_mm2 * (1 - 1e-4)) best = std::move(other);
@@ -374,8 +374,8 @@ class Diagnostician {
     d_.unexplained_error = selection.left;
     d_.extended_rmse_mm = rmse_mm(selection.extended_losses);
     d_.gain = gain_percent(selection.base_losses, selection.extended_losses, options_.seed);
-    // The parameters of the refitted model are compared with those of the given model. In both models, the
-    // initial states are fitted.
+    // The parameters of the refitted model are compared with the parameters of the given model. In both
+    // models, the initial states are fitted.
     const StructureFit given = fit_starts(data_.records, {}, data_.given);
     recalibration_gain_ = mean_difference(losses_of(given, division), selection.base_losses, options_.seed);
     d_.unexplained_percent =
