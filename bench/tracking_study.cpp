@@ -83,8 +83,8 @@ control::TrackingRun run_of(const Scheme& scheme, const Options& options, const 
   return run;
 }
 
-/// Returns random models whose parameters deviate from those of the scheme by up to `scatter`. Models without
-/// a feedforward are not returned, but counted in `refused`.
+/// Returns random models. Their parameters deviate from the parameters of the scheme by up to `scatter`.
+/// Models without a feedforward are not returned, but counted in `refused`.
 std::vector<model::Model> draws_of(const Scheme& scheme, int count, std::uint64_t seed, int& refused) {
   std::vector<model::Model> models;
   refused = 0;

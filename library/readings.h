@@ -1,5 +1,5 @@
 #pragma once
-// Converts the readings of the public interface to those of the drivers, and back.
+// Converts readings between the types of the public interface and the types of the drivers.
 
 #include "library/include/softgrip/board.h"
 #include "model/reading.h"

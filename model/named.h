@@ -54,7 +54,7 @@ struct NamedValue {
   double value;
 };
 
-/// Returns a block with these values. All values that are not given are those of neutral_block().
+/// Returns a block with these values. All values that are not given have the values of neutral_block().
 template <template <class> class Block>
 [[nodiscard]] BlockSpec block_of(std::initializer_list<NamedValue<Block>> values, std::size_t parts = 1) {
   BlockSpec block = neutral_block(block_type<Block>(), parts);

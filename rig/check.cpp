@@ -159,7 +159,7 @@ struct Candidate {
   bool from_folder = false;
 };
 
-/// Returns the files of a folder and of all folders in it, in alphabetical order.
+/// Returns the files of a folder and of all its subfolders, in alphabetical order.
 std::vector<Candidate> files_below(const std::string& folder) {
   namespace fs = std::filesystem;
   std::vector<Candidate> found;

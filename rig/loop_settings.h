@@ -18,9 +18,9 @@ namespace softgrip::rig {
 ///
 /// The loop never wakes the bus thread, because this would need a system call in a tick. Each of the two
 /// threads has a periodic schedule with absolute times, and both have the same period. The schedule of the
-/// bus thread is `bus_offset` later than that of the loop. Therefore, a command reaches the board bus_offset
-/// plus half an exchange after its tick. When the next tick uses a reading, the age of the reading is the
-/// period minus bus_offset.
+/// bus thread is `bus_offset` later than the schedule of the loop. Therefore, a command reaches the board
+/// bus_offset plus half an exchange after its tick. When the next tick uses a reading, the age of the reading
+/// is the period minus bus_offset.
 struct LoopSettings {
   /// Delay of the bus thread's schedule relative to that of the loop, as a fraction of the period; between 0
   /// and 1 (both excluded).

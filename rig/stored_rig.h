@@ -8,8 +8,8 @@
 
 namespace softgrip::rig {
 
-/// Reads a rig from the texts of its files (RigFile::inputs). The disk is not accessed. The problems are the
-/// same as those of load_rig().
+/// Reads a rig from the texts of its files (RigFile::inputs). The disk is not accessed. The returned problems
+/// equal the problems that load_rig() returns.
 [[nodiscard]] std::optional<RigFile> read_stored_rig(const std::vector<InputFile>& inputs,
                                                      document::Problems& problems);
 

@@ -39,7 +39,7 @@ struct PaperTableOptions {
 /// Returns four rows: tp1, tp2, sp1 and sp2. Returns an empty list if an identification fails.
 [[nodiscard]] std::vector<PaperRow> paper_table(const PaperTableOptions& options);
 
-/// Returns sentences that explain why the values differ from those of the paper.
+/// Returns sentences that explain why the computed values differ from the values of the paper.
 [[nodiscard]] const std::vector<std::string>& paper_table_remarks();
 
 }  // namespace softgrip::studies

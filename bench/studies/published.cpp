@@ -32,7 +32,7 @@ constexpr std::array<Hidden, 5> hidden{
     {{0, 0, 0.57}, {0.05, 0.02, 0.78}, {0.10, 0.05, 1.28}, {0.15, 0.05, 1.69}, {0.25, 0.10, 9.5}}};
 constexpr std::array<double, 4> etas_per_bar{0.5, 1, 2, 4};
 /// Ratios beta/alpha of the elements whose inverse is computed. The element with the first ratio is
-/// invertible. The last ratio is that of the paper.
+/// invertible. The last ratio is the ratio of the paper.
 constexpr std::array<double, 8> ratios{0.5, 0.8, 0.95, 1.0, 1.05, 1.25, 1.75, 17.207 / 7.079};
 /// The pressure that every inverse must compute from the response: one period of a sine from 0 to 60 kPa and
 /// back.

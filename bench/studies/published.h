@@ -2,10 +2,10 @@
 // Studies what the published parameters of Zhang et al. 2025 imply for a finger.
 //
 // 1. An ordinary actuator behind a valve is identified with the published structure, which lacks the valve.
-// The result is the deviation of beta/(alpha + 1/k0) from its true value.
-// 2. An ordinary, invertible actuator behind lag and delay is fitted to the published response.
-// 3. The explicit and the implicit inverse of the Bouc-Wen element are compared.
-// 4. The four RMSE values of the paper are compared with those of simulated fingers.
+// The result is the deviation of beta/(alpha + 1/k0) from its true value. 2. An ordinary, invertible actuator
+// behind lag and delay is fitted to the published response. 3. The explicit and the implicit inverse of the
+// Bouc-Wen element are compared. 4. The four RMSE values of the paper are compared with the RMSE values of
+// simulated fingers.
 
 #include <cstdint>
 #include <functional>

@@ -11,9 +11,9 @@
 
 namespace softgrip::control {
 
-/// Counts jumps whose direction is opposite to that of the previous jump. A jump is the part of a change
-/// between two readings that the model does not explain. If a held part slides, is lost or is pushed in, the
-/// finger jumps too, but in one direction only.
+/// Counts jumps that are opposite in direction to the previous jump. A jump is the part of a change between
+/// two readings that the model does not explain. If a held part slides, is lost or is pushed in, the finger
+/// jumps too, but in one direction only.
 class JumpWatch {
  public:
   static constexpr double window_s = 1;  ///< time within which the reversing jumps are counted

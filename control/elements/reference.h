@@ -15,7 +15,7 @@ struct ReferencePoint {
   double acceleration = 0;  ///< change of the reference's rate per second
 };
 
-/// A sequence of segments. Before the first segment and after the last one, the reference is constant. In
+/// A sequence of segments. Before the first segment and after the last segment, the reference is constant. In
 /// ramps and holds, value, rate and acceleration are continuous (quintic polynomial, minimum jerk). At the
 /// start of a sine, the acceleration has a step. The object is a plain value and allocates no memory. Times
 /// are seconds on the clock of the caller.

@@ -10,9 +10,9 @@
 
 namespace softgrip::control {
 
-/// A command over time, linear between its points. Its times are those of a finger without dead time, so a
-/// value must reach the valve one dead time before its time. The members are plain values; at() allocates no
-/// memory.
+/// A command over time, linear between its points. The times of the plan are for a finger without dead time.
+/// A value must therefore reach the valve one dead time before its time in the plan. The members are plain
+/// values; at() allocates no memory.
 struct PressurePlan {
   double start_s = 0;  ///< time of the first point on the reference's clock
   double step_s = 0;   ///< time between two points of the plan

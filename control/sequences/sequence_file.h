@@ -10,10 +10,10 @@
 
 namespace softgrip::control {
 
-/// Reads a sequence from a parsed document. The values in `arguments` are those of a start request; they
-/// replace the defaults of the parameters. Adds all errors to `problems` and returns nullopt if there are
-/// errors or if a part of the document could not be parsed. The sequence must be valid with its defaults, at
-/// both ends of each parameter's range and with the requested values.
+/// Reads a sequence from a parsed document. The values in `arguments` come from a start request; they replace
+/// the defaults of the parameters. Adds all errors to `problems` and returns nullopt if there are errors or
+/// if a part of the document could not be parsed. The sequence must be valid with its defaults, at both ends
+/// of each parameter's range and with the requested values.
 [[nodiscard]] std::optional<Sequence> read_sequence(const document::Document& document,
                                                     document::Problems& problems,
                                                     std::span<const Argument> arguments = {});

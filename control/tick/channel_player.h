@@ -37,8 +37,8 @@ class ChannelPlayer {
   /// Starts an attempt at a step. `step` and `plan` (nullptr if there is no plan) must exist until the
   /// attempt ends. A hold step continues with the plan of the previous step.
   void begin(const Step& step, const PressurePlan* plan, double time_s, const ChannelOutput& seen) noexcept;
-  /// Moves the channel back to the position or pressure at which the attempt began. The speed is that of the
-  /// step.
+  /// Moves the channel back to the position or pressure at which the attempt began, with the speed that the
+  /// step specifies.
   void back_off(double time_s, const ChannelOutput& seen) noexcept;
   /// Executes a tick of the step, or of the return after back_off(). During a return, `passed` means that the
   /// return is finished.

@@ -51,7 +51,8 @@ enum class UnsettledReason : std::uint8_t { none, moves, off_model };
 enum class SequenceEnd : std::uint8_t { done, failed, stopped, faulted };
 [[nodiscard]] std::string_view name_of(SequenceEnd end) noexcept;
 
-/// A request to the controller. Each tick gets at most one request; the loop queues the others.
+/// A request to the controller. Each tick gets at most one request; the loop stores the other requests in a
+/// queue.
 struct Request {
   enum class Kind : std::uint8_t {
     none,

@@ -84,7 +84,7 @@ class Bench {
 };
 
 /// Smallest and largest instantaneous slope of the model over its working range in two cycles. The second
-/// cycle is needed, because its hysteresis may differ from that of the first cycle.
+/// cycle is needed, because the hysteresis may differ between the two cycles.
 struct GainRange {
   double smallest = std::numeric_limits<double>::max();
   double largest = 0;

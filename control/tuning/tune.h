@@ -1,5 +1,5 @@
 #pragma once
-// Tunes PID gains for fingers whose parameters differ from those of the model.
+// Tunes PID gains for fingers whose parameters differ from the parameters of the model.
 
 #include <cstdint>
 #include <string>

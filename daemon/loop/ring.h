@@ -61,8 +61,9 @@ class Ring {
 
   std::vector<T> items_;
   std::size_t mask_;
-  // The producer stores the last position of the consumer that it read, and the consumer stores that of the
-  // producer. Therefore, most calls do not access the cache line of the other thread.
+  // The producer stores the position of the consumer that it last read, and the consumer stores the position
+  // of the producer that it last read. Therefore, most calls do not access the cache line of the other
+  // thread.
   alignas(cache_line) std::atomic<std::size_t> head_{0};  // number of items taken so far; written by the
                                                           // consumer
   std::size_t known_tail_ = 0;                            // last position of the producer that the consumer

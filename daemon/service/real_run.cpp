@@ -159,7 +159,8 @@ void RealRun::loop_body() {
 }
 
 void RealRun::bus_body() {
-  // The priority of the bus is 1 lower than that of the loop, so that a late exchange does not delay a tick.
+  // The priority of the bus thread is 1 lower than the priority of the loop, so that a late exchange does not
+  // delay a tick.
   const int priority = parts_.rig.real_time.priority;
   prepare(priority > 1 ? priority - 1 : priority, "the bus", bus_report_);
   parts_.bus.run(PeriodicSchedule(start_ + parts_.bus_offset(), parts_.period()),

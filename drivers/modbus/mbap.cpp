@@ -44,7 +44,7 @@ ModbusReply parse_reply(std::span<const std::uint8_t> bytes, const ModbusRequest
   if (defect != ReplyDefect::none) return defective(defect);
   if (bytes.size() <= mbap_size) return {};
 
-  // The length in the header must be that of the expected response or that of an exception.
+  // The length in the header must be the length of the expected response or of an exception response.
   const std::uint8_t function = bytes[mbap_size];
   const bool exception = function == (request.function | exception_bit);
   if (!exception && function != request.function) return defective(ReplyDefect::function);

@@ -11,7 +11,7 @@ namespace softgrip::drivers {
 
 /// Longest request or response without its framing [bytes]: function code and 252 bytes of data.
 inline constexpr std::size_t max_pdu = 253;
-/// Longest frame on TCP and on serial lines [bytes]. The longest frame is that of Modbus TCP.
+/// Longest frame on TCP and on serial lines [bytes]. The longest frames are the frames of Modbus TCP.
 inline constexpr std::size_t max_frame = 7 + max_pdu;
 using Frame = std::array<std::uint8_t, max_frame>;
 

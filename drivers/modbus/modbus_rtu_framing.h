@@ -11,9 +11,10 @@ namespace softgrip::drivers {
 
 /// RTU has no transaction id, so the bytes of a response do not show to which request the response belongs.
 /// Therefore, a request is sent only after the silence of the specification. If unexpected bytes arrive
-/// before a request, the link is closed. Fewer bytes than those of the shortest response are discarded. After
-/// a failure, a new link first listens for as long as a late response may take. libmodbus has none of these
-/// functions. It also does not find a response after stray bytes, so this class receives without libmodbus.
+/// before a request, the link is closed. If there are fewer bytes than in the shortest response, the bytes
+/// are discarded. After a failure, a new link first listens for as long as a late response may take.
+/// libmodbus has none of these functions. It also does not find a response after stray bytes, so this class
+/// receives without libmodbus.
 class ModbusRtuFraming : public ModbusLink {
  protected:
   ModbusRtuFraming(_modbus* context, const LinkHabits& habits, bool on_network, Nanoseconds character,

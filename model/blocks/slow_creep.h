@@ -9,7 +9,7 @@ namespace softgrip::model {
 
 /// Solves tau x' = gain p - x. The block is equivalent to a Kelvin-Voigt branch with the stiffness 1/gain and
 /// the damping tau/gain. There are two differences: the block is also defined for gain 0, and its parameters
-/// are separate from those of kelvin_voigt.
+/// are separate from the parameters of kelvin_voigt.
 template <class T>
 class SlowCreep {
  public:
