@@ -1,5 +1,5 @@
 #pragma once
-// A simulated finger that uses no code of model/. The equations are those of the literature. They are
+// A simulated finger that uses no code of model/. The equations are taken from the literature. They are
 // integrated with the classical fourth-order Runge-Kutta method with 50 steps per sample.
 
 #include <cstdint>

@@ -33,7 +33,7 @@ struct Library {
 struct WorldOptions {
   Tool tool = Tool::none;
   Nanoseconds length = 60 * ns_per_s;
-  /// Incidents that replace those of the seed; nullopt: the incidents of the seed are used.
+  /// Incidents that replace the incidents of the seed; nullopt: the incidents of the seed are used.
   std::optional<std::vector<Incident>> incidents;
   /// True: every incident, every write and every tick with an event is recorded as text.
   bool trace = false;

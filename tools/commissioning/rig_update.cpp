@@ -73,8 +73,8 @@ const drivers::TwoPoints* points_of(const drivers::ChannelWiring& wiring, const 
   return wiring.pressure ? &wiring.pressure->scaling : nullptr;
 }
 
-/// Returns true if the changed file `now` contains the new points, and if all other points equal those of
-/// `before`.
+/// Returns true if the changed file `now` contains the new points, and if all its other points equal the
+/// points of `before`.
 bool says(const rig::RigFile& now, const rig::RigFile& before, const std::vector<Target>& targets,
           std::size_t channel) {
   if (now.wiring.size() != before.wiring.size()) return false;

@@ -28,7 +28,7 @@ struct Results {
 };
 
 /// Returns YAML lines for the rig file: the maps `sensor`, `valve` and `pressure_monitor` of the channel,
-/// with the findings as comments. A value that was not calibrated is that of the rig file.
+/// with the findings as comments. A value that was not calibrated is copied from the rig file.
 [[nodiscard]] std::string snippet(const rig::RigFile& rig, const Results& results);
 
 /// Formats a number for a rig file: rounded to `decimals`, without trailing zeros.

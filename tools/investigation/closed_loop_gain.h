@@ -39,7 +39,7 @@ struct ClosedLoopScheme {
   control::PidSettings pid;
   /// Kind of the feedforward. It is full_model if the model has a causal inverse. Otherwise it is the better
   /// of planned and full_model of the invertible part. If the PID alone is at least as good as both, the
-  /// value is none, and all results are those of the PID alone.
+  /// value is none, and all results are the results of the PID alone.
   control::FeedforwardKind feedforward = control::FeedforwardKind::none;
   std::string refused;  ///< reason why the whole model is not used as full_model; empty: it is used
   std::optional<control::InvertiblePart> part;  ///< the part of the model that is inverted; nullopt: the

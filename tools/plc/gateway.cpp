@@ -194,7 +194,7 @@ void Gateway::daemon_said(const Json& line, Nanoseconds now) {
   handshake_.finish(counter, reason == Reason::no_answer ? Outcome::unknown : Outcome::refused, reason);
 }
 
-/// Writes two groups of registers: those of the gateway and those of this client.
+/// Writes the registers of the gateway and the registers of this client.
 void Gateway::show(const Master& master, Nanoseconds now) {
   const auto set = [&](Name name, auto value) {
     registers_.set_holding(settings_.registers.at(name), static_cast<std::uint16_t>(value));

@@ -79,7 +79,7 @@ class ScriptedServer {
 [[nodiscard]] std::uint16_t word(const Bytes& bytes, std::size_t at);
 void set_word(Bytes& bytes, std::size_t at, std::uint16_t value);
 
-/// Returns a correct frame with the given PDU. Transaction and unit are those of `request`.
+/// Returns a correct frame with the given PDU. The transaction id and the unit id are copied from `request`.
 [[nodiscard]] Bytes frame_for(const Bytes& request, const Bytes& pdu);
 /// Returns a correct response to a read request, in which register `address` contains value_of(address).
 [[nodiscard]] Bytes registers_reply(const Bytes& request,

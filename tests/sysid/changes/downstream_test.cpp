@@ -71,7 +71,7 @@ TEST(Downstream, IsWhatTheWholeChainShowsBitForBit) {
 }
 
 // is_downstream() is true for blocks that can be applied directly to the samples of a prediction. For each of
-// these blocks, the result must equal that of the whole model.
+// these blocks, the result must equal the result of the whole model.
 TEST(Downstream, HoldsForEveryBlockThatSaysSo) {
   const Record record = waving();
   const std::vector<double> plain = walked(base(), record);

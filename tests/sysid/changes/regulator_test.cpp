@@ -56,7 +56,7 @@ TEST(Regulator, WhilePortsAreShutALeakEmptiesTheFinger) {
 }
 
 /// The simulation divides each sample into 50 steps, whether the sample lasts 0.1 s or 1 s. With ten times as
-/// many steps, the result must stay the same.
+/// many steps, the result must not change.
 TEST(Regulator, SlowSamplesNeedNoFinerSteps) {
   const Record slow = record_of(test::command_kpa(3, 120, 1), 1);
   constexpr std::size_t parts = 10;

@@ -270,8 +270,8 @@ TEST(ControlChart, ARecipeIsComparedWithItselfAlone) {
     chart.add({{far > 0 ? "hand_over" : recipe, far + healthy()}});
   }
   EXPECT_FALSE(chart.alarm());
-  // The values of a new recipe differ greatly from those of all other recipes. The new recipe gets its own
-  // reference.
+  // The values of a new recipe differ greatly from the values of all other recipes. The new recipe gets its
+  // own reference.
   for (int i = 0; i < 10; ++i) chart.add({{"new", 7 + healthy()}});
   EXPECT_FALSE(chart.alarm());
 }

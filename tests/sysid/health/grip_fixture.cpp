@@ -55,8 +55,8 @@ Recording grip_of(const GripWorld& world) {
     const double t = log.time_s[i];
     const bool back = t > holding_s + hold_s;
     double y = world.gain * way[i] + (back && way[i] > 0.3 ? world.loop_mm : 0);
-    // The object yields a little. The contact is detected when the displacement is 1 mm below that of a free
-    // finger.
+    // The object yields a little. The contact is detected when the displacement is 1 mm below the
+    // displacement of a finger without contact.
     const double into_mm = std::max(0.0, y - world.object_mm);
     if (0.9 * into_mm > 1 && !std::isfinite(touched_s)) touched_s = t;
     y -= 0.9 * into_mm;

@@ -23,7 +23,7 @@ TEST_P(Units, ComeToTheUnitOfALog) {
   EXPECT_NEAR(unit->factor * c.value + unit->offset, c.expected, 1e-9 * (1 + std::abs(c.expected))) << c.text;
 }
 
-// The expected conversion factors are those of NIST SP 811, appendix B.
+// The expected conversion factors are taken from NIST SP 811, appendix B.
 INSTANTIATE_TEST_SUITE_P(
     ForeignTable, Units,
     testing::Values(

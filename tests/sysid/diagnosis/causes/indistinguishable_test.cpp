@@ -83,8 +83,8 @@ TEST_F(BentRig, IsNotGivenOneNameOfTheTwo) {
       std::count_if(chosen.alternatives.begin(), chosen.alternatives.end(),
                     [&](const Cause& alternative) { return alternative == indistinguishable; });
   EXPECT_EQ(listed, 1);
-  // The model of the first cause fits the data better than that of the second cause. Without the rule for
-  // indistinguishable causes, only the first cause would be named.
+  // The model with the first cause fits the data better than the model with the second cause. Without the
+  // rule for indistinguishable causes, only the first cause would be named.
   const auto score = std::find_if(chosen.candidates.begin(), chosen.candidates.end(),
                                   [&](const CandidateScore& s) { return s.cause == indistinguishable; });
   ASSERT_NE(score, chosen.candidates.end());

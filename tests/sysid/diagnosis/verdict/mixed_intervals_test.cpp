@@ -20,8 +20,8 @@ struct Named {
   std::vector<std::string> sentences;
 };
 
-/// Returns a diagnosis that names only the delay, although the logs are those of bench_twin with a delay and
-/// a lag.
+/// Returns a diagnosis that names only the delay, although the logs were simulated with the model bench_twin,
+/// a delay and a lag.
 Named delay_of(SignalName signal, const model::Model& twin) {
   const model::Model without_valve =
       model::only(twin, [](const model::BlockInfo& info) { return info.station != model::Station::valve; });
