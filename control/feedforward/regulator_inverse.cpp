@@ -9,8 +9,8 @@ namespace softgrip::control {
 namespace {
 
 constexpr double moves_kpa_per_s = 0.2;
-/// If the error exceeds the overlap by less than this, the pressure change is too small to estimate the flow
-/// of the port [kPa].
+/// If the error exceeds the overlap by less than this pressure [kPa], the pressure change is too small for an
+/// estimate of the flow through the port.
 constexpr double shows_kpa = 0.01;
 
 }  // namespace

@@ -99,8 +99,9 @@ struct TickInput {
   std::uint32_t overrun_cycles = 0;  ///< number of cycles that the loop missed just before this tick
 };
 
-/// The output of one channel in one tick. Each tick changes the output of the last tick, because the last
-/// values are the basis of its decisions. Commands, rows of the recording and the status are copied from it.
+/// The output of one channel in one tick. Each tick modifies the output of the previous tick, because a tick
+/// decides on the basis of the previous values. The commands, the rows of the recording and the status are
+/// copied from this output.
 struct ChannelOutput {
   double command_kpa = 0;      ///< command for the board, within the pressure range and the slew limits
   double safe_kpa = 0;         ///< command that is written if the loop stops now; it depends on the phase

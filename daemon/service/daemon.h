@@ -119,7 +119,8 @@ class Daemon {
   std::unique_ptr<DaemonParts> parts_;
 };
 
-/// Creates a daemon and runs it until it ends. The error is that of Daemon::create().
+/// Creates a daemon and runs it until it ends. Returns the error of Daemon::create() if the daemon cannot be
+/// created.
 [[nodiscard]] tl::expected<Outcome, std::string> run_daemon(rig::RigFile rig, DaemonOptions options);
 /// A function with the same result as run_daemon(). Tests replace run_daemon() by another function.
 using DaemonRunner =

@@ -60,7 +60,8 @@ class ValveLag {
 
   // For a straight input of slope r, the gap d = input - output follows d' = r - d / tau. The gap is zero
   // after t = tau log(1 - d(0) / (r tau)). A reversal within a millionth of the duration from either end of
-  // the segment is ignored. Its effect on Bouc-Wen is of second order in that time.
+  // the segment is ignored. The effect of such a reversal on a Bouc-Wen block is of second order in the
+  // ignored time.
   template <class Next>
   bool turns(const Segment<T>& in, const T& begin, const T& gap_begin, const T& end, Next&& next) const {
     using std::log1p;

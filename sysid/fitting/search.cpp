@@ -55,7 +55,7 @@ double lowest_rmse_mm(const std::vector<SearchResult>& results) {
   return lowest;
 }
 
-/// Returns, for each result, the index of the first result that is the same minimum.
+/// Returns, for each result, the index of the first result that lies in the same minimum of the cost.
 std::vector<std::size_t> places(const FitSpace& space, const std::vector<SearchResult>& results) {
   std::vector<std::size_t> firsts;
   std::vector<std::vector<double>> at;

@@ -50,7 +50,7 @@ struct Estimate {
 struct Path {
   std::span<const double> time_s, values;
   double noise = 0;
-  /// For each sample, the relative variance rate in the step that ends at this sample.
+  /// Relative variance rates. Element i belongs to the step that ends at sample i.
   std::vector<double> shares;
 
   [[nodiscard]] double step_s(std::size_t i) const { return time_s[i] - time_s[i - 1]; }

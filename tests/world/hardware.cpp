@@ -10,7 +10,7 @@ using drivers::BusStatus;
 
 namespace {
 
-/// Number of exchanges of which one begins with a reading of the outputs, as in the Modbus driver.
+/// One exchange in this number of exchanges begins with a reading of the outputs, as in the Modbus driver.
 constexpr unsigned looks_first_every = 8;
 
 }  // namespace

@@ -99,8 +99,8 @@ TEST(FullModelFeedforward, LooksAheadByAllDeadTime) {
 
 TEST(FullModelFeedforward, WithoutALagTheHoldsHalfSampleIsCompensated) {
   const model::Model fast = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
-  // The board holds each command for one tick. This causes the remaining error, which is at most half the
-  // largest change of the reference per tick.
+  // The remaining error occurs because the board holds each command for one tick. The error is at most half
+  // the largest change of the reference per tick.
   const Outcome run = run_alone(fast, {FeedforwardKind::full_model, 0}, sine_reference(0.1));
   EXPECT_LT(run.worst_mm, 0.02);
 }

@@ -80,7 +80,8 @@ TEST(TrackingRun, ItsTraceIsWhatTheErrorsAreTakenOf) {
     worst = std::max(worst, std::abs(error));
     squares += error * error;
   }
-  // The RMSE of the result also contains the errors in the middle of each tick, so it differs slightly.
+  // The RMSE of the result also contains the errors in the middle of each tick, so it differs slightly from
+  // the RMSE that is computed here.
   EXPECT_LE(worst, result.worst_mm);
   EXPECT_NEAR(std::sqrt(squares / static_cast<double>(trace.time_s.size())), result.rmse_mm,
               0.1 * result.rmse_mm);

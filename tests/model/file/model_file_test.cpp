@@ -143,8 +143,9 @@ struct Earlier {
   std::vector<BlockSpec> means;
 };
 
-// Some blocks of earlier versions are now several blocks. These blocks must all belong to the same station,
-// because the older file lists the original block at one station.
+// Some blocks of earlier versions have been divided into several blocks. All of these blocks must belong to
+// the same component (valve, actuator, load or sensor), because an older file lists the original block under
+// one component.
 TEST(ModelFile, EarlierBlocksBecameBlocksOfOneStation) {
   EXPECT_EQ(find_earlier_block("valve_lag"), nullptr);
   for (const char* id :
