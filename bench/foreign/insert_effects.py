@@ -62,7 +62,7 @@ EFFECTS = {
              lambda t, y, low, s: low + 0.85 * (y - low)),
     "weight": ("a weight: the stroke is 10 % smaller, and all readings are 5 % of the stroke lower", ["payload", "ageing"],
                lambda t, y, low, s: low - 0.05 * s + 0.9 * (y - low)),
-    "drift": ("the zero drifts by 20 % of the stroke during the run", ["sensor_drift"],
+    "drift": ("the zero offset of the sensor drifts by 20 % of the stroke during the run", ["sensor_drift"],
               lambda t, y, low, s: y + 0.2 * s * (np.asarray(t) - t[0]) / (t[-1] - t[0])),
     "delay": (f"displacement and pressure are delayed by {DELAY_S} s", ["transport_delay", "valve_lag", "sensor_lag"],
               lambda t, y, low, s: later_by(t, y, DELAY_S)),
