@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sysid/fitting/fit_space.h"
+#include "sysid/structure/ingredient.h"
 #include "sysid/structure/structure.h"
 
 namespace softgrip::sysid {
@@ -37,42 +38,6 @@ struct StructureChoiceOptions {
   /// Called with a text that states the progress, from any thread.
   std::function<void(const std::string&)> progress;
 };
-
-/// Components of a structure. Each is removed once to measure how much it reduces the error.
-enum class Ingredient {
-  hysteresis,
-  play_operators,  ///< play operators; the Bouc-Wen element replaces them
-  creep,
-  slow_creep,
-  pressure_dependent_creep,
-  delay,
-  lag,
-  second_lag,
-  rate_limit,
-  latency,      ///< delay and lag together, because a delay can largely replace a lag, and a lag a delay
-  regulator,    ///< regulator; a lag replaces it
-  venting_lag,  ///< separate time constant for venting; one time constant for both directions replaces it
-  /// Characteristic and envelopes together, because one of them can largely replace the other.
-  characteristic,
-  resonance,
-  envelopes  ///< generalised play operators; ordinary play operators replace them
-};
-inline constexpr std::array all_ingredients{Ingredient::hysteresis,
-                                            Ingredient::play_operators,
-                                            Ingredient::creep,
-                                            Ingredient::slow_creep,
-                                            Ingredient::pressure_dependent_creep,
-                                            Ingredient::delay,
-                                            Ingredient::lag,
-                                            Ingredient::second_lag,
-                                            Ingredient::rate_limit,
-                                            Ingredient::latency,
-                                            Ingredient::regulator,
-                                            Ingredient::venting_lag,
-                                            Ingredient::characteristic,
-                                            Ingredient::resonance,
-                                            Ingredient::envelopes};
-[[nodiscard]] std::string_view name_of(Ingredient ingredient);
 
 /// One structure, fitted to all readings. For the held-out error, it is fitted again for each fold without
 /// the blocks of this fold.

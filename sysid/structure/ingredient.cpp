@@ -1,0 +1,84 @@
+#include "sysid/structure/ingredient.h"
+
+namespace softgrip::sysid {
+
+std::string_view name_of(Ingredient ingredient) {
+  constexpr std::array<std::string_view, all_ingredients.size()> names{
+      "hysteresis",
+      "play operators (replaced by Bouc-Wen)",
+      "creep",
+      "slow creep",
+      "dependence of creep on pressure",
+      "delay",
+      "lag",
+      "a second lag",
+      "a rate limit",
+      "delay and lag",
+      "a regulator with overlap (replaced by a lag)",
+      "a separate time constant for venting",
+      "nonlinear characteristic and envelopes",
+      "a resonance",
+      "nonlinear envelopes"};
+  return names[static_cast<std::size_t>(ingredient)];
+}
+
+BaseStructure without(BaseStructure s, Ingredient ingredient) {
+  switch (ingredient) {
+    case Ingredient::hysteresis:
+      s.hysteretic = s.envelopes = false;
+      break;
+    case Ingredient::play_operators:
+      s.hysteresis = HysteresisForm::bouc_wen;
+      s.envelopes = false;
+      break;
+    case Ingredient::creep:
+      s.creep = s.hinged_creep = false;
+      break;
+    case Ingredient::slow_creep:
+      s.slow_creep = false;
+      break;
+    case Ingredient::pressure_dependent_creep:
+      s.hinged_creep = false;
+      break;
+    case Ingredient::delay:
+      s.delay = false;
+      break;
+    case Ingredient::lag:
+      s.lag = s.second_lag = s.rate_limit = false;
+      break;
+    case Ingredient::second_lag:
+      s.second_lag = false;
+      break;
+    case Ingredient::rate_limit:
+      s.rate_limit = false;
+      break;
+    case Ingredient::latency:
+      s.delay = s.lag = s.second_lag = s.rate_limit = false;
+      break;
+    case Ingredient::regulator:
+      s.regulator = false;
+      break;
+    case Ingredient::venting_lag:
+      s.two_way = false;
+      break;
+    case Ingredient::characteristic:
+      s.characteristic = s.envelopes = false;
+      break;
+    case Ingredient::resonance:
+      s.resonance = false;
+      break;
+    case Ingredient::envelopes:
+      s.envelopes = false;
+      break;
+  }
+  return s;
+}
+
+bool has(const BaseStructure& s, Ingredient ingredient) {
+  // If the structure contains only one of delay and lag, the removal of this component is evaluated
+  // separately.
+  if (ingredient == Ingredient::latency) return s.delay && s.lag;
+  return without(s, ingredient) != s;
+}
+
+}  // namespace softgrip::sysid

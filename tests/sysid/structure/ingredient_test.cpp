@@ -1,0 +1,46 @@
+#include "sysid/structure/ingredient.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace softgrip::sysid::ingredient_test {
+namespace {
+
+/// Returns a structure that contains every component.
+BaseStructure complete() {
+  return {.second_lag = true,
+          .rate_limit = true,
+          .regulator = true,
+          .resonance = true,
+          .envelopes = true,
+          .hinged_creep = true};
+}
+
+TEST(Ingredient, EachIsRemovedOnceAndHasAName) {
+  std::set<std::string_view> names;
+  for (const Ingredient ingredient : all_ingredients) {
+    SCOPED_TRACE(name_of(ingredient));
+    names.insert(name_of(ingredient));
+    EXPECT_TRUE(has(complete(), ingredient));
+    const BaseStructure rest = without(complete(), ingredient);
+    EXPECT_NE(rest, complete());
+    EXPECT_FALSE(has(rest, ingredient));
+    EXPECT_EQ(without(rest, ingredient), rest);
+  }
+  EXPECT_EQ(names.size(), all_ingredients.size());
+}
+
+TEST(Ingredient, ALagTakesItsExtensionsWithIt) {
+  const BaseStructure rest = without(complete(), Ingredient::lag);
+  EXPECT_FALSE(rest.lag || rest.second_lag || rest.rate_limit);
+  EXPECT_TRUE(rest.delay);
+}
+
+TEST(Ingredient, LatencyNeedsADelayAndALag) {
+  for (const Ingredient one : {Ingredient::delay, Ingredient::lag})
+    EXPECT_FALSE(has(without(complete(), one), Ingredient::latency));
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::ingredient_test
