@@ -156,9 +156,9 @@ class Study:
             ("improvement by the named causes", "-", f"held out, steps {mm(self.identified['validation']['rmse_mm']['steps'])} → "
              f"{mm(self.extended['steps'])} mm, sp2 {mm(self.identified['validation']['rmse_mm']['sp2'])} → "
              f"{mm(self.extended['sp2'])} mm"),
-            ("a log in the wrong unit, inverted, swapped", "a fit, or one that does not converge",
+            ("a log in the wrong unit, inverted, swapped", "the fit is made, or does not converge",
              "reported with the number that shows it ([how](../how-to/import.md#plausibility-warnings))"),
-            ("reproduction of the numbers", "from files that the user keeps",
+            ("reproduction of the numbers", "from the files that the user has kept",
              "`softgrip report --verify`: hashes, call and every number ([how](../how-to/identify.md))")]
 
     def page(self):
@@ -178,8 +178,8 @@ class Study:
             *table(["", "Octave", "SciPy", "softgrip"], [
                 ("read the log", "`csvread`, columns by number", "`genfromtxt`, columns by name",
                  "`--data`; a file that is not a log is refused with the line, or [imported](../how-to/import.md)"),
-                ("simulate the model", f"{SIMULATOR.name}, {lines_of(SIMULATOR)} lines of C, and {lines_of(MEX)} to call it",
-                 "the C simulator of the Octave column, by ctypes", "built in"),
+                ("simulate the model", f"{SIMULATOR.name} ({lines_of(SIMULATOR)} lines of C), and {lines_of(MEX)} lines of C that call it",
+                 "the C simulator of the Octave column, called with ctypes", "built in"),
                 ("parametrise, bound, start", "logarithms and bounds by hand, 20 starts in a loop",
                  "logarithms and bounds by hand, 20 starts in a loop", "`--starts 20`"),
                 ("fit", "`lsqcurvefit`", "`least_squares`", "`softgrip identify`"),

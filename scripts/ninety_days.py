@@ -61,10 +61,10 @@ class Event:
 
 
 EVENTS = (
-    Event("a leak begins, 0.4 % of the pressure more each day up to 5 %", "left", 30, 45, ("leak",)),
-    Event(f"the sensor is knocked, {KNOCKED_MM} mm", "right", 40, 50, ("sensor_drift",)),
-    Event("the finger softens by 0.3 % a day", "right", 68, DAYS, ("ageing", "thermal_gain", "stress_softening")),
-    Event(f"the line before both fingers leaks, {100 * COMMON_LEAK:g} % of the pressure", BOTH, 80, DAYS, ("pressure_loss_kpa",)),
+    Event("a leak begins; the lost pressure increases by 0.4 % per day, up to 5 %", "left", 30, 45, ("leak",)),
+    Event(f"the sensor is displaced by {KNOCKED_MM} mm", "right", 40, 50, ("sensor_drift",)),
+    Event("the finger softens by 0.3 % per day", "right", 68, DAYS, ("ageing", "thermal_gain", "stress_softening")),
+    Event(f"the common air line of both fingers leaks; {100 * COMMON_LEAK:g} % of the pressure is lost", BOTH, 80, DAYS, ("pressure_loss_kpa",)),
 )
 NOTES = [(45, "left", "tube replaced"), (50, "right", "sensor put back"), (60, "left", "finger replaced")]
 

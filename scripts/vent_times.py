@@ -25,13 +25,13 @@ import test_hearing  # noqa: E402
 ATTACKS = (
     ("test_behind_a_crowd_of_silent_connections", "1,000 silent connections"),
     ("test_beside_floods_of_acknowledgements", "four clients that send `acknowledge` as fast as they can"),
-    ("test_beside_pipelines_of_events", "pipelines of `events`, read and unread"),
+    ("test_beside_pipelines_of_events", "many `events` requests that are sent without waiting for replies; the replies are read, or are not read"),
     ("test_beside_clients_that_stand_still", "sixteen client processes under SIGSTOP: in the middle of a line, with answers "
      "unread, with events unread, `softgrip watch`"),
-    ("test_on_a_full_disk", "a disk that is full in the middle of a recording, and when the next begins"),
-    ("test_without_a_descriptor_left", "no descriptor left and twenty connections"),
-    ("test_a_pipe_among_the_sequences", "a start whose file is a pipe"),
-    ("test_a_disk_that_does_not_answer", "a start whose file does not open"),
+    ("test_on_a_full_disk", "a disk that becomes full during a recording, and that is still full when the next recording begins"),
+    ("test_without_a_descriptor_left", "no free file descriptor, and twenty connections"),
+    ("test_a_pipe_among_the_sequences", "a start request for a sequence file that is a pipe"),
+    ("test_a_disk_that_does_not_answer", "a start request for a sequence file that cannot be opened"),
 )
 
 

@@ -365,11 +365,11 @@ def reports():
     blanks = [names] + [[t, c if i % 3 == 0 else None, y] for i, (t, c, y) in enumerate(zip(T, COMMAND, TIP))]
     step_back = [t if i < 150 else round(t - 0.015, 6) for i, t in enumerate(T)]
     return [
-        File("three_fingers.csv", "the wide export of three fingers, one of them selected", three, "--channel index"),
-        File("three_fingers_unsaid.csv", "the wide export of three fingers, none of them selected", three,
+        File("three_fingers.csv", "columns of three fingers, as exported by softgrip, one finger selected", three, "--channel index"),
+        File("three_fingers_unsaid.csv", "columns of three fingers, as exported by softgrip, no finger selected", three,
              refused="the columns belong to 3 fingers: 'thumb', 'index', 'ring'"),
-        File("channel_rows.csv", "fingers in rows, one of them selected", rows_of_two, "--channel B", left_out={"other_channel": 300}),
-        File("channel_rows_none.csv", "fingers in rows, and a name that no finger has", rows_of_two, "--channel C",
+        File("channel_rows.csv", "rows of two fingers, one finger selected", rows_of_two, "--channel B", left_out={"other_channel": 300}),
+        File("channel_rows_none.csv", "rows of two fingers, and the option --channel with a name that no finger has", rows_of_two, "--channel C",
              refused="no row belongs to channel 'C'"),
         File("fingers.xlsx", "two fingers in a workbook, one of them selected", workbooks.book(
             [["time_s", "P1 set (kPa)", "P2 set (kPa)", "tip 1 (mm)", "tip 2 (mm)"]]
@@ -408,12 +408,12 @@ def reports():
         File("comma_fraction.csv", "ISO dates with a comma before the fraction", table(
             ["Date", *names[1:]], [[text.replace(".", ",") for text in times("2024-05-31T11:59:59", "%Y-%m-%d %H:%M:%S.%f")],
                                    COMMAND, TIP], ";", ",")),
-        File("zones.csv", "dates with an offset of time zone", table(
+        File("zones.csv", "dates with a time-zone offset", table(
             ["Date", *names[1:]], [[text + "+02:00" for text in times("2024-05-31T23:59:59", "%Y-%m-%dT%H:%M:%S.%f")],
                                    COMMAND, TIP])),
         File("slow_readings.csv", "one reading in 20 rows", table(names, [T, COMMAND, slow_cells]),
              refused="95.0 % of the samples have no reading"),
-        File("slow_readings_long.csv", "one reading in 20 rows, ten times as many rows", table(
+        File("slow_readings_long.csv", "one reading in 20 rows, in a file with ten times as many rows", table(
             names, [[i / 100 for i in range(10 * COUNT)], COMMAND * 10, slow_cells * 10]),
              columns={"time_s": [i / 100 for i in range(10 * COUNT)], "pressure_command_kpa": COMMAND * 10,
                       "displacement_mm": slow * 10}, says="95.0 % of the samples have no reading"),
@@ -421,7 +421,7 @@ def reports():
              columns=coded_truth, says="3 cells of 'tip_mm' with -1000, far from all other values, count as missing"),
         File("code_65535.csv", "65535 for missing readings", table(names, [T, COMMAND, coded[65535]]),
              columns=coded_truth, says="3 cells of 'tip_mm' with 65535"),
-        File("stamps_of_20_ms.csv", "time stamps of 20 ms in a log of 100 Hz, with the rate as an option", table(
+        File("stamps_of_20_ms.csv", "time stamps with a resolution of 20 ms in a log of 100 Hz, with the rate as an option", table(
             names, [[round(0.02 * (i // 2), 6) for i in range(COUNT)], COMMAND, TIP]), "--rate-hz 100",
              says="the column 'time_s' looks like a time and is not used, because --rate-hz replaces this column"),
         File("cut_off.lvm", "a LabVIEW measurement, cut off", lvm_text[:-20], columns={key: TRUTH[key][:-1] for key in BASIC},
@@ -434,7 +434,7 @@ def reports():
              columns=first, says="incomplete rows or blocks of values are left out: 720 bytes", left_out={"cut_off_line": 90}),
         File("nested_cells.mat", "MATLAB 5: a cell array of structures", matlab_5(cells("runs", [structures("", [
             {"t_ms": matrix("", ms), "set_kPa": matrix("", COMMAND), "tip_mm": matrix("", TIP)}])]))),
-        File("title_date.xlsx", "a date in the title above times of day", workbooks.book(
+        File("title_date.xlsx", "times of day in the rows, with the date in the title", workbooks.book(
             [["Bench 3"], [workbooks.date(45443.5)], None, ["Time", *names[1:]]]
             + [[workbooks.date(0.5 + t / 86400, 2), c, y] for t, c, y in zip(T, COMMAND, TIP)]), tolerance=1e-6),
         File("short_rows.csv", "three rows without their last cell, skipped",
@@ -474,7 +474,7 @@ def other_fingers_and_clocks():
     return [
         File("psi_as_kpa.csv", "psi in a column that is labelled kPa", table(["time_s", "set_kpa", "tip_mm"], [T, scaled(COMMAND, PSI), TIP]),
              columns=BASIC_OF | {"pressure_command_kpa": scaled(COMMAND, PSI)}, says="The largest value of `set_kpa` is 8.7"),
-        File("finger_rows.csv", "fingers in rows, in a column that is not named channel", by_word, refused="the file has 2 channels: 'left', 'right'"),
+        File("finger_rows.csv", "rows of two fingers, whose names are in a column that is not called channel", by_word, refused="the file has 2 channels: 'left', 'right'"),
         File("finger_rows_left.csv", "two fingers, one of them selected", by_word, "--channel left", **of_first),
         File("finger_numbers.csv", "fingers in rows by their number", by_number, "--channel 1", **of_first),
         File("finger_rows.mat", "MATLAB 5: fingers in rows by their number", matlab_5(structures("run", [
@@ -542,7 +542,7 @@ def signals(stamp):
             + stamped("/laser", "tip_mm", TIP)), refused="the time goes back"),
         File("signals_fingers.mcap", "MCAP: a topic per signal of two fingers", mcap(fingers), refused="the columns belong to 2 fingers: 'left', 'right'"),
         File("signals_left.mcap", "two fingers, one of them selected", mcap(fingers), "--channel left", joined=COUNT, left_out={"empty": 2 * COUNT}),
-        File("signals_nobody.mcap", "MCAP: a topic per signal of two fingers, and a name that no finger has", mcap(fingers), "--channel middle",
+        File("signals_nobody.mcap", "MCAP: a topic per signal of two fingers, and the option --channel with a name that no finger has", mcap(fingers), "--channel middle",
              refused="no finger has the name 'middle'"),
     ]
 
@@ -638,7 +638,7 @@ def files():
              table(["time_s", "pd1_psi", "pd2_psi", "tip_mm"],
                    [T, scaled(COMMAND, PSI / 0.9), scaled(COMMAND, PSI / 1.1), TIP]),
              "--command pd1_psi --command pd2_psi"),
-        File("slow_sensor.csv", "a sensor five times slower than the log",
+        File("slow_sensor.csv", "a slow sensor, which has a reading in every fifth row",
              table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, slow]),
              columns={key: TRUTH[key] for key in BASIC} | {
                  "displacement_mm": [math.nan if tip is None else tip for tip in slow]},
@@ -670,7 +670,7 @@ def files():
                                                                             [T, COMMAND, [-y for y in TIP]]),
              columns={key: TRUTH[key] for key in BASIC} | {"displacement_mm": [-y for y in TIP]},
              says="the reading decreases when the pressure increases"),
-        File("wrong_unit.csv", "a measured pressure in psi that claims kPa",
+        File("wrong_unit.csv", "a measured pressure in psi, in a column that is labelled kPa",
              table(["time_s", "set_kpa", "actual_pressure_kpa", "tip_mm"], [T, COMMAND, scaled(PRESSURE, PSI), TIP]),
              columns=MEASURED | {"pressure_kpa": scaled(PRESSURE, PSI)}, says="which is the conversion factor between psi and kPa"),
         File("packed.csv.gz", "gzip", gzip.compress(PLAIN.encode(), mtime=0)),
@@ -678,7 +678,7 @@ def files():
              refused="the gzip file is cut off"),
         File("vectors.mat", "MATLAB 5: vectors",
              matlab_5(matrix("time_s", T), matrix("p_cmd_psi", scaled(COMMAND, PSI)), matrix("tip_mm", TIP))),
-        File("structure.mat", "MATLAB 7: a structure, packed",
+        File("structure.mat", "MATLAB 7: a structure, compressed",
              matlab_5(packed(structure("run", {"t_ms": [1000 * t for t in T], "p_set_kPa": COMMAND,
                                                "p_meas_kPa": PRESSURE, "tip_mm": TIP}))), columns=MEASURED),
         File("dspace.mat", "MATLAB 5: structures with Name, Data and Unit (dSPACE)", dspace()),
@@ -696,7 +696,7 @@ def files():
         File("v73.mat", "MATLAB 7.3", matlab_73, "--unit time=s", columns=MEASURED),
         File("cut_off.mat", "MATLAB 5, cut off", matlab_5(matrix("time_s", T))[:-900],
              refused="not contain two arrays of numbers"),
-        File("groups.h5", "HDF5: groups, packed, units as attributes", hdf5_datasets, columns=MEASURED),
+        File("groups.h5", "HDF5: groups, compressed, units as attributes", hdf5_datasets, columns=MEASURED),
         File("compound.h5", "HDF5: a table of compounds", hdf5_compound),
         File("counter_16_bit.csv", "milliseconds of a 16-bit counter",
              table(["t_ms", "set_kpa", "tip_mm"], [[(64000 + round(1000 * t)) % 65536 for t in T], COMMAND, TIP]),
@@ -732,11 +732,11 @@ def files():
         File("named_months.csv", "dates with names of months",
              table(["Date", "set_kpa", "tip_mm"], [times("2024-05-31T23:59:58", "%d-%b-%Y %H:%M:%S.%f"), COMMAND, TIP],
                    ";")),
-        File("coarse_times.csv", "time stamps of 50 ms in a log of 100 Hz",
+        File("coarse_times.csv", "time stamps with a resolution of 50 ms in a log of 100 Hz",
              table(["time_s", "set_kpa", "tip_mm"], [[round(0.05 * (i // 5), 6) for i in range(COUNT)], COMMAND, TIP]),
              columns={key: TRUTH[key][::5] for key in BASIC}, says="--rate-hz 100 in place of --time keeps every row",
              left_out={"repeated_time": 240}),
-        File("coarser_times.csv", "time stamps of 1 s in a log of 100 Hz",
+        File("coarser_times.csv", "time stamps with a resolution of 1 s in a log of 100 Hz",
              table(["time_s", "set_kpa", "tip_mm"], [[i // 100 for i in range(COUNT)], COMMAND, TIP]),
              refused="too few rows can be used: 300 rows: 3 used, 297 left out (297 with the time of the previous row)"),
         File("rows_of_commands.csv", "commands in separate rows",
@@ -745,7 +745,7 @@ def files():
                     [None if i % 10 == 0 else tip for i, tip in enumerate(TIP)]]),
              columns={"time_s": T, "pressure_command_kpa": held, "displacement_mm": [
                  math.nan if i % 10 == 0 else tip for i, tip in enumerate(TIP)]}, says="keep the command of the previous sample"),
-        File("rows_at_one_time.csv", "command and reading in two rows of one time",
+        File("rows_at_one_time.csv", "the command and the reading of one time in two rows",
              "time_s,set_kpa,tip_mm\n" + "".join(f"{t!r},{c!r},\n{t!r},,{y!r}\n" for t, c, y in pairs), joined=300),
         File("two_times.csv", "separate times of the command and of the reading",
              table(["t_cmd (s)", "set (kPa)", "t_tip (s)", "tip (mm)"],
@@ -760,7 +760,7 @@ def files():
         File("fingers.csv", "two fingers in the columns", fingers, refused="the columns belong to 2 fingers: 'left', 'right'"),
         File("fingers_right.csv", "two fingers, one of them selected", fingers, "--channel right", columns=right,
              says="not used: 'P_left (kPa)', 'tip_left (mm)'"),
-        File("fingers_none.csv", "two fingers in the columns, and a name that no finger has", fingers, "--channel thumb",
+        File("fingers_none.csv", "columns of two fingers, and the option --channel with a name that no finger has", fingers, "--channel thumb",
              refused="no finger has the name 'thumb': the columns belong to 'left', 'right'"),
         File("finger_alone.csv", "the option --channel for a file of one finger", PLAIN, "--channel thumb",
              refused="--channel 'thumb': the file has no column 'channel'"),
