@@ -121,8 +121,8 @@ Figure runs_figure(const JudgedChange& judged, bool explained) {
   if (explained)
     chart.series.push_back(points_over_names("with the causes", Colour::model, std::move(after)));
   return {std::string("error by run ") + name_of(judged.judged),
-          "RMS error of the baseline model in each run, about the mean error of the run. Each healthy run "
-          "was omitted from the fit that predicts this run.",
+          "RMS error of the baseline model in each run, after the mean error of the run is subtracted. To "
+          "predict a healthy run, the model is fitted to the other healthy runs.",
           stacked({chart})};
 }
 
@@ -184,7 +184,7 @@ Table tried_table(const JudgedChange& judged) {
 }
 
 Table run_table(const JudgedChange& judged) {
-  Table table{std::string("RMS error of each run, about the mean error of the run [") +
+  Table table{std::string("RMS error of each run after the subtraction of its mean error [") +
                   unit_of(judged.judged, judged.output_unit) + "]",
               {"run", "base", "with the causes"},
               {false, true, true},

@@ -25,8 +25,8 @@ struct Comparison {
 /// @param seed  seed of the random weights; equal seeds give equal results.
 [[nodiscard]] Comparison compare(const PairedLosses& losses, double tolerance, std::uint64_t seed);
 
-/// Returns true if the loss of `better` is smaller by more than the tolerance in at least limits::probability
-/// of the bootstrap samples.
+/// Returns true if, in at least the share limits::probability of the bootstrap samples, the loss of `better`
+/// is smaller than the other loss by more than the tolerance.
 [[nodiscard]] bool is_better(const Comparison& comparison);
 
 }  // namespace softgrip::sysid

@@ -83,8 +83,8 @@ struct LogOptions {
   /// unit ("the model given.yaml"). If not set, all logs of a campaign must have the unit of the first log.
   std::optional<model::OutputUnit> output_unit;
   std::string output_unit_of;
-  /// A log is refused if a larger share of its readings than this value is clipped (1: never refused). If
-  /// some readings are clipped, but fewer, the log gets a note.
+  /// A log is refused if the share of clipped readings exceeds this value (1: never refused). If a smaller
+  /// share of the readings is clipped, the log gets a note.
   double clipped_share_refused = 0.2;
 };
 
