@@ -16,7 +16,8 @@ namespace softgrip::rig {
 
 namespace {
 
-/// `path` does not exist. Returns the path of the file in the same folder that has the most similar name.
+/// Returns the path of the file whose name is most similar to the name of the missing file `path`, from the
+/// same folder.
 std::string nearest_file(const std::string& named, const std::string& path) {
   const std::filesystem::path wanted(path);
   std::error_code error;

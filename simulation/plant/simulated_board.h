@@ -62,7 +62,7 @@ struct SimulatedChannel {
 struct SimulatedBoardSettings {
   std::vector<SimulatedChannel> channels;
   std::vector<SimulatedEvent> events;  ///< events of the simulation; their order does not matter
-  /// If there is no exchange for this time, the outputs change to `vented_kpa` [s]. They keep this value
+  /// Time without an exchange after which the outputs change to `vented_kpa` [s]. The outputs keep this value
   /// until connect() is called. 0: the board has no watchdog.
   double watchdog_timeout_s = 0;
 };

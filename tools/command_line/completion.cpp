@@ -123,7 +123,8 @@ std::string quoted(const std::string& text, std::string_view escaped, std::strin
   return out;
 }
 
-// The bash script. Its option `-o default` completes an argument without candidates as a file name.
+// The completion script for bash. If there are no candidates for an argument, the option `-o default`
+// completes the argument as a file name.
 
 void bash_values(std::string& out, const std::string& command, const std::vector<Choice>& options) {
   for (const Choice& option : options) {
