@@ -153,12 +153,15 @@ tl::expected<void, std::string> write_histograms(const std::string& path, const 
   return write_file(path, fmt::format("{}{}{}{}{}# Ticks: {}\n"
                                       "# Overruns, woken late: {}\n"
                                       "# Overruns, took long: {}\n"
+                                      "# Slips, woken late: {}\n"  // deprecated names of the same counts
+                                      "# Slips, took long: {}\n"
                                       "# Exchanges: {}\n# Failed exchanges: {}\n",
                                       loop.wake_up.cyclictest_text("loop wake-up, us"),
                                       loop.compute.cyclictest_text("loop compute, us"),
                                       loop.reading_age.cyclictest_text("reading age, us"),
                                       bus.wake_up.cyclictest_text("bus wake-up, us"),
                                       bus.exchange.cyclictest_text("exchange, us"), loop.ticks.value(),
+                                      loop.overruns_woken_late.value(), loop.overruns_took_long.value(),
                                       loop.overruns_woken_late.value(), loop.overruns_took_long.value(),
                                       bus.exchanges.value(), bus.failures.value()));
 }
