@@ -153,8 +153,8 @@ tl::expected<void, std::string> write_histograms(const std::string& path, const 
   return write_file(path, fmt::format("{}{}{}{}{}# Ticks: {}\n"
                                       "# Overruns, woken late: {}\n"
                                       "# Overruns, took long: {}\n"
-                                      "# Slips, woken late: {}\n"  // deprecated names of the same counts
-                                      "# Slips, took long: {}\n"
+                                      "# Slips, woken late: {}\n"  // words-ok: deprecated name
+                                      "# Slips, took long: {}\n"   // words-ok: deprecated name
                                       "# Exchanges: {}\n# Failed exchanges: {}\n",
                                       loop.wake_up.cyclictest_text("loop wake-up, us"),
                                       loop.compute.cyclictest_text("loop compute, us"),
