@@ -4,6 +4,7 @@ must not fill the memory because of a small file. It must not open another file 
 import gzip
 import json
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -28,6 +29,14 @@ class Overwriting(bench_files.Files):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn("not overwritten", done.stderr)
             self.assertEqual(path.read_bytes(), before)
+
+    def test_a_histogram_file_has_the_counts_under_both_names(self):
+        subprocess.run([bench.SOFTGRIPD, "--config", "config/rig.yaml", "--virtual-time", "--duration-s", "1", "--histograms",
+                        "histograms.txt"], cwd=self.folder, check=True, capture_output=True, timeout=60)
+        text = (self.folder / "histograms.txt").read_text()
+        for count in ("woken late", "took long"):
+            values = [re.search(rf"^# {name}, {count}: (\d+)$", text, re.M)[1] for name in ("Overruns", "Slips")]
+            self.assertEqual(*values)
 
     def test_a_file_over_itself(self):
         self.record()
