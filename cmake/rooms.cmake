@@ -10,6 +10,8 @@
 softgrip_room(base LIBRARIES Threads::Threads)
 target_sources(softgrip_base PRIVATE ${version_file})
 add_dependencies(softgrip_base softgrip_version_file)
+# Sockets of servers. Every server of the project uses this room.
+softgrip_room(base/net USES base)
 softgrip_room(document USES base LIBRARIES yaml-cpp)
 
 # The model of a finger, and its file format.
@@ -38,12 +40,12 @@ endif()
 # Simulated and emulated rigs.
 softgrip_room(simulation/plant USES base document model drivers/board)
 softgrip_room(simulation/emulator
-  USES base document model drivers/board drivers/modbus drivers/modbus_server simulation/plant)
+  USES base base/net document model drivers/board drivers/modbus drivers/modbus_server simulation/plant)
 
 # The file format of softgrip-plc. `softgrip check` also reads it.
-softgrip_room(rig/plc_file USES document drivers/modbus_server LIBRARIES fmt::fmt)
+softgrip_room(rig/plc_file USES base/net document LIBRARIES fmt::fmt)
 # The file format of softgrip-web. `softgrip check` also reads it.
-softgrip_room(rig/web_file USES document drivers/modbus_server)
+softgrip_room(rig/web_file USES base/net document)
 
 # The file format of the rig.
 softgrip_room(rig
@@ -122,12 +124,12 @@ softgrip_room(tools/command_line USES base document model model/file LIBRARIES C
 target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_CONFIG_DIR="${SOFTGRIP_CONFIGURATION}")
 softgrip_room(tools/client USES base document control/tick control/elements rig tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
 # Gateways: separate processes between the daemon's socket and a network.
-softgrip_room(tools/plc USES base control/elements drivers/modbus_server rig/plc_file tools/client
+softgrip_room(tools/plc USES base base/net control/elements drivers/modbus_server rig/plc_file tools/client
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/web/metrics USES base LIBRARIES nlohmann_json::nlohmann_json)
-softgrip_room(tools/web/access USES base drivers/modbus_server rig/web_file LIBRARIES fmt::fmt)
+softgrip_room(tools/web/access USES base base/net rig/web_file LIBRARIES fmt::fmt)
 softgrip_room(tools/web FOLDERS tools/web/page
-  USES base drivers/modbus_server rig/web_file tools/client tools/web/metrics tools/web/access
+  USES base base/net rig/web_file tools/client tools/web/metrics tools/web/access
   LIBRARIES nlohmann_json::nlohmann_json fmt::fmt PkgConfig::httplib)
 softgrip_page_files(tools/web/page)
 if(httplib_VERSION VERSION_GREATER_EQUAL 0.18)
@@ -188,12 +190,12 @@ softgrip_public_headers(library/include)
 softgrip_program(softgripd daemon/service/softgripd.cpp daemon ROOM daemon/service LIBRARIES CLI11::CLI11)
 softgrip_program(softgrip tools/programs/softgrip.cpp tools ROOM tools/commands)
 softgrip_program(softgrip-rig "tools/programs/softgrip_rig.cpp;tools/programs/softgrip_rig_options.cpp" tools
-  ROOM simulation/emulator USES base document model model/file drivers/board drivers/modbus drivers/modbus_server simulation/plant
-       simulation/emulator rig tools/command_line
+  ROOM simulation/emulator USES base base/net document model model/file drivers/board drivers/modbus drivers/modbus_server
+       simulation/plant simulation/emulator rig tools/command_line
   LIBRARIES CLI11::CLI11)
 softgrip_program(softgrip-plc tools/programs/softgrip_plc.cpp tools
-  ROOM tools/plc USES base drivers/modbus_server rig/plc_file tools/command_line
+  ROOM tools/plc USES base base/net drivers/modbus_server rig/plc_file tools/command_line
   LIBRARIES CLI11::CLI11)
 softgrip_program(softgrip-web tools/programs/softgrip_web.cpp tools
-  ROOM tools/web USES base drivers/modbus_server rig/web_file tools/command_line
+  ROOM tools/web USES base base/net rig/web_file tools/command_line
   LIBRARIES CLI11::CLI11)

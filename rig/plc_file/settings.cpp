@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "drivers/modbus_server/listener.h"
+#include "base/net/listener.h"
 
 namespace softgrip::plc {
 
@@ -37,19 +37,19 @@ class SettingsReader {
   void listen(const Node& node) {
     MapReader reader(document_, node, problems_, "listen");
     settings_.address = reader.text("address");
-    if (reader.good("address") && !modbus::is_numeric(settings_.address))
+    if (reader.good("address") && !net::is_numeric(settings_.address))
       reader.report("address", "this is not a numeric address", std::string(numeric_hint));
     settings_.port = static_cast<std::uint16_t>(reader.integer("port", 0, 65535));
     for (const Node* const item : reader.sequence("allow", true)) {
       settings_.allow.push_back(item->scalar);
-      if (item->kind != Node::Kind::scalar || !modbus::is_numeric(item->scalar))
+      if (item->kind != Node::Kind::scalar || !net::is_numeric(item->scalar))
         problems_.add(
             document_.problem(item->at, "this is not a numeric address", std::string(numeric_hint)));
     }
     settings_.max_masters =
         static_cast<std::size_t>(reader.optional_integer("max_masters", 1, 32).value_or(4));
     settings_.idle_s = reader.optional_number("idle_s", {1, 3600}).value_or(60);
-    if (reader.good("address") && !modbus::is_loopback(settings_.address) && settings_.allow.empty()) {
+    if (reader.good("address") && !net::is_loopback(settings_.address) && settings_.allow.empty()) {
       reader.report("allow", "other machines can reach this address, so the permitted clients must be listed",
                     "allow: [192.168.1.20]");
     }

@@ -1,7 +1,7 @@
 #include "rig/web_file/settings.h"
 
+#include "base/net/listener.h"
 #include "document/reader.h"
-#include "drivers/modbus_server/listener.h"
 
 namespace softgrip::web {
 
@@ -21,7 +21,7 @@ void read_listen(const document::Document& document, const Node& node, document:
                  Settings& settings) {
   MapReader reader(document, node, problems, "listen");
   settings.address = reader.text("address");
-  if (reader.good("address") && !modbus::is_numeric(settings.address)) {
+  if (reader.good("address") && !net::is_numeric(settings.address)) {
     reader.report("address", "this is not a numeric address",
                   "write an IPv4 or IPv6 address in digits, for example 192.168.1.20");
   }
@@ -43,7 +43,7 @@ void read_access(const document::Document& document, const Node& node, document:
   settings.session_idle_s = reader.optional_number("session_idle_s", {1, 86400}).value_or(1800);
   settings.session_s = reader.optional_number("session_s", {1, 604800}).value_or(43200);
   // read_listen() has already reported a wrong address.
-  if (!modbus::is_numeric(settings.address) || modbus::is_loopback(settings.address)) return;
+  if (!net::is_numeric(settings.address) || net::is_loopback(settings.address)) return;
   if (reader.good("without_token") && settings.without_token != Role::none) {
     reader.report("without_token", "other machines can reach this address, so each client needs a token",
                   "without_token: none");

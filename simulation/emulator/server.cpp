@@ -46,7 +46,7 @@ void Server::run(const std::function<void()>& idle) {
     watched.push_back({sockets_.signals.get(), POLLIN, 0});
     // If a listener is closed or pauses, its descriptor is -1, which poll() ignores.
     watched.push_back({control_entrance_.descriptor(now()), POLLIN, 0});
-    for (const modbus::Entrance& entrance : entrances_)
+    for (const net::Entrance& entrance : entrances_)
       watched.push_back({entrance.descriptor(now()), POLLIN, 0});
     for (const ControlClient& client : control_clients_) watched.push_back({client.input(), POLLIN, 0});
     for (const Client& client : clients_) {

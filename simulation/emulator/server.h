@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/descriptor.h"
-#include "drivers/modbus_server/entrance.h"
+#include "base/net/entrance.h"
 #include "simulation/emulator/emulator.h"
 #include "simulation/emulator/serial_end.h"
 #include "simulation/emulator/wire.h"
@@ -64,8 +64,8 @@ class Server {
 
   Emulator& emulator_;
   ServerSockets sockets_;
-  std::vector<modbus::Entrance> entrances_;  // one entrance for each link
-  modbus::Entrance control_entrance_;
+  std::vector<net::Entrance> entrances_;  // one entrance for each link
+  net::Entrance control_entrance_;
   Clock::time_point start_ = Clock::now();
   std::list<Client> clients_;
   std::list<ControlClient> control_clients_;

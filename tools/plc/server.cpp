@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/net/listener.h"
 #include "base/periodic_schedule.h"
-#include "drivers/modbus_server/listener.h"
 
 namespace softgrip::plc {
 

@@ -7,8 +7,8 @@
 
 #include "base/clock.h"
 #include "base/descriptor.h"
+#include "base/net/entrance.h"
 #include "drivers/modbus_server/connection.h"
-#include "drivers/modbus_server/entrance.h"
 #include "tools/plc/daemon_line.h"
 #include "tools/plc/gateway.h"
 
@@ -16,7 +16,7 @@ namespace softgrip::plc {
 
 class Server {
  public:
-  /// Creates the server. `listener` comes from modbus::listen_tcp(). `signals` is a signalfd; any signal ends
+  /// Creates the server. `listener` comes from net::listen_tcp(). `signals` is a signalfd; any signal ends
   /// run(). The references must outlive the server.
   Server(const Settings& settings, Gateway& gateway, Descriptor listener, Descriptor signals);
   void run();
@@ -36,7 +36,7 @@ class Server {
   const Settings& settings_;
   Gateway& gateway_;
   DaemonLine daemon_;
-  modbus::Entrance entrance_;
+  net::Entrance entrance_;
   Descriptor signals_;
   MonotonicClock clock_;
   std::list<Line> lines_;

@@ -10,8 +10,8 @@
 #include <optional>
 #include <string>
 
+#include "base/net/listener.h"
 #include "base/version.h"
-#include "drivers/modbus_server/listener.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/configuration.h"
 #include "tools/command_line/usage.h"
@@ -59,7 +59,7 @@ ExitCode run(const Options& options) {
   if (options.port) settings->port = *options.port;
   if (options.check) return ExitCode::done;
   Descriptor signals = take_signals();
-  auto listener = modbus::listen_tcp(settings->address, settings->port);
+  auto listener = net::listen_tcp(settings->address, settings->port);
   if (!listener) return tools::fail(ExitCode::io, listener.error());
   std::printf("listening on %s:%u\n", settings->address.c_str(), unsigned{listener->port});
   std::fflush(stdout);

@@ -13,8 +13,8 @@
 #include <optional>
 #include <string>
 
+#include "base/net/listener.h"
 #include "base/version.h"
-#include "drivers/modbus_server/listener.h"
 #include "simulation/emulator/server.h"
 #include "simulation/emulator/truth_log.h"
 #include "tools/command_line/command.h"
@@ -137,7 +137,7 @@ ExitCode listen(const Setup& setup, simulation::ServerSockets& sockets, std::str
     return ExitCode::done;
   }
   for (const softgrip::drivers::TcpAddress& address : setup.addresses) {
-    auto listener = modbus::listen_tcp(address.host, address.port);
+    auto listener = net::listen_tcp(address.host, address.port);
     if (!listener) return fail(ExitCode::io, listener.error());
     told += "listening on " + address.host + ":" + std::to_string(listener->port) + "\n";
     sockets.modbus.push_back(std::move(listener->socket));
@@ -154,7 +154,7 @@ ExitCode serve(const Options& options, const Setup& setup, simulation::Emulator&
   sockets.standard_input = options.control == "-";
   const bool control_socket = !options.control.empty() && !sockets.standard_input;
   if (control_socket) {
-    auto control = modbus::listen_unix(options.control);
+    auto control = net::listen_unix(options.control);
     if (!control) return fail(ExitCode::io, control.error());
     sockets.control = std::move(*control);
   }
@@ -171,7 +171,7 @@ ExitCode serve(const Options& options, const Setup& setup, simulation::Emulator&
 }
 
 ExitCode run(const Options& options) {
-  if (!modbus::is_loopback(options.bind) && !options.allow_network) {
+  if (!net::is_loopback(options.bind) && !options.allow_network) {
     return fail(ExitCode::usage,
                 "other computers could reach " + options.bind +
                     ", and Modbus has no passwords: to use this address, add --allow-network");

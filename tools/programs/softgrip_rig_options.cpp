@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "base/files.h"
+#include "base/net/listener.h"
 #include "drivers/modbus/serial_port.h"
-#include "drivers/modbus_server/listener.h"
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"
 #include "rig/rig_file.h"
@@ -159,7 +159,7 @@ std::optional<ExitCode> place(const Options& options, Setup& setup) {
     drivers::TcpAddress& address = setup.addresses[i];
     // If the rig file names several hosts, a host that is a loopback address keeps it. Every other host
     // becomes the bind address.
-    if (setup.addresses.size() == 1 || !modbus::is_loopback(address.host)) address.host = options.bind;
+    if (setup.addresses.size() == 1 || !net::is_loopback(address.host)) address.host = options.bind;
     if (options.port) address.port = static_cast<std::uint16_t>(*options.port == 0 ? 0 : *options.port + i);
   }
   return std::nullopt;

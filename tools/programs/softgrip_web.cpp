@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "base/files.h"
+#include "base/net/listener.h"
 #include "base/version.h"
-#include "drivers/modbus_server/listener.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/configuration.h"
 #include "tools/command_line/usage.h"
@@ -77,7 +77,7 @@ ExitCode run(const Options& options) {
   auto settings = load_settings(options.config, problems);
   if (!settings) return tools::refuse(problems);
   put_in_place(options, *settings);
-  if (options.operate && !modbus::is_loopback(settings->address))
+  if (options.operate && !net::is_loopback(settings->address))
     return tools::fail(
         ExitCode::usage,
         "--operate is permitted only on loopback addresses; on other addresses, clients need a token");
@@ -95,7 +95,7 @@ ExitCode run(const Options& options) {
                  places, settings->max_connections);
   }
   Descriptor signals = take_signals();
-  auto listener = modbus::listen_tcp(settings->address, settings->port);
+  auto listener = net::listen_tcp(settings->address, settings->port);
   if (!listener) return tools::fail(ExitCode::io, listener.error());
   const bool six = settings->address.find(':') != std::string::npos;
   std::printf("listening on http://%s%s%s:%u/\n", six ? "[" : "", settings->address.c_str(), six ? "]" : "",

@@ -9,7 +9,7 @@
 
 #include "base/clock.h"
 #include "base/descriptor.h"
-#include "drivers/modbus_server/entrance.h"
+#include "base/net/entrance.h"
 #include "tools/web/archive.h"
 #include "tools/web/client.h"
 #include "tools/web/commander.h"
@@ -21,7 +21,7 @@ namespace softgrip::web {
 
 class Server {
  public:
-  /// Creates the server. `listener` comes from modbus::listen_tcp(). `signals` is a signalfd; any signal ends
+  /// Creates the server. `listener` comes from net::listen_tcp(). `signals` is a signalfd; any signal ends
   /// run(). `settings` must outlive the server.
   Server(const Settings& settings, Tokens tokens, std::string chart_js, Descriptor listener,
          Descriptor signals);
@@ -87,7 +87,7 @@ class Server {
   DaemonWatch watch_;
   Commander commander_;
   Archive archive_;
-  modbus::Entrance entrance_;
+  net::Entrance entrance_;
   Descriptor signals_;
   MonotonicClock clock_;
   std::list<Visitor> visitors_;

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "drivers/modbus_server/listener.h"
+#include "base/net/listener.h"
 #include "model/file/model_file.h"
 #include "simulation/emulator/wiring.h"
 
@@ -59,7 +59,7 @@ RunningRig::RunningRig(const RunningRigSettings& settings) {
     emulated.modules.push_back({settings.maps[i], unit, link});
     board_.modules.push_back({settings.names[i], settings.maps[i], unit, link});
     if (serial) continue;
-    auto listener = modbus::listen_tcp("127.0.0.1", 0);
+    auto listener = net::listen_tcp("127.0.0.1", 0);
     if (!listener) throw std::runtime_error(listener.error());
     board_.links.emplace_back(drivers::TcpAddress{"127.0.0.1", listener->port});
     sockets.modbus.push_back(std::move(listener->socket));

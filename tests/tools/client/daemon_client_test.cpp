@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/modbus_server/listener.h"
+#include "base/net/listener.h"
 
 namespace softgrip::tools::daemon_client_test {
 namespace {
@@ -25,7 +25,7 @@ class ScriptedDaemon {
       : folder_(std::filesystem::temp_directory_path() / ("softgrip_client_" + std::to_string(::getpid()))),
         reply_(std::move(reply)) {
     std::filesystem::create_directories(folder_);
-    listener_ = std::move(*modbus::listen_unix(path()));
+    listener_ = std::move(*net::listen_unix(path()));
     thread_ = std::thread([this] { serve(); });
   }
   ScriptedDaemon(const ScriptedDaemon&) = delete;
@@ -43,7 +43,7 @@ class ScriptedDaemon {
   void serve() {
     Descriptor client;
     while (!client) {
-      client = modbus::accept_client(listener_);
+      client = net::accept_client(listener_);
       if (!client) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     char byte = 0;
@@ -76,7 +76,7 @@ TEST(DaemonClient, ReturnsTheResult) {
 
 class HangingDaemon : public ::testing::Test {
  protected:
-  HangingDaemon() : listener_(std::move(*modbus::listen_unix(path_))) {}
+  HangingDaemon() : listener_(std::move(*net::listen_unix(path_))) {}
   ~HangingDaemon() override { ::unlink(path_.c_str()); }
   HangingDaemon(const HangingDaemon&) = delete;
   HangingDaemon& operator=(const HangingDaemon&) = delete;
@@ -114,7 +114,7 @@ TEST(DaemonClient, SaysWhatToDoWhenNoDaemonIsThere) {
       std::filesystem::temp_directory_path() / ("softgrip_left_over_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   const std::string path = folder / "left.sock";
-  { const auto listener = modbus::listen_unix(path); }
+  { const auto listener = net::listen_unix(path); }
   const auto left_over = DaemonClient::connect(path);
   ASSERT_FALSE(left_over);
   EXPECT_NE(left_over.error().message.find("no process listens"), std::string::npos);
@@ -126,7 +126,7 @@ TEST(DaemonClient, DoesNotWaitForADaemonThatAcceptsNobodyIfItMustNot) {
       std::filesystem::temp_directory_path() / ("softgrip_full_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   const std::string path = folder / "full.sock";
-  const auto listener = modbus::listen_unix(path);
+  const auto listener = net::listen_unix(path);
   ASSERT_TRUE(listener);
   std::vector<DaemonClient> waiting;
   auto client = DaemonClient::connect_at_once(path);

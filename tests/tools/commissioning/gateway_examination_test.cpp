@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/files.h"
-#include "drivers/modbus_server/listener.h"
+#include "base/net/listener.h"
 
 namespace softgrip::tools::doctor::gateway_examination_test {
 namespace {
@@ -50,8 +50,8 @@ TEST_F(Gateways, NothingIsSaidOfWhatIsNotEnabled) {
 }
 
 TEST_F(Gateways, WhoListensIsWell) {
-  const auto plc = modbus::listen_tcp("127.0.0.1", 0);
-  const auto web = modbus::listen_tcp("127.0.0.1", 0);
+  const auto plc = net::listen_tcp("127.0.0.1", 0);
+  const auto web = net::listen_tcp("127.0.0.1", 0);
   configure("plc.yaml", "port: 502", plc->port);
   configure("web.yaml", "port: 8017", web->port);
   enable("softgrip-plc");
@@ -64,7 +64,7 @@ TEST_F(Gateways, WhoListensIsWell) {
 }
 
 TEST_F(Gateways, WhoShouldAndDoesNotIsAWarning) {
-  const std::uint16_t port = modbus::listen_tcp("127.0.0.1", 0)->port;
+  const std::uint16_t port = net::listen_tcp("127.0.0.1", 0)->port;
   configure("web.yaml", "port: 8017", port);
   enable("softgrip-web");
   ASSERT_EQ(found().size(), 1U);

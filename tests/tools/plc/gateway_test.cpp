@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
+#include "base/net/listener.h"
 #include "base/periodic_schedule.h"
-#include "drivers/modbus_server/listener.h"
 #include "tests/tools/daemon_lines.h"
 #include "tools/client/reply_check.h"
 #include "tools/plc/server.h"
@@ -373,14 +373,14 @@ TEST_F(GatewayTest, NoLineThatPassesTheCheckStopsIt) {
 }
 
 TEST(Server, KnowsWhereAConnectionComesFrom) {
-  const auto listener = modbus::listen_tcp("127.0.0.1", 0);
+  const auto listener = net::listen_tcp("127.0.0.1", 0);
   ASSERT_TRUE(listener);
   Descriptor client(::socket(AF_INET, SOCK_STREAM, 0));
   sockaddr_storage address{};
   socklen_t size = sizeof address;
   ASSERT_EQ(::getsockname(listener->socket.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
   ASSERT_EQ(::connect(client.get(), reinterpret_cast<const sockaddr*>(&address), size), 0);
-  const Descriptor accepted = modbus::accept_client(listener->socket);
+  const Descriptor accepted = net::accept_client(listener->socket);
   ASSERT_TRUE(accepted);
   EXPECT_EQ(address_of(accepted.get()), "127.0.0.1");
   EXPECT_EQ(address_of(-1), "");

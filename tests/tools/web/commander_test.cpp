@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/modbus_server/listener.h"
+#include "base/net/listener.h"
 
 namespace softgrip::web::commander_test {
 namespace {
@@ -53,7 +53,7 @@ TEST(Commander, WithoutADaemonItSaysSo) {
 
 TEST(Commander, StartsThatWaitKeepNoStopFromTheDaemon) {
   const std::string path = "/tmp/commander_" + std::to_string(::getpid());
-  const auto daemon = modbus::listen_unix(path);
+  const auto daemon = net::listen_unix(path);
   ASSERT_TRUE(daemon) << daemon.error();
   Commander commander(path);
   const Json start{{"command", "start"}, {"sequence", "pick"}};
@@ -75,7 +75,7 @@ TEST(Commander, StartsThatWaitKeepNoStopFromTheDaemon) {
 
 TEST(Commander, ADaemonThatHangsHoldsNoOne) {
   const std::string path = "/tmp/commander_hangs_" + std::to_string(::getpid());
-  const auto daemon = modbus::listen_unix(path);
+  const auto daemon = net::listen_unix(path);
   ASSERT_TRUE(daemon) << daemon.error();
   Commander commander(path);
   bool ended = false;
@@ -94,7 +94,7 @@ TEST(Commander, ADaemonThatHangsHoldsNoOne) {
 /// Tests with a daemon whose lines the test reads and writes.
 class CommanderTest : public ::testing::Test {
  protected:
-  CommanderTest() : listener_(std::move(*modbus::listen_unix(path_))) {}
+  CommanderTest() : listener_(std::move(*net::listen_unix(path_))) {}
   ~CommanderTest() override { ::unlink(path_.c_str()); }
   CommanderTest(const CommanderTest&) = delete;
   CommanderTest& operator=(const CommanderTest&) = delete;
@@ -108,7 +108,7 @@ class CommanderTest : public ::testing::Test {
   }
   /// Returns the requests that have arrived since the last call, except hello requests.
   std::vector<Json> heard() {
-    while (Descriptor next = modbus::accept_client(listener_)) client_ = std::move(next);
+    while (Descriptor next = net::accept_client(listener_)) client_ = std::move(next);
     std::string text;
     std::array<char, 4096> buffer{};
     for (ssize_t count = 1; count > 0 && client_;) {
@@ -233,7 +233,7 @@ TEST_F(CommanderTest, AStopWaitsForTheNextConnection) {
   pass(1);
   EXPECT_EQ(commander_.take_answer(number, now_)->at("error").at("code"), "no_answer");
   pass(1);
-  listener_ = std::move(*modbus::listen_unix(path_));
+  listener_ = std::move(*net::listen_unix(path_));
   pass(1);
   const Json stop = expect_stop_of(line);
   reply(stop, no_such_start_);

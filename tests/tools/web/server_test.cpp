@@ -20,7 +20,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "drivers/modbus_server/listener.h"
+#include "base/net/listener.h"
 #include "tools/web/page/page_files.h"
 
 namespace softgrip::web::server_test {
@@ -38,7 +38,7 @@ class ServerTest : public ::testing::Test {
     settings_.look_socket = "/nowhere/softgripd.sock";
     settings_.operate_socket = folder_ / "softgripd.sock";
     settings_.recordings = folder_ / "runs";
-    auto listener = modbus::listen_tcp("127.0.0.1", 0);
+    auto listener = net::listen_tcp("127.0.0.1", 0);
     port_ = listener->port;
     Descriptor signals{::eventfd(0, 0)};
     end_ = Descriptor(::dup(signals.get()));
@@ -177,7 +177,7 @@ TEST_F(ServerTest, AFileThatBecomesShorterEndsItsAnswer) {
 /// A daemon that responds to a command when the test calls a function.
 class ScriptedDaemon {
  public:
-  explicit ScriptedDaemon(const std::string& path) : listener_(std::move(*modbus::listen_unix(path))) {}
+  explicit ScriptedDaemon(const std::string& path) : listener_(std::move(*net::listen_unix(path))) {}
   /// Returns the next command of the server, or null if none arrives in time.
   nlohmann::json next_command() {
     for (;;) {
@@ -191,7 +191,7 @@ class ScriptedDaemon {
       pollfd watched{socket_ ? socket_.get() : listener_.get(), POLLIN, 0};
       if (::poll(&watched, 1, 10'000) != 1) return nullptr;
       if (!socket_) {
-        socket_ = modbus::accept_client(listener_);
+        socket_ = net::accept_client(listener_);
         continue;
       }
       std::array<char, 4096> bytes;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "drivers/modbus_server/listener.h"
+#include "base/net/listener.h"
 
 namespace softgrip::web {
 
@@ -30,13 +30,13 @@ bool is_own_host(std::string_view host, const std::vector<std::string>& names) {
     if (end == std::string_view::npos) return false;
     const std::string_view rest = host.substr(end + 1);
     const bool port_or_none = rest.empty() || (rest.front() == ':' && is_port(rest.substr(1)));
-    return port_or_none && modbus::is_numeric(std::string(host.substr(1, end - 1)));
+    return port_or_none && net::is_numeric(std::string(host.substr(1, end - 1)));
   }
   if (const std::size_t colon = host.find(':'); colon != std::string_view::npos) {
     if (!is_port(host.substr(colon + 1))) return false;
     host = host.substr(0, colon);
   }
-  if (equal_but_for_case(host, "localhost") || modbus::is_numeric(std::string(host))) return true;
+  if (equal_but_for_case(host, "localhost") || net::is_numeric(std::string(host))) return true;
   return std::any_of(names.begin(), names.end(),
                      [&](const std::string& name) { return equal_but_for_case(host, name); });
 }

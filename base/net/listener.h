@@ -8,7 +8,7 @@
 
 #include "base/descriptor.h"
 
-namespace softgrip::modbus {
+namespace softgrip::net {
 
 struct Listener {
   Descriptor socket;
@@ -32,4 +32,4 @@ struct Listener {
 /// closed on exec.
 [[nodiscard]] Descriptor accept_client(const Descriptor& listener);
 
-}  // namespace softgrip::modbus
+}  // namespace softgrip::net

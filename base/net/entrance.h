@@ -6,7 +6,7 @@
 #include "base/descriptor.h"
 #include "base/time.h"
 
-namespace softgrip::modbus {
+namespace softgrip::net {
 
 /// Accepts clients. If no descriptor is free, a waiting client cannot be accepted, and each poll() returns at
 /// once. The server would then use a complete processor core. Therefore, the listener pauses. Before the
@@ -42,4 +42,4 @@ class Entrance {
   bool short_ = false;
 };
 
-}  // namespace softgrip::modbus
+}  // namespace softgrip::net

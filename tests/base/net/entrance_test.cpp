@@ -1,4 +1,4 @@
-#include "drivers/modbus_server/entrance.h"
+#include "base/net/entrance.h"
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/modbus_server/listener.h"
+#include "base/net/listener.h"
 
-namespace softgrip::modbus::entrance_test {
+namespace softgrip::net::entrance_test {
 namespace {
 
 class EntranceTest : public ::testing::Test {
@@ -109,4 +109,4 @@ TEST_F(EntranceTest, WithoutAListenerNoClientComes) {
 }
 
 }  // namespace
-}  // namespace softgrip::modbus::entrance_test
+}  // namespace softgrip::net::entrance_test

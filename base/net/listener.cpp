@@ -1,4 +1,4 @@
-#include "drivers/modbus_server/listener.h"
+#include "base/net/listener.h"
 
 #include <arpa/inet.h>
 #include <netdb.h>
@@ -13,7 +13,7 @@
 #include <cstring>
 #include <memory>
 
-namespace softgrip::modbus {
+namespace softgrip::net {
 namespace {
 
 // If the queue is full, the kernel drops the first packet of a client. The client then waits 1 s before it
@@ -102,4 +102,4 @@ Descriptor accept_client(const Descriptor& listener) {
   return client;
 }
 
-}  // namespace softgrip::modbus
+}  // namespace softgrip::net

@@ -1,13 +1,13 @@
-#include "drivers/modbus_server/entrance.h"
+#include "base/net/entrance.h"
 
 #include <fcntl.h>
 
 #include <cerrno>
 #include <utility>
 
-#include "drivers/modbus_server/listener.h"
+#include "base/net/listener.h"
 
-namespace softgrip::modbus {
+namespace softgrip::net {
 namespace {
 
 bool is_shortage(int error) {
@@ -37,4 +37,4 @@ void Entrance::take_spares() noexcept {
   }
 }
 
-}  // namespace softgrip::modbus
+}  // namespace softgrip::net
