@@ -59,7 +59,7 @@ softgrip_room(daemon/recording
   LIBRARIES spdlog::spdlog nlohmann_json::nlohmann_json)
 softgrip_room(daemon/panel USES base drivers/gpio rig daemon/loop)
 softgrip_room(daemon/socket
-  USES base document model control/elements control/tick control/sequences rig daemon/loop daemon/recording
+  USES base base/net document model control/elements control/tick control/sequences rig daemon/loop daemon/recording
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(daemon/service
   USES base control/tick drivers/board drivers/iio drivers/gpio rig daemon/loop daemon/recording daemon/panel daemon/socket

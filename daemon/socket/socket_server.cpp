@@ -1,6 +1,5 @@
 #include "daemon/socket/socket_server.h"
 
-#include <poll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -64,33 +63,26 @@ SocketServer::~SocketServer() = default;
 void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
   now_ = now;
   const bool accepts = now >= accepts_again_;
-  std::vector<pollfd> polled;
-  for (const Entrance& entrance : listeners_) {
-    polled.push_back({entrance.listener.get(), static_cast<short>(accepts ? POLLIN : 0), 0});
-  }
-  std::vector<std::uint64_t> ids(polled.size());
-  for (const auto& [id, client] : clients_) {
+  polled_.clear();
+  for (Entrance& entrance : listeners_) entrance.place = polled_.add(entrance.listener.get(), accepts);
+  for (auto& [id, client] : clients_) {
     // Nothing is read from a client that has not read its replies, or that has unprocessed lines from its
     // last turn.
     const bool writes = !client.output.empty();
-    const bool reads = client.ended_at == 0 && !has_line(client);
-    polled.push_back({client.socket.get(), static_cast<short>(writes ? POLLOUT : reads ? POLLIN : 0), 0});
-    ids.push_back(id);
+    const bool reads = !writes && client.ended_at == 0 && !has_line(client);
+    client.place = polled_.add(client.socket.get(), reads, writes);
   }
-  const Nanoseconds wait = lines_left_ ? 0 : std::max<Nanoseconds>(until - now, 0);
-  const timespec timeout{wait / ns_per_s, wait % ns_per_s};
-  if (::ppoll(polled.data(), polled.size(), &timeout, nullptr) > 0) {
-    for (std::size_t i = listeners_.size(); i < polled.size(); ++i) {
-      Client& client = clients_.at(ids[i]);
-      const bool gone = (polled[i].revents & (POLLERR | POLLHUP)) != 0;
-      if (gone) stop_writing(client);
-      if ((polled[i].revents & POLLOUT) != 0) write_to(client, now);
-      if ((polled[i].revents & POLLIN) != 0 || (gone && !has_line(client))) read_from(client);
-      if ((polled[i].revents & POLLNVAL) != 0) client.dead = true;
-    }
-    for (std::size_t i = 0; i < listeners_.size(); ++i) {
-      if ((polled[i].revents & POLLIN) != 0) accept_some(listeners_[i]);
-    }
+  // After a failure there are no events.
+  static_cast<void>(polled_.wait(lines_left_ ? 0 : std::max<Nanoseconds>(until - now, 0)));
+  for (auto& [id, client] : clients_) {
+    const net::PollSet::Events events = polled_[client.place];
+    if (events.ended()) stop_writing(client);
+    if (events.output()) write_to(client, now);
+    if (events.input() || (events.ended() && !has_line(client))) read_from(client);
+    if (events.invalid()) client.dead = true;
+  }
+  for (const Entrance& entrance : listeners_) {
+    if (polled_[entrance.place].input()) accept_some(entrance);
   }
   lines_left_ = false;
   // Clients that may stop or vent the rig are served first.

@@ -12,6 +12,7 @@
 #include <tl/expected.hpp>
 
 #include "base/descriptor.h"
+#include "base/net/poll_set.h"
 #include "daemon/socket/listener.h"
 #include "daemon/socket/role.h"
 #include "model/reading.h"
@@ -75,11 +76,13 @@ class SocketServer {
     bool deaf = false;              // true: the client does not read any more; the server still processes its
                                     // last lines
     bool dead = false;
+    net::PollSet::Place place;
   };
 
   struct Entrance {
     Role role;
     Listener listener;
+    net::PollSet::Place place = {};
   };
 
   explicit SocketServer(const rig::SocketSettings& settings) : settings_(settings) {}
@@ -100,6 +103,7 @@ class SocketServer {
   rig::SocketSettings settings_;
   std::vector<Entrance> listeners_;
   Handlers handlers_;
+  net::PollSet polled_;
   std::map<std::uint64_t, Client> clients_;
   std::uint64_t last_id_ = 0;
   Nanoseconds now_ = 0;

@@ -1,6 +1,5 @@
 #include "simulation/emulator/server.h"
 
-#include <poll.h>
 #include <sys/signalfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -8,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <ctime>
 #include <iterator>
 #include <vector>
 
@@ -39,42 +37,33 @@ Server::Server(Emulator& emulator, ServerSockets sockets)
 }
 
 void Server::run(const std::function<void()>& idle) {
-  std::vector<pollfd> watched;
+  net::PollSet polled;
+  std::vector<net::PollSet::Place> links(entrances_.size());
   while (!quit_) {
     plug_line();
-    watched.clear();
-    watched.push_back({sockets_.signals.get(), POLLIN, 0});
-    // If a listener is closed or pauses, its descriptor is -1, which poll() ignores.
-    watched.push_back({control_entrance_.descriptor(now()), POLLIN, 0});
-    for (const net::Entrance& entrance : entrances_)
-      watched.push_back({entrance.descriptor(now()), POLLIN, 0});
-    for (const ControlClient& client : control_clients_) watched.push_back({client.input(), POLLIN, 0});
-    for (const Client& client : clients_) {
-      const int events = client.connection.blocked() ? POLLIN | POLLOUT : POLLIN;
-      watched.push_back({client.connection.descriptor(), static_cast<short>(events), 0});
-    }
-    const std::chrono::nanoseconds wait = timeout();
-    const timespec limit{.tv_sec = wait.count() / 1'000'000'000, .tv_nsec = wait.count() % 1'000'000'000};
-    if (::ppoll(watched.data(), watched.size(), &limit, nullptr) < 0 && errno != EINTR) {
-      if (errno == EINVAL && give_up_client()) continue;
-      return;
-    }
+    polled.clear();
+    const auto signal = polled.add(sockets_.signals.get());
+    // If a listener is closed or pauses, its descriptor is -1, which has no events.
+    const auto control = polled.add(control_entrance_.descriptor(now()));
+    for (std::size_t link = 0; link < links.size(); ++link)
+      links[link] = polled.add(entrances_[link].descriptor(now()));
+    for (ControlClient& client : control_clients_) client.place = polled.add(client.input());
+    for (Client& client : clients_)
+      client.place = polled.add(client.connection.descriptor(), true, client.connection.blocked());
+    const auto outcome = polled.wait(timeout());
+    if (outcome == net::PollSet::Outcome::too_many && give_up_client()) continue;
+    if (outcome != net::PollSet::Outcome::over) return;
 
     emulator_.advance(now());
-    auto watch = watched.begin() + 2 + static_cast<std::ptrdiff_t>(entrances_.size());
     for (ControlClient& client : control_clients_) {
-      if ((watch++)->revents != 0) read_control(client);
+      if (polled[client.place]) read_control(client);
     }
     std::erase_if(control_clients_, [](const ControlClient& client) { return !client.open; });
-    std::erase_if(clients_, [&](Client& client) {
-      bool open = true;
-      serve(client, (watch++)->revents, open);
-      return !open;
-    });
-    if (watched[0].revents != 0) take_signal();
-    if (watched[1].revents != 0) accept_control();
-    for (std::size_t link = 0; link < entrances_.size(); ++link) {
-      if (watched[2 + link].revents != 0) accept_modbus(link);
+    std::erase_if(clients_, [&](Client& client) { return !serve(client, polled[client.place]); });
+    if (polled[signal]) take_signal();
+    if (polled[control]) accept_control();
+    for (std::size_t link = 0; link < links.size(); ++link) {
+      if (polled[links[link]]) accept_modbus(link);
     }
     count_clients();
     idle();
@@ -109,23 +98,24 @@ Nanoseconds Server::now() const {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start_).count();
 }
 
-std::chrono::nanoseconds Server::timeout() const {
+Nanoseconds Server::timeout() const {
   const Clock::time_point now = Clock::now();
   Clock::time_point wake = now + longest_wait;
   for (const Client& client : clients_) {
     const auto due = client.connection.next_due();
     if (due && !client.connection.blocked()) wake = std::min(wake, *due);
   }
-  return std::max(std::chrono::nanoseconds{0}, std::chrono::nanoseconds(wake - now));
+  return std::max<Nanoseconds>(0, std::chrono::nanoseconds(wake - now).count());
 }
 
-void Server::serve(Client& client, short events, bool& open) {
-  if ((events & (POLLIN | POLLHUP | POLLERR)) != 0) {
+bool Server::serve(Client& client, net::PollSet::Events events) {
+  bool open = true;
+  if (events.input() || events.ended()) {
     open = client.connection.receive([&](const Request& request) {
       return emulator_.serve(now(), request, client.link, client.opened_at);
     });
   }
-  open = open && client.connection.send_due(Clock::now()) && emulator_.reachable();
+  return open && client.connection.send_due(Clock::now()) && emulator_.reachable();
 }
 
 void Server::accept_modbus(std::size_t link) {

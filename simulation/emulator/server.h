@@ -11,6 +11,7 @@
 
 #include "base/descriptor.h"
 #include "base/net/entrance.h"
+#include "base/net/poll_set.h"
 #include "simulation/emulator/emulator.h"
 #include "simulation/emulator/serial_end.h"
 #include "simulation/emulator/wire.h"
@@ -40,11 +41,12 @@ class Server {
     Descriptor socket;  ///< socket of the client; empty: the client is the standard input
     std::string pending;
     bool open = true;
+    net::PollSet::Place place = {};
     [[nodiscard]] int input() const noexcept;
   };
 
   [[nodiscard]] Nanoseconds now() const;
-  [[nodiscard]] std::chrono::nanoseconds timeout() const;
+  [[nodiscard]] Nanoseconds timeout() const;
   /// Closes a client, because the limit of descriptors was lowered. Returns false if there is no client to
   /// close.
   [[nodiscard]] bool give_up_client();
@@ -57,8 +59,10 @@ class Server {
     Connection connection;
     std::size_t link = 0;
     Nanoseconds opened_at = 0;
+    net::PollSet::Place place = {};
   };
-  void serve(Client& client, short events, bool& open);
+  /// Processes the events of a client. Returns false if the client has ended or must be disconnected.
+  [[nodiscard]] bool serve(Client& client, net::PollSet::Events events);
   void read_control(ControlClient& client);
   void answer_control(const ControlClient& client, std::string_view line);
 

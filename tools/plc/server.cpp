@@ -1,17 +1,13 @@
 #include "tools/plc/server.h"
 
 #include <netdb.h>
-#include <poll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <string_view>
 #include <utility>
-#include <vector>
 
-#include "base/net/listener.h"
 #include "base/periodic_schedule.h"
 
 namespace softgrip::plc {
@@ -39,30 +35,23 @@ Server::Server(const Settings& settings, Gateway& gateway, Descriptor listener, 
       signals_(std::move(signals)) {}
 
 void Server::run() {
-  std::vector<pollfd> watched;
-  constexpr std::size_t others = 3;
-  const timespec pause{0, Gateway::longest_pause};
-  for (;;) {
-    watched.assign({{signals_.get(), POLLIN, 0},
-                    {entrance_.descriptor(clock_.now()), POLLIN, 0},
-                    {daemon_.descriptor(), POLLIN, 0}});
-    for (const Line& line : lines_) {
-      const int events = line.connection.blocked() ? POLLIN | POLLOUT : POLLIN;
-      watched.push_back({line.connection.descriptor(), static_cast<short>(events), 0});
-    }
-    if (::ppoll(watched.data(), watched.size(), &pause, nullptr) < 0 && errno != EINTR) {
-      if (errno == EINVAL && give_up_line()) continue;
-      return;
-    }
-    if (watched[0].revents != 0) return;
+  net::PollSet polled;
+  for (;; polled.clear()) {
+    const auto signal = polled.add(signals_.get());
+    const auto newcomer = polled.add(entrance_.descriptor(clock_.now()));
+    polled.add(daemon_.descriptor());
+    for (Line& line : lines_)
+      line.place = polled.add(line.connection.descriptor(), true, line.connection.blocked());
+    const auto outcome = polled.wait(Gateway::longest_pause);
+    if (outcome == net::PollSet::Outcome::too_many && give_up_line()) continue;
+    if (outcome != net::PollSet::Outcome::over || polled[signal]) return;
     const Nanoseconds now = clock_.now();
     daemon_.receive(now);
     gateway_.look_after(now);
-    auto watch = watched.begin() + others;
     for (Line& line : lines_) {
-      if (!serve(line, (watch++)->revents, now)) gateway_.masters().leave(line.master);
+      if (!serve(line, polled[line.place], now)) gateway_.masters().leave(line.master);
     }
-    if (watched[1].revents != 0) accept(now);
+    if (polled[newcomer]) accept(now);
     std::erase_if(lines_, [&](const Line& line) { return !gateway_.masters().has(line.master); });
     daemon_.send();
   }
@@ -87,11 +76,11 @@ void Server::accept(Nanoseconds now) {
     lines_.push_back({*master, modbus::Connection(std::move(socket))});
 }
 
-bool Server::serve(Line& line, short events, Nanoseconds now) {
+bool Server::serve(Line& line, net::PollSet::Events events, Nanoseconds now) {
   Master* const master = gateway_.masters().find(line.master);
   if (master == nullptr) return false;
   bool open = true;
-  if ((events & (POLLIN | POLLHUP | POLLERR)) != 0) {
+  if (events.input() || events.ended()) {
     open = line.connection.receive(
         [&](const modbus::Request& request) { return gateway_.serve(line.master, request, now); });
     master->half = line.connection.half();

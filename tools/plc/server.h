@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/descriptor.h"
 #include "base/net/entrance.h"
+#include "base/net/poll_set.h"
 #include "drivers/modbus_server/connection.h"
 #include "tools/plc/daemon_line.h"
 #include "tools/plc/gateway.h"
@@ -25,13 +26,14 @@ class Server {
   struct Line {
     Masters::Id master;
     modbus::Connection connection;
+    net::PollSet::Place place = {};
   };
   /// Closes one connection, because the process may not have as many descriptors as it uses. Returns false if
   /// there is no connection to close.
   [[nodiscard]] bool give_up_line();
   void accept(Nanoseconds now);
   /// Processes the events of a connection. Returns false if it has ended or must be closed.
-  [[nodiscard]] bool serve(Line& line, short events, Nanoseconds now);
+  [[nodiscard]] bool serve(Line& line, net::PollSet::Events events, Nanoseconds now);
 
   const Settings& settings_;
   Gateway& gateway_;

@@ -1,11 +1,9 @@
 #include "tools/web/server.h"
 
-#include <poll.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <string_view>
 #include <utility>
 
@@ -68,37 +66,30 @@ void Server::run() {
 }
 
 void Server::serve_until_signal() {
-  std::vector<pollfd> watched;
-  constexpr std::size_t others = 5;
-  const timespec pause{0, longest_pause};
-  for (;;) {
-    watched.assign({{signals_.get(), POLLIN, 0},
-                    {entrance_.descriptor(clock_.now()), POLLIN, 0},
-                    {watch_.descriptor(), POLLIN, 0},
-                    {commander_.descriptor(), POLLIN, 0},
-                    {archive_.descriptor(), POLLIN, 0}});
-    for (const Visitor& visitor : visitors_) {
-      const int reads = visitor.client.said_all() ? 0 : POLLIN;
-      const int writes = visitor.client.has_to_send() ? POLLOUT : 0;
-      watched.push_back({visitor.client.descriptor(), static_cast<short>(reads | writes), 0});
+  net::PollSet polled;
+  for (;; polled.clear()) {
+    const auto signal = polled.add(signals_.get());
+    const auto newcomer = polled.add(entrance_.descriptor(clock_.now()));
+    polled.add(watch_.descriptor());
+    polled.add(commander_.descriptor());
+    const auto disk = polled.add(archive_.descriptor());
+    for (Visitor& visitor : visitors_) {
+      const Client& client = visitor.client;
+      visitor.place = polled.add(client.descriptor(), !client.said_all(), client.has_to_send());
     }
-    if (::ppoll(watched.data(), watched.size(), &pause, nullptr) < 0 && errno != EINTR) {
-      if (errno == EINVAL && give_up_places()) continue;
-      return;
-    }
-    if (watched[0].revents != 0) return;
+    const auto outcome = polled.wait(longest_pause);
+    if (outcome == net::PollSet::Outcome::too_many && give_up_places()) continue;
+    if (outcome != net::PollSet::Outcome::over || polled[signal]) return;
     const Nanoseconds now = clock_.now();
     watch_.look_after(now);
     commander_.look_after(now);
-    if (watched[4].revents != 0) archive_.hear();
-    auto found = watched.begin() + others;
+    if (polled[disk]) archive_.hear();
     for (Visitor& visitor : visitors_) {
-      const short events = (found++)->revents;
-      if (!visitor.leaves) look_after(visitor, events, now);
+      if (!visitor.leaves) look_after(visitor, polled[visitor.place], now);
     }
     tell_news(now);
     remove_leaving();
-    if (watched[1].revents != 0) accept(now);
+    if (polled[newcomer]) accept(now);
     count();
   }
 }
@@ -144,9 +135,9 @@ void Server::accept(Nanoseconds now) {
   }
 }
 
-void Server::look_after(Visitor& visitor, short events, Nanoseconds now) {
+void Server::look_after(Visitor& visitor, net::PollSet::Events events, Nanoseconds now) {
   Client& client = visitor.client;
-  if ((events & (POLLIN | POLLHUP | POLLERR)) != 0) {
+  if (events.input() || events.ended()) {
     visitor.leaves = !client.receive();
     if (!visitor.leaves && client.phase() == Phase::asking) {
       serve(visitor, now);

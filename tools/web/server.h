@@ -10,6 +10,7 @@
 #include "base/clock.h"
 #include "base/descriptor.h"
 #include "base/net/entrance.h"
+#include "base/net/poll_set.h"
 #include "tools/web/archive.h"
 #include "tools/web/client.h"
 #include "tools/web/commander.h"
@@ -43,6 +44,7 @@ class Server {
     std::shared_ptr<const DiskTask> task;  // pending request to the disk
     Nanoseconds gives_up_at = 0;           // time at which the wait for the disk ends without a result
     bool leaves = false;                   // true: the visitor is removed at the end of this cycle
+    net::PollSet::Place place = {};
   };
   /// The visitors that are not marked for removal, with the properties that decide which of them is closed.
   struct Crowd {
@@ -54,7 +56,7 @@ class Server {
   /// Closes the newest visitors if the process may have fewer descriptors than before.
   [[nodiscard]] bool give_up_places();
   void accept(Nanoseconds now);
-  void look_after(Visitor& visitor, short events, Nanoseconds now);
+  void look_after(Visitor& visitor, net::PollSet::Events events, Nanoseconds now);
   void serve(Visitor& visitor, Nanoseconds now);
   void ask_disk(Visitor& visitor, DiskRequest disk_request, Nanoseconds now);
   void answer(Visitor& visitor, Outcome outcome, Nanoseconds now);
