@@ -122,7 +122,7 @@ endif()
 # The programs.
 softgrip_room(tools/command_line USES base document model model/file LIBRARIES CLI11::CLI11)
 target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_CONFIG_DIR="${SOFTGRIP_CONFIGURATION}")
-softgrip_room(tools/client USES base document control/tick control/elements rig tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_room(tools/client USES base base/net document control/tick control/elements rig tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
 # Gateways: separate processes between the daemon's socket and a network.
 softgrip_room(tools/plc USES base base/net control/elements drivers/modbus_server rig/plc_file tools/client
   LIBRARIES nlohmann_json::nlohmann_json)
@@ -153,7 +153,7 @@ softgrip_room(tools/exporting
 target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio)
 # Commands that move a rig without the daemon: doctor and calibrate.
 softgrip_room(tools/commissioning
-  USES base document model model/file control/elements control/feedforward drivers/board drivers/modbus rig/plc_file
+  USES base base/net document model model/file control/elements control/feedforward drivers/board drivers/modbus rig/plc_file
        rig/web_file rig daemon/loop daemon/recording tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/investigation

@@ -3,7 +3,6 @@
 #include <sys/socket.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <optional>
@@ -38,8 +37,6 @@ constexpr Nanoseconds accept_pause = ns_per_s / 10;
 constexpr Nanoseconds longest_stall = 10 * ns_per_s;
 /// Longest time for which a client that has closed its sending side may wait for its replies [ns].
 constexpr Nanoseconds answer_pause = 2 * ns_per_s;
-/// Largest number of bytes that are read from one client per turn.
-constexpr std::size_t read_bytes = 16 * 1024;
 
 }  // namespace
 
@@ -69,7 +66,7 @@ void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
     // Nothing is read from a client that has not read its replies, or that has unprocessed lines from its
     // last turn.
     const bool writes = !client.output.empty();
-    const bool reads = !writes && client.ended_at == 0 && !has_line(client);
+    const bool reads = !writes && client.ended_at == 0 && !client.input.has_line();
     client.place = polled_.add(client.socket.get(), reads, writes);
   }
   // After a failure there are no events.
@@ -78,7 +75,7 @@ void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
     const net::PollSet::Events events = polled_[client.place];
     if (events.ended()) stop_writing(client);
     if (events.output()) write_to(client, now);
-    if (events.input() || (events.ended() && !has_line(client))) read_from(client);
+    if (events.input() || (events.ended() && !client.input.has_line())) read_from(client);
     if (events.invalid()) client.dead = true;
   }
   for (const Entrance& entrance : listeners_) {
@@ -90,7 +87,7 @@ void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
     for (auto& [id, client] : clients_) {
       if (client.role != role) continue;
       take_lines(id, client);
-      lines_left_ = lines_left_ || (!client.dead && client.output.empty() && has_line(client));
+      lines_left_ = lines_left_ || (!client.dead && client.output.empty() && client.input.has_line());
     }
   }
   sweep(now);
@@ -188,40 +185,27 @@ void SocketServer::hear(std::uint64_t id, Client& client, std::string_view line)
 
 void SocketServer::read_from(Client& client) {
   if (client.closing) return;
-  std::array<char, read_bytes> buffer;
-  const ssize_t count = recv(client.socket.get(), buffer.data(), buffer.size(), 0);
-  if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
-  if (count <= 0) {
-    // A client such as `echo ... | socat` sends no more lines, but waits for the reply.
-    client.ended_at = now_;
-    return;
-  }
-  client.input.append(buffer.data(), static_cast<std::size_t>(count));
-}
-
-bool SocketServer::has_line(const Client& client) {
-  return client.input.find('\n') != std::string::npos;
+  // A client such as `echo ... | socat` sends no more lines, but waits for the reply.
+  if (client.input.receive(client.socket.get()) == net::LineBuffer::Received::end) client.ended_at = now_;
 }
 
 /// Processes the lines of a client until its turn ends, or until the client has not read all replies.
 void SocketServer::take_lines(std::uint64_t id, Client& client) {
   const auto began = std::chrono::steady_clock::now();
-  std::size_t begin = 0;
-  for (std::size_t end = client.input.find('\n');
-       end != std::string::npos && !client.dead && client.output.empty();
-       end = client.input.find('\n', begin)) {
-    std::string_view line(client.input.data() + begin, end - begin);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    if (line.size() > settings_.max_line_bytes) break;
+  bool too_long = false;
+  while (!client.dead && client.output.empty()) {
+    const auto next = client.input.next();
+    if (!next) break;
+    const std::string_view line = net::without_cr(*next);
+    too_long = line.size() > settings_.max_line_bytes;
+    if (too_long) break;
     client.active_at = now_;
     client.spoke = true;
     if (!line.empty()) hear(id, client, line);
-    begin = client.stands ? client.input.size() : end + 1;
+    if (client.stands) client.input.clear();
     if (std::chrono::steady_clock::now() - began > longest_turn) break;
   }
-  client.input.erase(0, begin);
-  // A line that is too long may not be complete yet.
-  if (std::min(client.input.find('\n'), client.input.size()) > settings_.max_line_bytes) {
+  if (too_long || client.input.exceeds(settings_.max_line_bytes)) {
     send(id,
          error_line(std::nullopt, "too_long",
                     fmt::format("a line may have at most {} bytes", settings_.max_line_bytes)),
@@ -277,7 +261,7 @@ void SocketServer::sweep(Nanoseconds now) {
     Client& client = entry->second;
     const bool stalled = client.stalled_since != 0 && now - client.stalled_since > longest_stall;
     const bool waits = !client.deaf && now - client.ended_at <= answer_pause;
-    const bool left = client.ended_at != 0 && !waits && !has_line(client);
+    const bool left = client.ended_at != 0 && !waits && !client.input.has_line();
     const bool done = (client.closing || left) && client.output.empty();
     if (!client.dead && !stalled && !done) {
       ++entry;

@@ -12,6 +12,7 @@
 #include <tl/expected.hpp>
 
 #include "base/descriptor.h"
+#include "base/net/line_buffer.h"
 #include "base/net/poll_set.h"
 #include "daemon/socket/listener.h"
 #include "daemon/socket/role.h"
@@ -63,7 +64,7 @@ class SocketServer {
   struct Client {
     Descriptor socket;
     Role role = Role::look;
-    std::string input;
+    net::LineBuffer input;
     std::string output;
     Nanoseconds stalled_since = 0;  // time since which the client has not read the waiting output; 0: no
                                     // output waits
@@ -95,7 +96,6 @@ class SocketServer {
   void hear(std::uint64_t id, Client& client, std::string_view line);
   void read_from(Client& client);
   void take_lines(std::uint64_t id, Client& client);
-  [[nodiscard]] static bool has_line(const Client& client);
   void write_to(Client& client, Nanoseconds now);
   static void stop_writing(Client& client);
   void sweep(Nanoseconds now);

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <iterator>
 #include <vector>
@@ -18,6 +17,7 @@ namespace {
 constexpr std::size_t max_modbus_clients = 32;
 constexpr std::size_t max_control_clients = 8;
 constexpr std::size_t max_control_line = 1024;
+constexpr std::size_t max_control_read = 512;
 // Longest wait in poll(). The limit is needed so that the truth log and scheduled faults are not late.
 constexpr std::chrono::milliseconds longest_wait{20};
 
@@ -156,20 +156,9 @@ void Server::take_signal() {
 }
 
 void Server::read_control(ControlClient& client) {
-  std::array<char, 512> buffer;
-  const ssize_t count = ::read(client.input(), buffer.data(), buffer.size());
-  if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
-  if (count <= 0) {
-    client.open = false;
-    return;
-  }
-  client.pending.append(buffer.data(), static_cast<std::size_t>(count));
-  std::size_t end = 0;
-  while ((end = client.pending.find('\n')) != std::string::npos) {
-    answer_control(client, std::string_view(client.pending).substr(0, end));
-    client.pending.erase(0, end + 1);
-  }
-  if (client.pending.size() > max_control_line) client.open = false;
+  const auto received = client.pending.receive(client.input(), max_control_read);
+  while (const auto line = client.pending.next()) answer_control(client, *line);
+  client.open = received != net::LineBuffer::Received::end && !client.pending.exceeds(max_control_line);
 }
 
 void Server::answer_control(const ControlClient& client, std::string_view line) {

@@ -11,6 +11,7 @@
 
 #include "base/descriptor.h"
 #include "base/net/entrance.h"
+#include "base/net/line_buffer.h"
 #include "base/net/poll_set.h"
 #include "simulation/emulator/emulator.h"
 #include "simulation/emulator/serial_end.h"
@@ -39,7 +40,7 @@ class Server {
  private:
   struct ControlClient {
     Descriptor socket;  ///< socket of the client; empty: the client is the standard input
-    std::string pending;
+    net::LineBuffer pending;
     bool open = true;
     net::PollSet::Place place = {};
     [[nodiscard]] int input() const noexcept;

@@ -5,7 +5,6 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
-#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -145,23 +144,18 @@ tl::expected<Json, ClientFailure> DaemonClient::ask(const Json& request, std::ch
 tl::expected<std::optional<Json>, ClientFailure> DaemonClient::next_line(std::chrono::milliseconds patience) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point end = Clock::now() + patience;
-  std::size_t line_end = 0;
-  for (std::size_t searched = 0; (line_end = pending_.find('\n', searched)) == std::string::npos;) {
-    if (pending_.size() > longest_line) return tl::unexpected{malformed("a line is longer than 8 MiB")};
-    searched = pending_.size();
+  auto next = pending_.next();
+  for (; !next; next = pending_.next()) {
+    if (pending_.exceeds(longest_line)) return tl::unexpected{malformed("a line is longer than 8 MiB")};
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count();
     pollfd watched{socket_.get(), POLLIN, 0};
     const int ready = ::poll(&watched, 1, static_cast<int>(std::max<std::int64_t>(left, 0)));
     if (ready < 0 && errno == EINTR) return std::optional<Json>{};
     if (ready == 0) return std::optional<Json>{};
-    std::array<char, 16384> buffer;
-    const ssize_t count = ::recv(socket_.get(), buffer.data(), buffer.size(), 0);
-    if (count <= 0) return tl::unexpected{gone()};
-    pending_.append(buffer.data(), static_cast<std::size_t>(count));
+    if (pending_.receive(socket_.get()) != net::LineBuffer::Received::bytes) return tl::unexpected{gone()};
   }
-  auto line = parse_reply(std::string_view(pending_).substr(0, line_end));
+  auto line = parse_reply(*next);
   if (!line) return tl::unexpected{malformed(line.error())};
-  pending_.erase(0, line_end + 1);
   return std::optional<Json>{std::move(*line)};
 }
 

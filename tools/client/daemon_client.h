@@ -11,6 +11,7 @@
 
 #include "base/descriptor.h"
 #include "base/exit_code.h"
+#include "base/net/line_buffer.h"
 
 namespace softgrip::tools {
 
@@ -71,7 +72,7 @@ class DaemonClient {
 
   Descriptor socket_;
   std::string path_;
-  std::string pending_;
+  net::LineBuffer pending_;
   bool deaf_ = false;  // true: the daemon did not accept a request in time
 };
 

@@ -28,18 +28,14 @@ std::optional<std::string> TerminalOperator::answer() {
   if (auto line = take_line()) return line;
   pollfd input{STDIN_FILENO, POLLIN, 0};
   if (closed_ || ::poll(&input, 1, 0) <= 0) return std::nullopt;
-  char bytes[256];
-  const ssize_t count = ::read(STDIN_FILENO, bytes, sizeof bytes);
-  closed_ = count <= 0;
-  if (count > 0) pending_.append(bytes, static_cast<std::size_t>(count));
+  closed_ = pending_.receive(STDIN_FILENO, 256) != net::LineBuffer::Received::bytes;
   return take_line();
 }
 
 std::optional<std::string> TerminalOperator::take_line() {
-  const std::size_t end = pending_.find('\n');
-  if (end == std::string::npos) return std::nullopt;
-  std::string line = pending_.substr(0, end);
-  pending_.erase(0, end + 1);
+  const auto next = pending_.next();
+  if (!next) return std::nullopt;
+  std::string line(*next);
   if (!interactive_) std::fprintf(stderr, "%s\n", line.c_str());
   return line;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/net/line_buffer.h"
 #include "tools/commissioning/procedure.h"
 
 namespace softgrip::tools::calibrate {
@@ -20,7 +21,7 @@ class TerminalOperator final : public Operator {
   void tell(const std::string& text) override;
   void ask(const std::string& question) override;
   std::optional<std::string> answer() override;
-  [[nodiscard]] bool gone() const override { return closed_ && pending_.find('\n') == std::string::npos; }
+  [[nodiscard]] bool gone() const override { return closed_ && !pending_.has_line(); }
   [[nodiscard]] bool patient() const override { return interactive_; }
 
  private:
@@ -28,7 +29,7 @@ class TerminalOperator final : public Operator {
 
   bool interactive_;
   bool closed_ = false;
-  std::string pending_;
+  net::LineBuffer pending_;
   std::deque<std::string> prepared_;
 };
 
