@@ -8,13 +8,6 @@
 #include "base/net/listener.h"
 
 namespace softgrip::net {
-namespace {
-
-bool is_shortage(int error) {
-  return error == EMFILE || error == ENFILE || error == ENOBUFS || error == ENOMEM;
-}
-
-}  // namespace
 
 Entrance::Entrance(Descriptor listener) : listener_(std::move(listener)) {
   take_spares();

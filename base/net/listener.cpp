@@ -6,7 +6,6 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -15,10 +14,6 @@
 
 namespace softgrip::net {
 namespace {
-
-// If the queue is full, the kernel drops the first packet of a client. The client then waits 1 s before it
-// tries again.
-constexpr int backlog = 128;
 
 tl::unexpected<std::string> failure(const std::string& what) {
   return tl::unexpected{"cannot listen on " + what + ": " + std::strerror(errno)};
@@ -74,21 +69,32 @@ tl::expected<Listener, std::string> listen_tcp(const std::string& address, std::
   return Listener{std::move(socket), bound};
 }
 
-tl::expected<Descriptor, std::string> listen_unix(const std::string& path) {
+std::optional<sockaddr_un> unix_address(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  if (path.size() >= sizeof address.sun_path)
-    return tl::unexpected{"the path " + path + " is too long for a socket"};
+  if (path.size() >= sizeof address.sun_path) return std::nullopt;
   std::memcpy(address.sun_path, path.data(), path.size());
+  return address;
+}
 
+bool connect_unix(const Descriptor& socket, const sockaddr_un& address) noexcept {
+  return ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+}
+
+bool bind_unix(const Descriptor& socket, const sockaddr_un& address) noexcept {
+  const mode_t mask = ::umask(0177);
+  const int bound = ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  ::umask(mask);
+  return bound == 0;
+}
+
+tl::expected<Descriptor, std::string> listen_unix(const std::string& path) {
+  const auto address = unix_address(path);
+  if (!address) return tl::unexpected{"the path " + path + " is too long for a socket"};
   struct stat status {};
   if (::lstat(path.c_str(), &status) == 0 && S_ISSOCK(status.st_mode)) ::unlink(path.c_str());
   Descriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-  const mode_t mask = ::umask(0177);
-  const bool bound =
-      socket && ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  ::umask(mask);
-  if (!bound || ::listen(socket.get(), backlog) != 0) return failure(path);
+  if (!socket || !bind_unix(socket, *address) || ::listen(socket.get(), backlog) != 0) return failure(path);
   return socket;
 }
 
@@ -100,6 +106,10 @@ Descriptor accept_client(const Descriptor& listener) {
     ::setsockopt(client.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   }
   return client;
+}
+
+bool is_shortage(int error) noexcept {
+  return error == EMFILE || error == ENFILE || error == ENOBUFS || error == ENOMEM;
 }
 
 }  // namespace softgrip::net

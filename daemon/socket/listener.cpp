@@ -3,23 +3,21 @@
 #include <grp.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "base/net/listener.h"
+
 namespace softgrip::daemon {
 
 namespace {
-
-constexpr int backlog = 128;
 
 using Failure = tl::unexpected<std::string>;
 
@@ -27,20 +25,10 @@ Failure failure(const std::string& path, std::string_view what) {
   return Failure(fmt::format("{}: {}: {}", path, what, std::strerror(errno)));
 }
 
-/// Returns the address of a socket file; empty if the path is too long for a socket.
-std::optional<sockaddr_un> address_of(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.size() >= sizeof address.sun_path) return std::nullopt;
-  std::memcpy(address.sun_path, path.data(), path.size());
-  return address;
-}
-
 /// Returns true if a program listens at the address. If none listens, errno gives the reason.
 bool answers(const sockaddr_un& address) {
-  const Descriptor probe(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  const auto* generic = reinterpret_cast<const sockaddr*>(&address);
-  return connect(probe.get(), generic, sizeof address) == 0 || errno == EAGAIN;
+  const Descriptor probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  return net::connect_unix(probe, address) || errno == EAGAIN;
 }
 
 /// Removes the socket file of a daemon that has ended. Returns false if a daemon responds on this socket.
@@ -70,16 +58,15 @@ bool give_rights(const rig::SocketFile& file) {
 }  // namespace
 
 Descriptor connect_to(const std::string& path) {
-  const auto address = address_of(path);
+  const auto address = net::unix_address(path);
   if (path.empty() || !address) return {};
   Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  if (connect(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0)
-    socket.reset();
+  if (!net::connect_unix(socket, *address)) socket.reset();
   return socket;
 }
 
 tl::expected<Listener, std::string> Listener::open(const rig::SocketFile& file) {
-  const auto address = address_of(file.path);
+  const auto address = net::unix_address(file.path);
   if (!address) {
     return Failure(fmt::format("{}: the path of a socket may have at most {} bytes", file.path,
                                sizeof address->sun_path - 1));
@@ -92,16 +79,13 @@ tl::expected<Listener, std::string> Listener::open(const rig::SocketFile& file) 
   Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (!socket) return failure(file.path, "socket");
   // Between bind() and chmod(), no other user must be able to connect.
-  const mode_t before = umask(0177);
-  const int bound = bind(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address);
-  umask(before);
-  if (bound != 0) return failure(file.path, "bind");
+  if (!net::bind_unix(socket, *address)) return failure(file.path, "bind");
   if (!give_rights(file)) {
     const auto problem = failure(file.path, fmt::format("mode {:o} group '{}'", file.mode, file.group));
     unlink(file.path.c_str());
     return problem;
   }
-  if (::listen(socket.get(), backlog) != 0) return failure(file.path, "listen");
+  if (::listen(socket.get(), net::backlog) != 0) return failure(file.path, "listen");
   struct stat status {};
   if (lstat(file.path.c_str(), &status) != 0) return failure(file.path, "its own file");
   Listener listener(file.path, std::move(socket));

@@ -29,7 +29,7 @@ class Listener {
   /// Removes the socket file, if it is still the file that this object created.
   ~Listener();
 
-  [[nodiscard]] int get() const noexcept { return socket_.get(); }
+  [[nodiscard]] const Descriptor& socket() const noexcept { return socket_; }
 
  private:
   Listener(std::string path, Descriptor socket) : path_(std::move(path)), socket_(std::move(socket)) {}

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "base/net/listener.h"
 #include "base/periodic_schedule.h"
 #include "daemon/socket/reply_json.h"
 
@@ -61,7 +62,8 @@ void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
   now_ = now;
   const bool accepts = now >= accepts_again_;
   polled_.clear();
-  for (Entrance& entrance : listeners_) entrance.place = polled_.add(entrance.listener.get(), accepts);
+  for (Entrance& entrance : listeners_)
+    entrance.place = polled_.add(entrance.listener.socket().get(), accepts);
   for (auto& [id, client] : clients_) {
     // Nothing is read from a client that has not read its replies, or that has unprocessed lines from its
     // last turn.
@@ -121,10 +123,8 @@ void SocketServer::accept_some(const Entrance& entrance) {
 /// descriptor.
 Descriptor SocketServer::accept_one(const Entrance& entrance) {
   for (;;) {
-    Descriptor socket(accept4(entrance.listener.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-    const bool none_left =
-        !socket && (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM);
-    if (!none_left) return socket;
+    Descriptor socket = net::accept_client(entrance.listener.socket());
+    if (socket || !net::is_shortage(errno)) return socket;
     if (displace_one(Role::look, true)) continue;
     if (entrance.role == Role::operate && displace_one(Role::operate, true)) continue;
     accepts_again_ = now_ + accept_pause;

@@ -3,13 +3,13 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <sys/un.h>
 
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "base/net/listener.h"
 #include "tools/client/reply_check.h"
 
 namespace softgrip::tools {
@@ -96,17 +96,14 @@ tl::expected<DaemonClient, ClientFailure> DaemonClient::connect_at_once(const st
 
 tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::string& path, int flags,
                                                                 std::chrono::milliseconds send_limit) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.size() >= sizeof address.sun_path) {
+  const auto address = net::unix_address(path);
+  if (!address)
     return tl::unexpected{ClientFailure{ExitCode::io, "the path " + path + " is too long for a socket"}};
-  }
-  std::memcpy(address.sun_path, path.data(), path.size());
   Descriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | flags, 0)};
   const timeval limit{send_limit.count() / 1000, send_limit.count() % 1000 * 1000};
   // SO_SNDTIMEO limits the duration of connect() as well as that of send().
   if (!socket || ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit) != 0 ||
-      ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+      !net::connect_unix(socket, *address)) {
     return tl::unexpected{cannot_connect(path, errno)};
   }
   return DaemonClient{std::move(socket), path};

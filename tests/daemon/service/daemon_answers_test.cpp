@@ -35,9 +35,9 @@ class Replying {
     return std::move(*Listener::open(file));
   }
   void serve() {
-    pollfd waiting{listener_.get(), POLLIN, 0};
+    pollfd waiting{listener_.socket().get(), POLLIN, 0};
     EXPECT_EQ(::poll(&waiting, 1, 10'000), 1);
-    const Descriptor client(::accept(listener_.get(), nullptr, nullptr));
+    const Descriptor client(::accept(listener_.socket().get(), nullptr, nullptr));
     std::array<char, 1000> text{};
     const ssize_t count = ::read(client.get(), text.data(), text.size());
     EXPECT_NE(std::string(text.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0))).find("status"),
