@@ -1,6 +1,7 @@
 #include "base/net/listener.h"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -11,6 +12,7 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <utility>
 
 namespace softgrip::net {
 namespace {
@@ -110,6 +112,27 @@ Descriptor accept_client(const Descriptor& listener) {
 
 bool is_shortage(int error) noexcept {
   return error == EMFILE || error == ENFILE || error == ENOBUFS || error == ENOMEM;
+}
+
+Entrance::Entrance(Descriptor listener) : listener_(std::move(listener)) {
+  take_spares();
+}
+
+Descriptor Entrance::accept(Nanoseconds now) {
+  take_spares();
+  Descriptor client = accept_client(listener_);
+  short_ = !client && is_shortage(errno);
+  if (!short_) return client;
+  for (Descriptor& spare : spares_) spare.reset();
+  client = accept_client(listener_);
+  if (!client) rests_until_ = now + rest;
+  return client;
+}
+
+void Entrance::take_spares() noexcept {
+  for (Descriptor& spare : spares_) {
+    if (!spare && listener_) spare = Descriptor{::fcntl(listener_.get(), F_DUPFD_CLOEXEC, 0)};
+  }
 }
 
 }  // namespace softgrip::net

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "base/descriptor.h"
-#include "base/net/entrance.h"
 #include "base/net/line_buffer.h"
+#include "base/net/listener.h"
 #include "base/net/poll_set.h"
 #include "simulation/emulator/emulator.h"
 #include "simulation/emulator/serial_end.h"

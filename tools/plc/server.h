@@ -7,7 +7,7 @@
 
 #include "base/clock.h"
 #include "base/descriptor.h"
-#include "base/net/entrance.h"
+#include "base/net/listener.h"
 #include "base/net/poll_set.h"
 #include "drivers/modbus_server/connection.h"
 #include "tools/plc/daemon_line.h"

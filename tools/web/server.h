@@ -9,7 +9,7 @@
 
 #include "base/clock.h"
 #include "base/descriptor.h"
-#include "base/net/entrance.h"
+#include "base/net/listener.h"
 #include "base/net/poll_set.h"
 #include "tools/web/archive.h"
 #include "tools/web/client.h"

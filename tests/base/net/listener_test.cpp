@@ -1,4 +1,4 @@
-#include "base/net/entrance.h"
+#include "base/net/listener.h"
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -9,9 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/net/listener.h"
-
-namespace softgrip::net::entrance_test {
+namespace softgrip::net::listener_test {
 namespace {
 
 class EntranceTest : public ::testing::Test {
@@ -109,4 +107,4 @@ TEST_F(EntranceTest, WithoutAListenerNoClientComes) {
 }
 
 }  // namespace
-}  // namespace softgrip::net::entrance_test
+}  // namespace softgrip::net::listener_test
