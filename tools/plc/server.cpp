@@ -30,7 +30,7 @@ std::string address_of(int socket) {
 Server::Server(const Settings& settings, Gateway& gateway, Descriptor listener, Descriptor signals)
     : settings_(settings),
       gateway_(gateway),
-      daemon_(settings.socket, gateway),
+      daemon_(settings.socket),
       entrance_(std::move(listener)),
       signals_(std::move(signals)) {}
 
@@ -46,14 +46,17 @@ void Server::run() {
     if (outcome == net::PollSet::Outcome::too_many && give_up_line()) continue;
     if (outcome != net::PollSet::Outcome::over || polled[signal]) return;
     const Nanoseconds now = clock_.now();
-    daemon_.receive(now);
+    if (daemon_.connect(now)) gateway_.daemon_came(now);
+    const auto take = [&](const nlohmann::ordered_json& line) { gateway_.daemon_said(line, now); };
+    if (daemon_ && !daemon_.hear(take)) gateway_.daemon_went();
     gateway_.look_after(now);
     for (Line& line : lines_) {
       if (!serve(line, polled[line.place], now)) gateway_.masters().leave(line.master);
     }
     if (polled[newcomer]) accept(now);
     std::erase_if(lines_, [&](const Line& line) { return !gateway_.masters().has(line.master); });
-    daemon_.send();
+    if (!daemon_) continue;
+    for (const auto& line : gateway_.lines_to_daemon()) daemon_.send(line);
   }
 }
 

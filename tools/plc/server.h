@@ -10,7 +10,7 @@
 #include "base/net/listener.h"
 #include "base/net/poll_set.h"
 #include "drivers/modbus_server/connection.h"
-#include "tools/plc/daemon_line.h"
+#include "tools/client/daemon_client.h"
 #include "tools/plc/gateway.h"
 
 namespace softgrip::plc {
@@ -37,7 +37,7 @@ class Server {
 
   const Settings& settings_;
   Gateway& gateway_;
-  DaemonLine daemon_;
+  tools::DaemonLink daemon_;
   net::Entrance entrance_;
   Descriptor signals_;
   MonotonicClock clock_;

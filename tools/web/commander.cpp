@@ -87,17 +87,15 @@ tl::expected<std::uint64_t, Json> Commander::send(Json request, Nanoseconds now)
 /// in place of a response from the daemon.
 std::optional<Json> Commander::connect() {
   if (daemon_) return std::nullopt;
-  if (socket_.empty()) return failure("not_allowed", "this page is read-only");
-  auto daemon = tools::DaemonClient::connect_at_once(socket_);
-  if (!daemon) return failure("no_daemon", daemon.error().message);
-  daemon_.emplace(std::move(*daemon));
-  daemon_->send({{"id", 0}, {"command", "hello"}, {"client", "softgrip-web"}, {"api", 1}});
+  if (!may_connect_) return failure("not_allowed", "this page is read-only");
+  if (const auto refusal = daemon_.connect_now()) return failure("no_daemon", refusal->message);
+  daemon_.send({{"id", 0}, {"command", "hello"}, {"client", "softgrip-web"}, {"api", 1}});
   return std::nullopt;
 }
 
 std::uint64_t Commander::send_numbered(Json request) {
   request["id"] = ++last_;
-  daemon_->send(request);
+  daemon_.send(request);
   return last_;
 }
 
@@ -134,16 +132,7 @@ void Commander::leave() {
 }
 
 void Commander::look_after(Nanoseconds now) {
-  while (daemon_) {
-    auto line = daemon_->next_line(std::chrono::milliseconds(0));
-    if (!line) {
-      lose();
-    } else if (*line) {
-      take(std::move(**line));
-    } else {
-      break;
-    }
-  }
+  if (daemon_ && !daemon_.hear([&](Json& line) { take(std::move(line)); })) lose();
   stop_again(now);
 }
 
@@ -193,7 +182,6 @@ void Commander::stop_again(Nanoseconds now) {
 }
 
 void Commander::lose() {
-  daemon_.reset();
   for (GivenUp& start : given_up_) start.stop = 0;
   for (auto& [number, waiting] : waiting_) {
     if (waiting.answer) continue;

@@ -30,9 +30,8 @@ class Commander {
   /// stop and vent commands may wait.
   static constexpr std::size_t most_waiting = 32;
 
-  /// Creates the object without connecting. `socket` is the path of the daemon's socket for operation and
-  /// must outlive this object.
-  explicit Commander(const std::string& socket) : socket_(socket) {}
+  /// Creates the object without connecting. `socket` is the path of the daemon's socket for operation.
+  explicit Commander(const std::string& socket) : may_connect_(!socket.empty()), daemon_(socket) {}
 
   /// Sends the request and returns a number, with which take_answer() finds its response. The error has the
   /// format of a response of the daemon.
@@ -52,7 +51,7 @@ class Commander {
   /// Gives up all waiting commands. Call this function before the program ends.
   void leave();
   /// Returns the descriptor of the connection for poll(), or -1 if there is no connection.
-  [[nodiscard]] int descriptor() const noexcept { return daemon_ ? daemon_->descriptor() : -1; }
+  [[nodiscard]] int descriptor() const noexcept { return daemon_.descriptor(); }
 
  private:
   struct Waiting {
@@ -74,8 +73,8 @@ class Commander {
   void stop_again(Nanoseconds now);
   void lose();
 
-  const std::string& socket_;
-  std::optional<tools::DaemonClient> daemon_;
+  bool may_connect_;
+  tools::DaemonLink daemon_;
   std::uint64_t last_ = 0;
   std::map<std::uint64_t, Waiting> waiting_;
   std::vector<GivenUp> given_up_;

@@ -12,7 +12,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double watch_rate_hz = 5;
-constexpr Nanoseconds retry_pause = ns_per_s / 4;
 /// Longest time between two lines of a daemon. After this time, the daemon counts as disconnected.
 constexpr Nanoseconds longest_silence = 3 * ns_per_s / 2;
 constexpr Nanoseconds statistics_period = 2 * ns_per_s;
@@ -24,18 +23,9 @@ enum Asked : std::uint64_t { hello = 1, watch, subscribe, statistics, sequences 
 }  // namespace
 
 void DaemonWatch::look_after(Nanoseconds now) {
-  if (!daemon_) connect(now);
-  while (daemon_) {
-    auto line = daemon_->next_line(std::chrono::milliseconds(0));
-    if (!line) {
-      daemon_.reset();
-    } else if (*line) {
-      take(std::move(**line), now);
-    } else {
-      break;
-    }
-  }
-  if (daemon_ && now - heard_at_ > longest_silence) daemon_.reset();
+  if (daemon_.connect(now)) greet(now);
+  const bool connected = daemon_.hear([&](Json& line) { take(std::move(line), now); });
+  if (connected && now - heard_at_ > longest_silence) daemon_.end();
   if (daemon_) {
     ask_what_is_due(now);
   } else {
@@ -43,29 +33,24 @@ void DaemonWatch::look_after(Nanoseconds now) {
   }
 }
 
-void DaemonWatch::connect(Nanoseconds now) {
-  if (tried_at_ != 0 && now - tried_at_ < retry_pause) return;
-  tried_at_ = now;
-  auto daemon = tools::DaemonClient::connect_at_once(socket_);
-  if (!daemon) return;
-  daemon_.emplace(std::move(*daemon));
+void DaemonWatch::greet(Nanoseconds now) {
   heard_at_ = now;
   statistics_due_ = sequences_due_ = now;
-  daemon_->send({{"id", Asked::hello}, {"command", "hello"}, {"client", "softgrip-web"}, {"api", 1}});
-  daemon_->send({{"id", Asked::watch}, {"command", "watch"}, {"rate_hz", watch_rate_hz}});
+  daemon_.send({{"id", Asked::hello}, {"command", "hello"}, {"client", "softgrip-web"}, {"api", 1}});
+  daemon_.send({{"id", Asked::watch}, {"command", "watch"}, {"rate_hz", watch_rate_hz}});
   Json request{{"id", Asked::subscribe}, {"command", "subscribe"}, {"since", last_event_}};
   if (!started_at_.empty()) request["started_at"] = started_at_;
-  daemon_->send(request);
+  daemon_.send(request);
 }
 
 void DaemonWatch::ask_what_is_due(Nanoseconds now) {
   if (now >= statistics_due_) {
     statistics_due_ = now + statistics_period;
-    daemon_->send({{"id", Asked::statistics}, {"command", "statistics"}});
+    daemon_.send({{"id", Asked::statistics}, {"command", "statistics"}});
   }
   if (now >= sequences_due_) {
     sequences_due_ = now + sequences_period;
-    daemon_->send({{"id", Asked::sequences}, {"command", "sequences"}});
+    daemon_.send({{"id", Asked::sequences}, {"command", "sequences"}});
   }
 }
 

@@ -2,8 +2,6 @@
 // Maintains the connection to the daemon that provides the displayed data. One connection serves any number
 // of browsers.
 
-#include <optional>
-
 #include "base/time.h"
 #include "tools/client/daemon_client.h"
 #include "tools/web/live_state.h"
@@ -12,26 +10,24 @@ namespace softgrip::web {
 
 class DaemonWatch {
  public:
-  /// Creates the object without connecting. `socket` is the path of the daemon's read-only socket. All
-  /// references must outlive this object.
-  DaemonWatch(const std::string& socket, LiveState& state) : socket_(socket), state_(state) {}
+  /// Creates the object without connecting. `socket` is the path of the daemon's read-only socket. `state`
+  /// must outlive this object.
+  DaemonWatch(const std::string& socket, LiveState& state) : state_(state), daemon_(socket) {}
 
   /// Reads the daemon's lines, sends the requests that are due, and reconnects. Call this function when the
   /// descriptor is readable, and several times per second.
   void look_after(Nanoseconds now);
   /// Returns the descriptor of the connection for poll(), or -1 if there is no connection.
-  [[nodiscard]] int descriptor() const noexcept { return daemon_ ? daemon_->descriptor() : -1; }
+  [[nodiscard]] int descriptor() const noexcept { return daemon_.descriptor(); }
 
  private:
-  void connect(Nanoseconds now);
+  void greet(Nanoseconds now);
   void take(nlohmann::ordered_json line, Nanoseconds now);
   void take_result(std::uint64_t id, nlohmann::ordered_json result);
   void ask_what_is_due(Nanoseconds now);
 
-  const std::string& socket_;
   LiveState& state_;
-  std::optional<tools::DaemonClient> daemon_;
-  Nanoseconds tried_at_ = 0;  // time of the last attempt to connect
+  tools::DaemonLink daemon_;
   Nanoseconds heard_at_ = 0;  // time of the last state that the daemon has sent
   Nanoseconds statistics_due_ = 0;
   Nanoseconds sequences_due_ = 0;
