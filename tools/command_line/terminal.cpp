@@ -83,12 +83,16 @@ std::size_t terminal_rows() {
   return std::max<std::size_t>(window().ws_row, 1);
 }
 
-Descriptor take_ending_signals() {
+Descriptor take_signals(std::initializer_list<int> signals) {
   sigset_t set;
   sigemptyset(&set);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGWINCH}) sigaddset(&set, signal);
+  for (const int signal : signals) sigaddset(&set, signal);
   sigprocmask(SIG_BLOCK, &set, nullptr);
   return Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
+}
+
+Descriptor take_ending_signals() {
+  return take_signals({SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGWINCH});
 }
 
 int next_signal(const Descriptor& signals) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,10 @@ namespace softgrip::tools {
 [[nodiscard]] std::size_t terminal_columns();
 [[nodiscard]] std::size_t terminal_rows();
 
-/// Blocks SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP and SIGWINCH, so that they have no default action.
-/// Returns a descriptor that reports these signals.
+/// Blocks the signals for the whole process, so that they have no default action. Returns a descriptor that
+/// reports them.
+[[nodiscard]] Descriptor take_signals(std::initializer_list<int> signals);
+/// Takes SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP and SIGWINCH.
 [[nodiscard]] Descriptor take_ending_signals();
 
 /// Returns the next signal that the descriptor reports, or 0 if there is none.

@@ -1,7 +1,5 @@
 // softgrip-plc: connects PLCs and robot controllers to softgripd over Modbus TCP.
 
-#include <sys/signalfd.h>
-
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdint>
@@ -14,6 +12,7 @@
 #include "base/version.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/configuration.h"
+#include "tools/command_line/terminal.h"
 #include "tools/command_line/usage.h"
 #include "tools/plc/server.h"
 
@@ -40,16 +39,6 @@ void add_options(CLI::App& program, Options& options) {
   program.footer("The server is ready when it has printed 'listening on ADDRESS:PORT'.");
 }
 
-/// Blocks the ending signals for the whole process and returns a descriptor that reports them.
-Descriptor take_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, signal);
-  sigprocmask(SIG_BLOCK, &set, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
-  return Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
-}
-
 ExitCode run(const Options& options) {
   if (const auto code = tools::unreadable(options.config)) return *code;
   document::Problems problems;
@@ -58,7 +47,8 @@ ExitCode run(const Options& options) {
   if (!options.socket.empty()) settings->socket = options.socket;
   if (options.port) settings->port = *options.port;
   if (options.check) return ExitCode::done;
-  Descriptor signals = take_signals();
+  Descriptor signals = tools::take_signals({SIGINT, SIGTERM, SIGHUP});
+  std::signal(SIGPIPE, SIG_IGN);
   auto listener = net::listen_tcp(settings->address, settings->port);
   if (!listener) return tools::fail(ExitCode::io, listener.error());
   std::printf("listening on %s:%u\n", settings->address.c_str(), unsigned{listener->port});

@@ -1,7 +1,6 @@
 // softgrip-rig: emulates a rig on Modbus TCP or RTU.
 
 #include <sched.h>
-#include <sys/signalfd.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -19,6 +18,7 @@
 #include "simulation/emulator/truth_log.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/option_check.h"
+#include "tools/command_line/terminal.h"
 #include "tools/command_line/usage.h"
 #include "tools/programs/softgrip_rig_options.h"
 
@@ -96,17 +96,6 @@ void add_options(CLI::App& program, Options& options) {
       "'listening on DEVICE'.");
 }
 
-/// Blocks the ending signals for the whole process and returns a descriptor that reports them.
-Descriptor take_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) sigaddset(&set, signal);
-  sigprocmask(SIG_BLOCK, &set, nullptr);
-  // Ignore SIGPIPE, because a failed write already shows that a client has disconnected.
-  std::signal(SIGPIPE, SIG_IGN);
-  return Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
-}
-
 /// Requests real-time scheduling, because a board responds in time even if the computer is busy. Without the
 /// permission, the process keeps its ordinary scheduling. The thread is bound to one processor. On a busy
 /// computer, a real-time thread that was not bound waited up to 49 ms (Linux 6.18, share of the fair server).
@@ -150,7 +139,9 @@ ExitCode serve(const Options& options, const Setup& setup, simulation::Emulator&
   simulation::ServerSockets sockets;
   std::string told;
   if (const ExitCode code = listen(setup, sockets, told); code != ExitCode::done) return code;
-  sockets.signals = take_signals();
+  sockets.signals = take_signals({SIGINT, SIGTERM, SIGHUP, SIGUSR1});
+  // Ignore SIGPIPE, because a failed write already shows that a client has disconnected.
+  std::signal(SIGPIPE, SIG_IGN);
   sockets.standard_input = options.control == "-";
   const bool control_socket = !options.control.empty() && !sockets.standard_input;
   if (control_socket) {

@@ -1,7 +1,5 @@
 // softgrip-web: serves softgripd's data to browsers and Prometheus over HTTP.
 
-#include <sys/signalfd.h>
-
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstddef>
@@ -17,6 +15,7 @@
 #include "base/version.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/configuration.h"
+#include "tools/command_line/terminal.h"
 #include "tools/command_line/usage.h"
 #include "tools/web/places.h"
 #include "tools/web/server.h"
@@ -61,16 +60,6 @@ void put_in_place(const Options& options, Settings& settings) {
   if (options.operate) settings.without_token = Role::operate;
 }
 
-/// Blocks the ending signals for the whole process and returns a descriptor that reports them.
-Descriptor take_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, signal);
-  sigprocmask(SIG_BLOCK, &set, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
-  return Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
-}
-
 ExitCode run(const Options& options) {
   if (const auto code = tools::unreadable(options.config)) return *code;
   document::Problems problems;
@@ -94,7 +83,8 @@ ExitCode run(const Options& options) {
                  "softgrip-web: the limit of open files allows %zu connections, not %zu (max_connections)\n",
                  places, settings->max_connections);
   }
-  Descriptor signals = take_signals();
+  Descriptor signals = tools::take_signals({SIGINT, SIGTERM, SIGHUP});
+  std::signal(SIGPIPE, SIG_IGN);
   auto listener = net::listen_tcp(settings->address, settings->port);
   if (!listener) return tools::fail(ExitCode::io, listener.error());
   const bool six = settings->address.find(':') != std::string::npos;
