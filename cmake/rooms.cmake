@@ -62,7 +62,7 @@ softgrip_room(daemon/socket
   USES base base/net document model control/elements control/tick control/sequences rig daemon/loop daemon/recording
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(daemon/service
-  USES base control/tick drivers/board drivers/iio drivers/gpio rig daemon/loop daemon/recording daemon/panel daemon/socket
+  USES base base/net control/tick drivers/board drivers/iio drivers/gpio rig daemon/loop daemon/recording daemon/panel daemon/socket
   LIBRARIES spdlog::spdlog nlohmann_json::nlohmann_json PkgConfig::systemd)
 
 # System identification: from logs to a model and to the cause of its error.

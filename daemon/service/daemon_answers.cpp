@@ -3,8 +3,6 @@
 #include <poll.h>
 #include <sys/socket.h>
 
-#include <array>
-#include <cerrno>
 #include <cstddef>
 #include <string_view>
 
@@ -12,6 +10,7 @@
 
 #include "base/clock.h"
 #include "base/descriptor_wait.h"
+#include "base/net/line_buffer.h"
 #include "daemon/service/trusted_user.h"
 #include "daemon/socket/listener.h"
 
@@ -28,16 +27,13 @@ constexpr std::string_view question = "{\"command\": \"status\"}\n";
 /// Returns the first line that arrives before `deadline`. If the line is incomplete at this time, returns the
 /// part that has arrived.
 std::string line_from(int socket, Nanoseconds deadline) {
-  std::string line;
-  std::array<char, 16384> chunk{};
-  while (line.find('\n') == std::string::npos && line.size() < longest_reply) {
+  net::LineBuffer lines;
+  while (!lines.has_line() && !lines.exceeds(longest_reply - 1)) {
     if (wait_for(socket, POLLIN, deadline) != Waited::ready) break;
-    const ssize_t count = ::recv(socket, chunk.data(), chunk.size(), 0);
-    if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
-    if (count <= 0) break;
-    line.append(chunk.data(), static_cast<std::size_t>(count));
+    if (lines.receive(socket) == net::LineBuffer::Received::end) break;
   }
-  return line.substr(0, line.find('\n'));
+  lines.append("\n");  // ends the part of a line
+  return std::string(lines.next().value_or(""));
 }
 
 }  // namespace
