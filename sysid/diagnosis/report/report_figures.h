@@ -31,10 +31,6 @@ namespace softgrip::sysid {
 [[nodiscard]] Figure loops_figure(const Diagnosis& diagnosis, std::size_t record);
 /// Returns two charts: the reference with the tracked displacements, and the tracking errors.
 [[nodiscard]] Figure closed_loop_figure(const ClosedLoopCurves& curves);
-/// Returns one chart for each condition on which the error depends significantly: the mean error and its
-/// interval over the condition. Two charts are side by side. If there is no such condition, the figure has no
-/// charts.
-[[nodiscard]] Figure conditions_figure(const Diagnosis& diagnosis);
 [[nodiscard]] Figure spectrum_figure(const Diagnosis& diagnosis);
 
 }  // namespace softgrip::sysid

@@ -7,6 +7,7 @@
 #include "model/catalogue.h"
 #include "sysid/diagnosis/causes/indistinguishable.h"
 #include "sysid/diagnosis/evidence/clear.h"
+#include "sysid/diagnosis/report/report_conditions.h"
 #include "sysid/diagnosis/report/report_figures.h"
 #include "sysid/diagnosis/report/report_gauge.h"
 #include "sysid/diagnosis/report/report_tables.h"
