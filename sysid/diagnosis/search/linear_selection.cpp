@@ -5,21 +5,18 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <utility>
 
 #include "base/parallel.h"
 #include "sysid/diagnosis/causes/backlash.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
 #include "sysid/diagnosis/search/linear_holdout.h"
+#include "sysid/diagnosis/search/linear_look.h"
 #include "sysid/diagnosis/search/named_claim.h"
 #include "sysid/diagnosis/search/scan.h"
 #include "sysid/diagnosis/search/scored.h"
 #include "sysid/diagnosis/search/slack.h"
 #include "sysid/evidence/limits.h"
-#include "sysid/fitting/jacobian.h"
-#include "sysid/fitting/minimise.h"
-#include "sysid/fitting/residuals.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -32,7 +29,6 @@ constexpr double hopeless_ratio = 4;
 /// Number of rounds of alternating fits. Each round fits the base structure with the cause fixed, and then
 /// the cause with the base structure fixed.
 constexpr int turns = 2;
-constexpr int look_iterations = 15;
 /// Shares of the base structure's linear response to a cause that are tried. The fit starts at the best
 /// share. For a strongly nonlinear base structure, the full response is too large.
 constexpr std::array answers{1.0, 0.5, 0.2, 0.0};
@@ -49,56 +45,6 @@ constexpr std::size_t most_undecided = 2;
 /// Smallest share of the remaining mean square above the noise that a further cause must remove. If the data
 /// contain a second effect, its true cause removes almost all of this mean square.
 constexpr double most_of_the_rest = 0.6;
-
-/// Residuals that remain after the base structure has absorbed as much as possible. They are a function of
-/// the parameters of one cause.
-class ResidualsBesideBase final : public Residuals {
- public:
-  ResidualsBesideBase(const Scan& base, const std::vector<Record>& records, const FitSpace& of_the_cause)
-      : Residuals(records, of_the_cause), base_(base), inner_(residuals_for(records, of_the_cause)) {}
-
-  bool evaluate(std::span<const double> z, std::span<double> r, std::span<double> jacobian) const override {
-    if (!inner_->evaluate(z, r, jacobian)) return false;
-    const auto rows = static_cast<Eigen::Index>(count());
-    if (!r.empty()) {
-      Eigen::Map<Eigen::VectorXd> values(r.data(), rows);
-      values = base_.left_of(values);
-    }
-    if (!jacobian.empty()) {
-      Eigen::Map<Jacobian> slopes(jacobian.data(), rows, static_cast<Eigen::Index>(space().size()));
-      slopes = base_.left_of(slopes);
-    }
-    return true;
-  }
-  [[nodiscard]] const Residuals& inner() const { return *inner_; }
-
- private:
-  const Scan& base_;
-  std::unique_ptr<Residuals> inner_;
-};
-
-/// A cause that was fitted to thinned records. The base structure responds linearly to the cause.
-struct Look {
-  /// Model with the fitted parameters of the cause; the parameters of the base structure are not changed.
-  FitPoint beside;
-  Eigen::VectorXd left;
-  /// Mean square after the linear response of the base structure.
-  double mean_square_mm2 = std::numeric_limits<double>::infinity();
-};
-
-Look look_from(const std::vector<Record>& records, const Scan& base, const Cause& cause,
-               const FitPoint& start) {
-  const FitSpace numbers = cause_space(records, start, cause);
-  const ResidualsBesideBase residuals(base, records, numbers);
-  MinimiseOptions options;
-  options.normal_equations = true;
-  options.most_iterations = look_iterations;
-  options.tolerance = 1e-5;
-  const Minimum minimum = minimise(residuals, numbers.z(start), options);
-  Eigen::VectorXd left(static_cast<Eigen::Index>(residuals.count()));
-  if (!residuals.inner().evaluate(minimum.z, {left.data(), residuals.count()}, {})) return {};
-  return {numbers.point(minimum.z), std::move(left), minimum.rmse_mm * minimum.rmse_mm};
-}
 
 /// A start point of a fit, and the mean square of its residual.
 struct Start {
