@@ -3,23 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "base/statistics.h"
 #include "base/thread_budget.h"
-#include "sysid/diagnosis/causes/clock_offset.h"
-#include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
-#include "sysid/diagnosis/residual/unexplained_limit.h"
 #include "sysid/diagnosis/search/coherence.h"
-#include "sysid/diagnosis/search/linear_holdout.h"
 #include "sysid/diagnosis/search/stick_slip_selection.h"
 #include "sysid/diagnosis/verdict/another_base.h"
 #include "sysid/diagnosis/verdict/base_ingredients.h"
+#include "sysid/diagnosis/verdict/conclusion.h"
 #include "sysid/diagnosis/verdict/data_warnings.h"
 #include "sysid/diagnosis/verdict/dense_logs.h"
-#include "sysid/diagnosis/verdict/mixed_intervals.h"
 #include "sysid/diagnosis/verdict/naming.h"
 #include "sysid/diagnosis/verdict/untested_causes.h"
 #include "sysid/fitting/start_estimate.h"
@@ -30,7 +25,6 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-constexpr double clearly_correlated = 0.05;
 constexpr std::size_t fewest_samples = 200;
 /// Refits the base structure. The given model may be far from the data, so the fits start at the given model
 /// and at points at the scale of the data.
@@ -54,38 +48,10 @@ tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, cons
   return best;
 }
 
-/// Returns the RMSE of each run. If there is a single run, returns the RMSE of each half.
-std::vector<RunError> run_errors(const std::vector<Record>& records, const Division& by_unit,
-                                 const BlockLosses& given, const BlockLosses& recalibrated,
-                                 const BlockLosses& extended) {
-  const bool are_runs = records.size() > 1;
-  std::vector<RunError> runs(are_runs ? records.size() : by_unit.folds);
-  for (std::size_t k = 0; k < runs.size(); ++k) {
-    runs[k].run = are_runs ? records[k].name : k == 0 ? "first half" : "second half";
-    BlockLosses own_given, own_recalibrated, own_extended;
-    for (std::size_t b = 0; b < by_unit.blocks.size(); ++b) {
-      const Block& block = by_unit.blocks[b];
-      const auto readings = records[block.record].reading_mm.begin();
-      const auto begin = readings + static_cast<std::ptrdiff_t>(block.first);
-      const auto end = readings + static_cast<std::ptrdiff_t>(block.last);
-      if ((are_runs ? block.record : block.fold) != k ||
-          std::none_of(begin, end, [](double y) { return std::isfinite(y); }))
-        continue;
-      own_given.push_back(given[b]);
-      own_recalibrated.push_back(recalibrated[b]);
-      own_extended.push_back(extended[b]);
-    }
-    runs[k].given = rmse_mm(own_given);
-    runs[k].recalibrated = rmse_mm(own_recalibrated);
-    runs[k].extended = rmse_mm(own_extended);
-  }
-  return runs;
-}
-
 class Diagnostician {
  public:
   Diagnostician(const std::vector<Log>& logs, const model::Model& given, const DiagnosisOptions& options)
-      : logs_(logs), given_(given), options_(options) {}
+      : logs_(logs), given_(given), options_(options), conclusion_(logs, given, options, data_, d_) {}
 
   tl::expected<Diagnosis, std::string> run() {
     if (auto done = judge_displacement(); !done) return Failure(done.error());
@@ -127,7 +93,7 @@ class Diagnostician {
     }
     AnotherBase& another = *asked;
     clock.ended("search");
-    if (leaves_too_much(selection) || (another.is_found() && selection.left.present)) {
+    if (conclusion_.leaves_too_much(selection) || (another.is_found() && selection.left.present)) {
       if (may_ask_at_once()) look_for_base(another, selection);
       clock.ended("base");
       if (!another.settles(selection) && look_for_stick_slip(selection, division)) {
@@ -138,8 +104,8 @@ class Diagnostician {
       another.drop();  // the selection with a second cause explains the data
     }
     if (another.is_found()) {
-      measure_recalibrated(selection);
-      adopt(another.found(), selection);
+      conclusion_.measure_recalibrated(selection);
+      conclusion_.adopt(another.found(), selection);
       clock.ended("held-out logs and intervals");
       return {};
     }
@@ -149,16 +115,16 @@ class Diagnostician {
       if (d_.gauge->replaced) selection.undecided = fit_confounded(data_, selection.extended, division);
       clock.ended("gauge");
     }
-    measure(selection, division);
+    conclusion_.measure(selection, division);
     if (options_.null_campaigns > 0 && !selection.chosen.empty()) calibrate(division);
     if (d_.null_calibration) clock.ended("nulls");
-    name(selection);
-    another.add_alternatives(causes_);
-    conclude(selection);
+    conclusion_.name(selection);
+    another.add_alternatives(conclusion_.causes());
+    conclusion_.conclude(selection);
     clock.ended("held-out logs and intervals");
     if (options_.gauge && options_.null_campaigns == 0 && d_.verdict == Verdict::unexplained) {
       look_for_base(another, selection);
-      if (another.is_found()) adopt(another.found(), selection);
+      if (another.is_found()) conclusion_.adopt(another.found(), selection);
       clock.ended("base");
     }
     return {};
@@ -243,15 +209,6 @@ class Diagnostician {
     return true;
   }
 
-  /// Corrects the error reduction if the drive was shifted, so that the reduction includes the shift. The
-  /// errors of the given and the refitted model are then those with the original drive.
-  void count_shift(const BlockLosses& extended) {
-    if (!d_.lead) return;
-    d_.as_given_rmse_mm = unshifted_.as_given_rmse_mm;
-    d_.recalibrated_rmse_mm = rmse_mm(unshifted_.recalibrated);
-    d_.gain = gain_percent(unshifted_.recalibrated, extended, options_.seed);
-  }
-
   /// Shifts the drive if the readings react before the command changes. Returns true if the search must be
   /// repeated.
   bool shift_drive(const Selection& selection, const Division& division) {
@@ -259,21 +216,11 @@ class Diagnostician {
     if (!shifted) return false;
     const BlockLosses losses = held_out_losses(shifted->records, division, shifted->fit);
     if (!is_missed(selection.base_losses, losses, 0.01 * square(d_.noise_mm), options_.seed)) return false;
-    unshifted_ = Unshifted{d_.as_given_rmse_mm, selection.base_losses, losses};
+    conclusion_.drive_is_shifted({d_.as_given_rmse_mm, selection.base_losses, losses});
     use(std::move(shifted->records));
     d_.recalibrated = std::move(shifted->fit);
     d_.lead = shifted->lead;
     return true;
-  }
-
-  /// Returns true if the selection leaves too large an error. The limit is the error that its causes may
-  /// leave. If the selection contains no causes, the limit is the noise.
-  [[nodiscard]] bool leaves_too_much(const Selection& selection) const {
-    if (!selection.left.present) return false;
-    if (selection.extended.causes.empty()) {
-      return !left_by_outliers(selection.left) && selection.left.excess_mm > worth_a_look * d_.noise_mm;
-    }
-    return sysid::leaves_too_much(selection.left, selection.base_unexplained, d_.noise_mm);
   }
 
   /// Searches for stick-slip of the valve. No simulation from the command alone can predict its effect.
@@ -287,7 +234,7 @@ class Diagnostician {
     one_more.seed = options_.seed;
     one_more.progress = options_.progress;
     auto found = select_behind_stick_slip(data_, selection, d_.noise_mm, division, one_more);
-    if (!found || leaves_too_much(found->selection)) return false;
+    if (!found || conclusion_.leaves_too_much(found->selection)) return false;
     // A path of many small steps can fit any residual. Stick-slip is therefore accepted only if it explains
     // at least 75 % of the remaining mean square.
     if (square(found->selection.left.excess_mm) > left_by_what_was_missing * square(selection.left.excess_mm))
@@ -316,7 +263,7 @@ class Diagnostician {
     options.seed = options_.seed;
     options.progress = options_.progress;
     std::optional<Selection> one_is_not_enough;
-    if (left_by_outliers(unexplained_error_of(recalibrated.residual_mm, d_.noise_mm)))
+    if (conclusion_.left_by_outliers(unexplained_error_of(recalibrated.residual_mm, d_.noise_mm)))
       options.most_causes = 0;
     if (may_ask_at_once()) {
       options.one_cause_stands = [&](const Selection& one_cause) {
@@ -332,71 +279,6 @@ class Diagnostician {
     return selection;
   }
 
-  void adopt(BaseFindings& base, const Selection& selection) {
-    d_.base = base.description;
-    d_.extended = std::move(base.fit);
-    d_.extended_rmse_mm = rmse_mm(base.losses);
-    d_.extended_other_logs_rmse_mm.reset();
-    d_.recalibrated_other_logs_rmse_mm.reset();
-    const Division by_unit = divide_by_unit(data_.records);
-    d_.runs = run_errors(data_.records, by_unit, losses_of(d_.as_given, by_unit),
-                         left_out_losses(data_.records, by_unit, selection.base),
-                         linear_held_out_losses(data_.records, by_unit, d_.extended));
-    d_.gain = gain_percent(selection.base_losses, base.losses, options_.seed);
-    d_.unexplained_error = unexplained_error_of(d_.extended.residual_mm, d_.noise_mm);
-    d_.unexplained_percent =
-        std::min(100.0, 100 * square(d_.unexplained_error.excess_mm / selection.base_unexplained.excess_mm));
-    count_shift(base.losses);
-    d_.extended_model = named_model(d_.extended.point.model, "extended");
-    d_.causes = std::move(base.named);
-    std::vector<NamedCause> in_readings = found_in_readings();
-    d_.causes.insert(d_.causes.begin(), std::make_move_iterator(in_readings.begin()),
-                     std::make_move_iterator(in_readings.end()));
-    d_.partial = std::move(base.possible);
-    const bool whole = !sysid::leaves_too_much(d_.unexplained_error, selection.base_unexplained, d_.noise_mm);
-    d_.verdict = d_.causes.empty()             ? Verdict::unexplained
-                 : !whole                      ? Verdict::partly_explained
-                 : any_alternatives(d_.causes) ? Verdict::ambiguous
-                                               : Verdict::cause_found;
-  }
-
-  void measure_recalibrated(const Selection& selection) {
-    d_.unexplained_recalibrated = selection.base_unexplained;
-    d_.recalibrated_rmse_mm = rmse_mm(selection.base_losses);
-    d_.rejected = selection.last_candidates;
-    d_.recalibrated_model = named_model(selection.base.point.model, "recalibrated");
-    warn_unphysical(d_.recalibrated_model, d_.warnings);
-  }
-
-  void measure(const Selection& selection, const Division& division) {
-    measure_recalibrated(selection);
-    d_.extended = selection.extended;
-    d_.unexplained_error = selection.left;
-    d_.extended_rmse_mm = rmse_mm(selection.extended_losses);
-    d_.gain = gain_percent(selection.base_losses, selection.extended_losses, options_.seed);
-    // The parameters of the refitted model are compared with the parameters of the given model. In both
-    // models, the initial states are fitted.
-    const StructureFit given = fit_starts(data_.records, {}, data_.given);
-    recalibration_gain_ = mean_difference(losses_of(given, division), selection.base_losses, options_.seed);
-    d_.unexplained_percent =
-        selection.base_unexplained.excess_mm > 0
-            ? std::min(100.0, 100 * square(selection.left.excess_mm / selection.base_unexplained.excess_mm))
-            : 0;
-    if (!selection.left.present && !selection.base_unexplained.present) d_.unexplained_percent = 0;
-    const Division by_unit = divide_by_unit(data_.records);
-    const BlockLosses recalibrated = left_out_losses(data_.records, by_unit, selection.base);
-    const BlockLosses extended =
-        selection.chosen.empty() ? recalibrated : left_out_losses(data_.records, by_unit, selection.extended);
-    d_.runs = run_errors(data_.records, by_unit, losses_of(d_.as_given, by_unit), recalibrated, extended);
-    if (data_.records.size() > 1) {
-      d_.recalibrated_other_logs_rmse_mm = rmse_mm(recalibrated);
-      if (!selection.chosen.empty()) d_.extended_other_logs_rmse_mm = rmse_mm(extended);
-    }
-    count_shift(selection.extended_losses);
-    d_.extended_model = named_model(selection.extended.point.model,
-                                    selection.extended.causes.empty() ? "recalibrated" : "extended");
-  }
-
   void calibrate(const Division& division) {
     NullOptions nulls;
     nulls.campaigns = options_.null_campaigns;
@@ -410,106 +292,12 @@ class Diagnostician {
     d_.null_calibration = calibrate_on_nulls(data_, d_.recalibrated, d_.gain.value, division, nulls);
   }
 
-  /// Returns the model with a different name. If two models had the same name, files and figures would be
-  /// ambiguous.
-  [[nodiscard]] model::Model named_model(model::Model model, const std::string& how) const {
-    // The daemon uses the command as input, so the blocks of the valve are inserted into the model.
-    if (options_.record.drive == Drive::measured && d_.in_valve)
-      model = with_valve(std::move(model), d_.in_valve->stage);
-    model.name = given_.name + '_' + how.substr(0, how.find(' '));
-    model.source =
-        how + " by softgrip diagnose from " + with_commas(logs_, &Log::name) + "; before: " + given_.source;
-    return model;
-  }
-
-  [[nodiscard]] std::vector<NamedCause> found_in_readings() const {
-    std::vector<NamedCause> named =
-        causes_in_readings(d_.outliers, d_.sampling, d_.noise_mm, d_.records.front().output_unit);
-    if (d_.lead) {
-      NamedCause lead;
-      lead.cause = *find_cause(causes::ClockOffset::id);
-      lead.block_type = lead.cause.forms.front().type;
-      lead.parameters = {{"lead_s", "s", d_.lead->lead_s, d_.lead->ci95, true}};
-      lead.heldout_gain_percent = gain_percent(unshifted_.recalibrated, unshifted_.shifted, options_.seed);
-      lead.gain_mm2 = mean_difference(unshifted_.recalibrated, unshifted_.shifted, options_.seed);
-      named.push_back(std::move(lead));
-    }
-    return named;
-  }
-
-  void name(const Selection& selection) {
-    causes_ = found_in_readings();
-    std::vector<NamedCause> chosen = name_chosen(data_.records, selection.extended, selection.chosen);
-    if (!d_.stick_slip) {
-      for (std::string& sentence : mix_intervals(chosen, data_.records, selection, options_.seed))
-        d_.warnings.push_back(std::move(sentence));
-    }
-    for (NamedCause& named : chosen) {
-      if (d_.stick_slip && named.cause.id == causes::ValveDeadband::id) {
-        // The reported band is that of the stick-slip motion, because the extended model may contain the band
-        // of the mean motion.
-        named.parameters.front() = {"band_kpa", "kPa", d_.stick_slip->band_kpa, d_.stick_slip->band_ci95,
-                                    true};
-      }
-      causes_.push_back(std::move(named));
-    }
-  }
-
-  /// Returns true if the remaining error is due to wrong readings that were not found. Wrong readings are
-  /// isolated. The effect of a cause, in contrast, is correlated from sample to sample.
-  [[nodiscard]] bool left_by_outliers(const UnexplainedError& structure) const {
-    return d_.outliers.present && structure.slow_correlation <= clearly_correlated &&
-           structure.excess_mm < d_.noise_mm;
-  }
-
-  void conclude(const Selection& selection) {
-    // If the gauge readings selected one of two indistinguishable causes, the remaining error of this cause
-    // has no influence on the verdict.
-    const bool placed_by_gauge = d_.gauge && d_.gauge->replaced;
-    const bool too_much_left = !placed_by_gauge && leaves_too_much(selection);
-    const bool by_chance = d_.null_calibration && d_.null_calibration->reach_the_gain();
-    if (!selection.chosen.empty() && (too_much_left || by_chance)) {
-      d_.verdict = Verdict::unexplained;
-      d_.partial = std::move(causes_);
-      d_.extended_model =
-          by_chance ? d_.recalibrated_model : named_model(selection.extended.point.model, "extended in part");
-      return;
-    }
-    if (selection.chosen.empty() && too_much_left) {
-      d_.verdict = Verdict::unexplained;
-      d_.partial = std::move(causes_);
-      d_.unexplained_percent = 100;
-      return;
-    }
-    d_.causes = std::move(causes_);
-    if ((d_.outliers.present || d_.sampling.present) && selection.chosen.empty()) {
-      const double left = square(selection.left.excess_mm);
-      const double explained = (d_.outliers.present ? square(d_.outliers.excess_mm) : 0) +
-                               (d_.sampling.present ? square(d_.sampling.excess_mm) : 0);
-      d_.unexplained_percent = selection.left.present ? 100 * left / (left + explained) : 0;
-    }
-    if (!d_.causes.empty()) {
-      d_.verdict = any_alternatives(d_.causes) ? Verdict::ambiguous : Verdict::cause_found;
-      return;
-    }
-    const bool better =
-        recalibration_gain_.lower > 0 && recalibration_gain_.value > 0.01 * square(d_.noise_mm);
-    d_.verdict = better ? Verdict::recalibrate : Verdict::adequate;
-  }
-
   const std::vector<Log>& logs_;
   const model::Model& given_;
   const DiagnosisOptions& options_;
   SearchData data_;
-  /// Errors of the models with the original drive, and held-out losses with the shifted drive.
-  struct Unshifted {
-    double as_given_rmse_mm = 0;
-    BlockLosses recalibrated, shifted;
-  };
-  Unshifted unshifted_;
-  Spread recalibration_gain_;
-  std::vector<NamedCause> causes_;
   Diagnosis d_;
+  Conclusion conclusion_;
 };
 
 }  // namespace
