@@ -14,7 +14,6 @@
 
 #include "model/model.h"
 #include "sysid/changes/bins.h"
-#include "sysid/changes/extension.h"
 #include "sysid/changes/filter_bank.h"
 #include "sysid/changes/regulator.h"
 #include "sysid/evidence/units.h"
@@ -80,37 +79,9 @@ struct BaseOptions {
 [[nodiscard]] Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double bin_s,
                                       unsigned threads);
 
-/// A record after the simulated valve of a baseline model, and the predictions of the model and of the filter
-/// bank.
-struct Driven {
-  Record record;  ///< record whose drive is the input of the finger at each sample
-  /// Record with which `model` is simulated: equal to `record`, or with the command as drive.
-  Record walked;
-  model::Model model;       ///< model of the baseline, including the valve blocks if they can be added to it
-  Eigen::VectorXd filters;  ///< contribution of the filter bank at each sample
-  StartState start;         ///< initial state of the model, without an offset
-  std::vector<double> plain;  ///< prediction of the model alone at each sample
-};
-/// Simulates the valve of the baseline model.
-/// @param valve  additional blocks between the command and the baseline model.
-/// @param fault  faults of the regulator of the baseline model.
-/// @param start  initial state of the record; nullptr: it is estimated from the first readings.
-[[nodiscard]] Driven driven_by(const Base& base, const Record& record,
-                               const std::vector<model::BlockSpec>& valve = {},
-                               const RegulatorFault& fault = {}, const StartState* start = nullptr);
-
-/// Returns the prediction of the baseline model with the effects of `extension`, without an offset.
-/// @param driven  result of driven_by() for the record, or nullptr if the function has to compute it.
-[[nodiscard]] std::vector<double> predict_base(const Base& base, const Record& record,
-                                               const Extension& extension, const Driven* driven = nullptr);
-
 /// Returns a thinned copy of the record for a search for changes, with several samples per bin. For a
 /// pressure, it has more samples per bin, because a valve responds faster than a finger.
 [[nodiscard]] Record thinned_for(const Base& base, const Record& record);
-
-/// Returns the reading minus the prediction of the unchanged baseline model, for each sample of each record.
-[[nodiscard]] std::vector<std::vector<double>> residuals_of(const Base& base,
-                                                            const std::vector<Record>& records);
 
 /// Returns records whose reading is the measured pressure [kPa] and whose drive is the command.
 [[nodiscard]] std::vector<Record> pressure_records(const std::vector<Log>& logs, bool held);

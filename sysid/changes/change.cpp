@@ -9,6 +9,7 @@
 #include "base/numbers.h"
 #include "base/statistics.h"
 #include "base/thread_budget.h"
+#include "sysid/changes/base_prediction.h"
 #include "sysid/changes/causes_without_block.h"
 #include "sysid/changes/change_search.h"
 #include "sysid/changes/change_size.h"

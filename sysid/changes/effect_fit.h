@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "sysid/changes/base.h"
+#include "sysid/changes/base_prediction.h"
 #include "sysid/changes/effects.h"
 #include "sysid/evidence/units.h"
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sysid/changes/base.h"
+#include "sysid/changes/extension.h"
 #include "sysid/diagnosis/causes/cause.h"
 #include "sysid/diagnosis/causes/form.h"
 

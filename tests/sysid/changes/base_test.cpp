@@ -6,11 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "model/blocks/sensor_lag.h"
-#include "model/blocks/sensor_saturation.h"
-#include "model/blocks/transport_delay.h"
-#include "model/named.h"
-#include "sysid/changes/filter_bank.h"
+#include "sysid/changes/base_prediction.h"
 #include "tests/sysid/changes/finger.h"
 
 namespace softgrip::sysid::base_test {
@@ -92,47 +88,6 @@ TEST(Base, KnowsARegulatorThatItDoesNotSee) {
   const Record record = thinned_for(base, make_records(healthy, {}).front());
   const Driven driven = driven_by(base, record);
   EXPECT_EQ(predict_base(base, record, {}), predict_base(base, record, {}, &driven));
-}
-
-TEST(Base, OfAPressureThatFollowsAtOnceADelayOfHalfASampleIsTheMeanOfTwo) {
-  const std::vector<Record> records = pressure_records(test::logs_of({}, 1, true), false);
-  const Base base = fit_base(records, Judged::pressure, Drive::command, {});
-  Extension late;
-  late.valve.push_back({model::block_type<model::TransportDelay>(), {0.01}});  // a delay of half the sample
-                                                                               // time
-  Record between = records[0];
-  for (std::size_t i = 1; i < between.size(); ++i)
-    between.drive_kpa[i] = 0.5 * (records[0].drive_kpa[i] + records[0].drive_kpa[i - 1]);
-  const std::vector<double> p = predict_base(base, records[0], late);
-  const std::vector<double> expected = predict_base(base, between, {});
-  for (std::size_t i = 1; i < p.size(); ++i) ASSERT_NEAR(p[i], expected[i], 1e-6) << i;
-}
-
-/// Returns a baseline model in which the filter bank contributes a large part of the prediction.
-Base with_a_large_filter_part() {
-  Base base = base_of(test::logs_of({}, 1));
-  const Record& record = base.records.front();
-  const Eigen::Index columns = filter_columns(record, record.drive_kpa, base.kind, base.largest_kpa).cols();
-  base.filter_weights = Eigen::VectorXd::Constant(columns, 2e-4);
-  return base;
-}
-
-TEST(Base, ASensorShowsTheFiltersAsWell) {
-  const Base base = with_a_large_filter_part();
-  const Record record = make_records(test::logs_of({}, 5), {}).front();
-  const std::vector<double> plain = predict_base(base, record, {});
-  double filters_mm = 0;
-  const Driven driven = driven_by(base, record);
-  for (const double v : driven.filters) filters_mm = std::max(filters_mm, std::abs(v));
-  ASSERT_GT(filters_mm, 0.5);
-  Extension limited;
-  limited.chain.push_back({model::block_type<model::SensorSaturation>(), {-10.0, 6.0}});
-  const std::vector<double> at_most = predict_base(base, record, limited);
-  for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_NEAR(at_most[i], std::min(plain[i], 6.0), 1e-9);
-  Extension lags;
-  lags.chain.push_back({model::block_type<model::SensorLag>(), {0.3}});
-  const std::vector<double> late = predict_base(base, record, lags), straight = lagged(record, plain, 0.3);
-  for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_NEAR(late[i], straight[i], 0.005);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "sysid/changes/base_prediction.h"
 #include "sysid/changes/effect_fit.h"
 #include "tests/sysid/changes/finger.h"
 
