@@ -274,6 +274,12 @@ class Collector {
 
 }  // namespace
 
+Extension extension_of(const std::vector<FittedEffect>& effects) {
+  Extension extension;
+  for (const FittedEffect& each : effects) each.effect.apply(extension, each.numbers);
+  return extension;
+}
+
 std::vector<Effect> effects_for(const Base& base, const std::vector<Record>& later,
                                 const std::vector<Line>& lines, bool pressure_is_judged) {
   return Collector(base, later, lines, pressure_is_judged).collect();

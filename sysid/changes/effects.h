@@ -45,6 +45,14 @@ struct Effect {
   std::optional<SizedBy> size = {};
 };
 
+/// An effect with the values of its parameters.
+struct FittedEffect {
+  Effect effect;
+  std::vector<double> numbers;
+};
+
+[[nodiscard]] Extension extension_of(const std::vector<FittedEffect>& effects);
+
 /// Returns all effects that the later records can show.
 /// @param lines  significant lines in the spectrum of the residual of these records.
 [[nodiscard]] std::vector<Effect> effects_for(const Base& base, const std::vector<Record>& later,

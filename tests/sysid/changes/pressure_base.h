@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sysid/changes/base_prediction.h"
-#include "sysid/changes/effect_fit.h"
+#include "sysid/changes/later_readings.h"
 #include "tests/sysid/changes/finger.h"
 
 namespace softgrip::sysid::test {
