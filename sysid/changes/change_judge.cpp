@@ -1,0 +1,331 @@
+#include "sysid/changes/change_judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "base/statistics.h"
+#include "sysid/changes/base_prediction.h"
+#include "sysid/changes/causes_without_block.h"
+#include "sysid/changes/change_search.h"
+#include "sysid/changes/change_size.h"
+#include "sysid/changes/filter_fit.h"
+#include "sysid/changes/healthy_runs.h"
+#include "sysid/diagnosis/causes/ageing.h"
+#include "sysid/diagnosis/causes/thermal_gain.h"
+#include "sysid/evidence/limits.h"
+#include "sysid/evidence/veto.h"
+#include "sysid/fitting/trajectory.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// A temperature coefficient counts as a property of the finger if it reduces the whitened mean square of the
+/// healthy logs by more than this value.
+constexpr double own_temperature_gain = 0.05;
+constexpr std::size_t most_causes = 3;
+
+double rms_of(const Binned& series) {
+  double sum = 0, count = 0;
+  for (const std::vector<double>& part : series) {
+    for (const double v : part) {
+      if (!std::isfinite(v)) continue;
+      sum += v * v;
+      count += 1;
+    }
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+double rms_about_mean(const std::vector<double>& series) {
+  PairSums sums;
+  for (const double v : series) sums.add(v, v);
+  return sums.count > 0 ? std::sqrt(std::max(0.0, sums.variance_x())) / sums.count : 0;
+}
+
+Binned minus(Binned from, const Binned& what) {
+  for (std::size_t r = 0; r < from.size(); ++r) {
+    for (std::size_t b = 0; b < from[r].size(); ++b) from[r][b] -= what[r][b];
+  }
+  return from;
+}
+
+void add(PairedLosses& losses, const PairedLosses& more) {
+  losses.worse.insert(losses.worse.end(), more.worse.begin(), more.worse.end());
+  losses.better.insert(losses.better.end(), more.better.begin(), more.better.end());
+  losses.rows.insert(losses.rows.end(), more.rows.begin(), more.rows.end());
+}
+
+std::string other_start(const std::string& record) {
+  return "No healthy log begins like " + record +
+         " with respect to the pressure (pressurised or vented), so a slow change after the start of this "
+         "log is not evaluated. Record a healthy log that begins in the same way";
+}
+
+/// Evaluates the displacement or the pressure: fits the baseline model to the healthy records and finds the
+/// causes of a change in the later records.
+class Judge {
+ public:
+  Judge(Base base, const ChangeOptions& options, bool pressure_is_judged)
+      : base_(std::move(base)), options_(options), pressure_is_judged_(pressure_is_judged) {}
+
+  void judge(const std::vector<Record>& later, ChangeDiagnosis& diagnosis) {
+    learn_temperature();
+    say("search for changes in each left-out healthy run");
+    healthy_ = healthy_fits(base_, pressure_is_judged_, options_.threads);
+    spread_ = RunSpread(healthy_, base_.units.runs());
+    const Tolerance tolerance = tolerance_of(healthy_, base_.units.runs());
+    const std::vector<std::vector<double>> residuals = residuals_of(base_, later);
+    const LaterReadings readings = readings_of(base_, later, residuals);
+    const std::vector<Effect> effects =
+        effects_for(base_, later, spectrum_peaks(later, residuals), pressure_is_judged_);
+    JudgedChange judged;
+    judged.judged = base_.judged;
+    judged.base = base_.description;
+    judged.healthy_runs = base_.units.runs();
+    judged.noise_mm = base_.noise_mm;
+    judged.healthy_mm = spread_.usual_rms();
+    judged.allowed_mm = spread_.allowed_rms();
+    const std::vector<std::string> other_starts = readings.other_starts();
+    for (const std::string& name : other_starts) diagnosis.warnings.push_back(other_start(name));
+    std::vector<FittedEffect> found;
+    Eigen::VectorXd white = readings.white(found);
+    judged.loss_before = judged.loss_left = per_bin(readings, white);
+    for (std::size_t step = 0; step < most_causes; ++step) {
+      say("search for changes in the later logs");
+      std::vector<ScoredEffect> ranked =
+          ranked_effects(readings, effects, found, tolerance, options_.threads);
+      if (step == 0) {
+        for (const ScoredEffect& each : ranked)
+          judged.tried.push_back({each.fit.fitted.effect.id,
+                                  each.fit.fitted.effect.form,
+                                  each.gain,
+                                  each.usual,
+                                  each.tolerance,
+                                  {}});
+      }
+      // A further cause is searched for only if the remaining error exceeds the error that is expected in
+      // another healthy run.
+      const double rms = readings.plain_rms(found);
+      const bool is_comparable = step == 0 && other_starts.empty();
+      if (is_comparable ? !spread_.admits_a_change(rms, judged.loss_left)
+                        : !spread_.is_exceeded(rms, judged.loss_left))
+        break;
+      const std::optional<ChangeCause> cause = first_change(readings, ranked, white, found, judged);
+      if (!cause) break;
+      diagnosis.causes.push_back(*cause);
+      found.push_back(cause->fitted);
+      white = readings.white(found);
+      judged.loss_left = per_bin(readings, white);
+    }
+    finish(readings, effects, found, judged);
+    diagnosis.readings.push_back(std::move(judged));
+  }
+
+ private:
+  void say(const std::string& text) const {
+    if (options_.progress) options_.progress(text);
+  }
+
+  /// Adds a temperature coefficient of the gain to the baseline model if the healthy logs show one. This
+  /// coefficient is a property of the finger, not a change.
+  void learn_temperature() {
+    std::vector<Effect> effects = effects_for(base_, base_.records, {}, pressure_is_judged_);
+    std::erase_if(effects, [](const Effect& e) { return e.id != causes::ThermalGain::id; });
+    if (effects.empty()) return;
+    const LaterReadings healthy = healthy_readings(base_);
+    const std::vector<ScoredEffect> ranked = ranked_effects(healthy, effects, {}, {}, options_.threads);
+    if (!(ranked.front().gain > own_temperature_gain)) return;
+    FittedEffect own = ranked.front().fit.fitted;
+    own.numbers.back() = 0;  // the baseline model already contains the gain at the mean temperature
+    base_.left = minus(std::move(base_.left), healthy.added({own}));
+    base_.gain_per_c = own.numbers.front();
+  }
+
+  static std::vector<FittedEffect> with(std::vector<FittedEffect> found, const FittedEffect& one) {
+    found.push_back(one);
+    return found;
+  }
+
+  /// Returns, for each row of the readings, true if the cause must have an effect at the operating point of
+  /// this row.
+  [[nodiscard]] std::vector<bool> required_rows(const LaterReadings& readings, Appears appears) const {
+    Binned drive, rate;
+    for (std::size_t r = 0; r < readings.records().size(); ++r) {
+      const Record& record = readings.records()[r];
+      const std::size_t bins = readings.left()[r].size();
+      drive.push_back(with_bins(binned(record, record.drive_kpa, base_.bin_s), bins));
+      rate.push_back(with_bins(peak_rate_of(record, base_.bin_s), bins));
+    }
+    std::vector<OperatingPoint> conditions;
+    for (const auto& [r, b, spread] : readings.rows().rows())
+      conditions.push_back({drive[r][b], rate[r][b], readings.plain()[r][b]});
+    return required_at(appears, conditions);
+  }
+
+  /// Returns true if the effect makes predictions worse. It is fitted to all later units except one and then
+  /// predicts this unit. Units in which the effect does not occur give no evidence. For example, half of a
+  /// run may not reach the saturation of a sensor.
+  [[nodiscard]] bool predicts_worse(const LaterReadings& readings, const Effect& effect,
+                                    const std::vector<FittedEffect>& found) const {
+    PairedLosses losses;
+    if (effect.free_form) return false;
+    const Units units(readings.records());
+    for (std::size_t unit = 0; unit < units.count(); ++unit) {
+      const LaterReadings rest = readings.without(units, unit), own = readings.only(units, unit);
+      if (rest.records().empty() || own.records().empty()) continue;
+      const EffectFit fit = fit_effect(rest, effect, found, rest.white(found));
+      const std::vector<FittedEffect> all = with(found, fit.fitted);
+      add(losses, losses_of(minus(own.left(), own.added(all)), minus(own.left(), own.added(found)),
+                            Units(own.records()), base_.bin_s));
+    }
+    return is_better(compare(losses, 0, options_.seed));
+  }
+
+  /// Returns the largest possible size of a cause whose size has the unit `unit`. It is the range of the
+  /// signal on which the cause acts.
+  [[nodiscard]] double largest_size(const LaterReadings& readings, const std::string& unit) const {
+    double length_s = 0;
+    for (const Record& record : readings.records()) length_s = std::max(length_s, record.length_s());
+    if (unit == "mm") return base_.span_mm;
+    if (unit == "kPa") return base_.largest_kpa;
+    if (unit == "s") return length_s;
+    return std::numeric_limits<double>::infinity();
+  }
+
+  [[nodiscard]] Veto vetoed(const LaterReadings& readings, const ScoredEffect& scored,
+                            const Eigen::VectorXd& without, const std::vector<FittedEffect>& found) const {
+    const FittedEffect& fitted = scored.fit.fitted;
+    const std::vector<bool> required = required_rows(readings, fitted.effect.appears);
+    Claim claim;
+    claim.condition_met =
+        static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) >= limits::fewest_bins;
+    if (!claim.condition_met) return veto_of(claim);
+    const std::vector<FittedEffect> all = with(found, fitted);
+    claim.size = intervals_of(readings, all, healthy_).back().size;
+    const ChangeSize size = size_of(readings, fitted, at_full_pressure(readings, readings.added({fitted})));
+    claim.largest_size = largest_size(readings, size.unit);
+    claim.error_without = readings.plain_rms(found);
+    claim.error_with = readings.plain_rms(all);
+    claim.predicts_worse = predicts_worse(readings, fitted.effect, found);
+    claim.shown_there =
+        is_better(compare(paired_losses(readings, without, scored.fit.white, &required), 0, options_.seed));
+    return veto_of(claim);
+  }
+
+  /// Returns the best effect that fulfils all conditions and whose error reduction exceeds its tolerance;
+  /// nullopt if there is none. Stores the reasons why other effects were rejected.
+  [[nodiscard]] std::optional<ChangeCause> first_change(const LaterReadings& readings,
+                                                        std::vector<ScoredEffect> ranked,
+                                                        const Eigen::VectorXd& without,
+                                                        const std::vector<FittedEffect>& found,
+                                                        JudgedChange& judged) const {
+    const auto reject = [&](const ScoredEffect& scored, std::string_view reason) {
+      for (TriedCause& tried : judged.tried) {
+        if (tried.id == scored.fit.fitted.effect.id && tried.rejected.empty()) tried.rejected = reason;
+      }
+    };
+    std::erase_if(ranked, [&](const ScoredEffect& each) {
+      const Comparison against_none =
+          compare(paired_losses(readings, without, each.fit.white),
+                  each.tolerance + price_per_row(readings, each.fit.fitted.effect), options_.seed);
+      if (is_better(against_none)) return false;
+      reject(each, "the improvement does not exceed the improvement in healthy runs");
+      return true;
+    });
+    const Ties ties = ties_in(readings, options_.seed);
+    for (; !ranked.empty(); ranked.erase(ranked.begin())) {
+      put_fewest_numbers_first(ranked, ties);
+      const Veto veto = vetoed(readings, ranked.front(), without, found);
+      if (veto == Veto::none) return cause_of(readings, ranked, ties, without, found);
+      reject(ranked.front(), reason_of(veto));
+    }
+    return std::nullopt;
+  }
+
+  /// Returns true if the zero offset of the later logs [mm] differs significantly from the mean zero offset
+  /// of the healthy runs. The difference must be larger than expected for a further healthy run.
+  [[nodiscard]] bool is_another_zero(double zero_mm) const {
+    const auto units = static_cast<double>(base_.units.count());
+    return std::abs(zero_mm - base_.zero_mm) >
+           t_quantile(units - 1) * base_.zero_spread_mm * std::sqrt(1 + 1 / units);
+  }
+
+  [[nodiscard]] ChangeCause cause_of(const LaterReadings& readings, const std::vector<ScoredEffect>& ranked,
+                                     const Ties& ties, const Eigen::VectorXd& without,
+                                     const std::vector<FittedEffect>& found) const {
+    const FittedEffect& best = ranked.front().fit.fitted;
+    const Binned added = readings.added({best});
+    ChangeCause cause;
+    cause.id = best.effect.id;
+    cause.title = best.effect.title;
+    cause.station = best.effect.station;
+    cause.judged = base_.judged;
+    cause.fitted = best;
+    cause.gain = ranked.front().gain;
+    const Comparison spread =
+        compare(paired_losses(readings, without, ranked.front().fit.white), 0, options_.seed);
+    cause.gain_lower = spread.lower;
+    cause.gain_upper = spread.upper;
+    for (std::size_t i = 1; i < ranked.size(); ++i) {
+      if (ties(ranked.front(), ranked[i]) && vetoed(readings, ranked[i], without, found) == Veto::none)
+        cause.alternatives.push_back(ranked[i].fit.fitted.effect.id);
+    }
+    if ((cause.id == causes::Ageing::WithTime::id ||
+         std::count(cause.alternatives.begin(), cause.alternatives.end(), causes::Ageing::WithTime::id) >
+             0) &&
+        is_another_zero(readings.nuisance(with(found, best)).zero_mm))
+      cause.alternatives.emplace_back(payload.id);
+    cause.effect_mm = rms_of(added);
+    cause.full_pressure_mm = at_full_pressure(readings, added);
+    cause.size = size_of(readings, best, cause.full_pressure_mm);
+    const double excess = per_bin(readings, without) - 1;
+    cause.share_percent = excess > 0 ? std::clamp(100 * cause.gain / excess, 0.0, 100.0) : 0;
+    return cause;
+  }
+
+  void finish(const LaterReadings& readings, const std::vector<Effect>& effects,
+              const std::vector<FittedEffect>& found, JudgedChange& judged) const {
+    judged.intervals = intervals_of(readings, found, healthy_);
+    judged.left_over = spread_.is_exceeded(readings.plain_rms(found), judged.loss_left);
+    judged.bin_s = base_.bin_s;
+    for (const Record& record : readings.records()) judged.logs.push_back(record.name);
+    judged.left = readings.left();
+    judged.explained = found.empty() ? judged.left : minus(readings.left(), readings.added(found));
+    for (std::size_t r = 0; r < base_.records.size(); ++r) {
+      const double left = rms_about_mean(base_.left[r]);
+      judged.runs.push_back({base_.records[r].name, true, left, left});
+    }
+    for (std::size_t r = 0; r < judged.logs.size(); ++r)
+      judged.runs.push_back(
+          {judged.logs[r], false, rms_about_mean(judged.left[r]), rms_about_mean(judged.explained[r])});
+    const LaterReadings::Nuisance nuisance = readings.nuisance(found);
+    judged.zero_mm = nuisance.zero_mm;
+    judged.gain_percent = 100 * nuisance.gain;
+    judged.later_mm = readings.plain_rms({});
+    judged.explained_mm = readings.plain_rms(found);
+    for (const Effect& effect : effects) {
+      const std::vector<bool> required = required_rows(readings, effect.appears);
+      if (static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) < limits::fewest_bins)
+        judged.not_tested.emplace(effect.id, recording_for(effect.appears));
+    }
+  }
+
+  Base base_;
+  const ChangeOptions& options_;
+  bool pressure_is_judged_;
+  std::vector<HealthyFits> healthy_;
+  RunSpread spread_;
+};
+
+}  // namespace
+
+void judge_change(Base base, bool pressure_is_judged, const std::vector<Record>& later,
+                  const ChangeOptions& options, ChangeDiagnosis& diagnosis) {
+  Judge(std::move(base), options, pressure_is_judged).judge(later, diagnosis);
+}
+
+}  // namespace softgrip::sysid
