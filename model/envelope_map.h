@@ -5,19 +5,23 @@
 
 namespace softgrip::model {
 
-/// b(p) = p (1 - (1 - x)(bend - skew (1 - 2 x))) with x = p/P on [0, P]. This is the cubic through (0, 0) and
-/// (P, P); outside the range, it continues as straight lines. A generalised play (Krasnosel'skii and
-/// Pokrovskii, Systems with Hysteresis, 1989, section 1.2) whose two envelopes are shifted copies of this
-/// curve equals a play of b(p). b rises everywhere if |bend| + |skew| < 1.
+/// Computes a function b(p) of the pressure p. For p from 0 to P, b is a cubic through (0, 0) and (P, P):
+///
+///     b(p) = p (1 - (1 - x)(bend - skew (1 - 2 x))),   x = p/P
+///
+/// Below 0 and above P, b is linear, with the slope of the cubic at this end. b rises everywhere if
+/// |bend| + |skew| < 1. A generalised play operator (Krasnosel'skii and Pokrovskii, Systems with Hysteresis,
+/// 1989, section 1.2) has two envelopes. If both envelopes are shifted copies of b, the operator equals a
+/// play operator with the input b(p).
 template <class T>
 class EnvelopeMap {
  public:
   /// Largest absolute values of bend and skew. b rises for every combination within these limits.
   static constexpr double most_bend = 0.6, most_skew = 0.35;
 
-  /// @param bend  half of the difference between the slopes b'(P) and b'(0).  @param skew  if it is above 0,
-  /// b
-  /// is less steep in the middle.  @param end_kpa  P, > 0. It has no effect if bend and skew are 0.
+  /// @param bend  half of the difference between the slopes b'(P) and b'(0).
+  /// @param skew  decreases the slope in the middle of the range: b'(P/2) = 1 - skew/2.
+  /// @param end_kpa  P, > 0 [kPa]; no effect if bend and skew are 0.
   EnvelopeMap(const T& bend, const T& skew, const T& end_kpa)
       : bend_(bend), skew_(skew), end_kpa_(end_kpa), bends_(!(is_zero(bend) && is_zero(skew))) {}
 

@@ -42,9 +42,10 @@ struct ModelHealthSettings {
   /// > 0; mean time between false alarms of a healthy model. The decision threshold is computed from this
   /// time.
   double false_alarm_interval_s = 3.6e6;
-  double unfit_mm = 1.5;      ///< > 0; the model is unfit if the root mean square of the residual over
-                              ///< unfit_window_s is above this
-  double unfit_window_s = 5;  ///< > 0; time over which the root mean square is taken
+  /// Limit for the root mean square of the residual over unfit_window_s, > 0. Above this limit, the model is
+  /// unfit.
+  double unfit_mm = 1.5;
+  double unfit_window_s = 5;  ///< > 0; time over which the root mean square of the residual is computed
 };
 
 /// Returns the mean number of independent standard normal values until a two-sided CUSUM with this allowance,

@@ -19,8 +19,9 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Planning a sequence may take this share of the duration of its motion, plus planning_slack_s for the load
-/// of the machine. If it takes longer, the delay of the start is reported.
+/// Longest permitted time for planning a sequence: longest_planning_share times the duration of the motion,
+/// plus planning_slack_s [s]. The slack is for the CPU load of other programs. If planning takes longer than
+/// permitted, a warning states by how much planning delays the start.
 constexpr double longest_planning_share = 0.1;
 constexpr double planning_slack_s = 0.2;
 

@@ -23,11 +23,13 @@ namespace {
 /// Largest number of new clients that one call accepts, so that the clients that are already connected do not
 /// wait too long.
 constexpr int most_accepts = 4;
-/// Times after which a silent client can lose its place: first_word before its first request [ns], and
-/// longest_silence after its last request or the last reply that it received [ns].
+/// If `max_clients` clients are connected, the server can disconnect a silent client to admit a new client.
+/// A client that has sent no request is silent after `first_word` [ns]. Any other client is silent after
+/// `longest_silence` [ns] without a request and without a reply.
 constexpr Nanoseconds first_word = ns_per_s / 10;
 constexpr Nanoseconds longest_silence = 5 * ns_per_s;
-/// Largest number of clients that are connected although they have no place.
+/// Largest number of clients of one role that are connected in addition to the permitted `max_clients`. The
+/// server refuses the requests of these clients, except urgent requests such as stop and vent.
 constexpr std::size_t most_standing = 32;
 /// Longest time for which the lines of one client are processed in one call. Processing a line is never
 /// interrupted.

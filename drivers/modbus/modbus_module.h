@@ -109,8 +109,9 @@ class ModbusModule {
   std::vector<std::vector<std::uint16_t>> replies_;  ///< one reply per read of the plan; a bit is stored as 0
                                                      ///< or 1
   Nanoseconds sampled_at_ = 0;
-  std::uint32_t unlooked_ = 0;  ///< number of exchanges since the last exchange that read before it wrote
-  bool confirmed_ = false;      ///< true: in the last exchange, the read-back confirmed the written values
+  /// Number of exchanges since the last exchange that read the outputs before it wrote the outputs.
+  std::uint32_t unlooked_ = 0;
+  bool confirmed_ = false;  ///< true: in the last exchange, the read-back confirmed the written values
   bool reads_first_ = false;
   bool alternate_due_ = false;  ///< true: the next write of the heartbeat has the alternate value
   bool clear_due_ = false;      ///< true: the session is new, so a tripped watchdog may be cleared

@@ -59,8 +59,11 @@ class RateLimit {
     next(Segment<T>::straight(in.duration_s, begin, output_));
   }
 
-  /// Returns the time at which the output meets a straight input, or the whole duration. The gap changes at
-  /// the rate slope - 1 / s_per_kpa.
+  /// Returns the time from the start of the segment [s] at which the output reaches an input that is linear
+  /// in time. If the output does not reach the input within the segment, returns the duration of the segment.
+  /// `gap` is input minus output at the start of the segment [kPa]. The gap changes at this rate [kPa/s]:
+  ///
+  ///     slope of the input - 1 / s_per_kpa
   static T meeting(const Segment<T>& in, const T& gap, const T& s_per_kpa) {
     if (value_of(s_per_kpa) == 0.0) return T(0.0);
     const T closing = 1.0 / s_per_kpa - (in.end - in.begin) / in.duration_s;

@@ -12,7 +12,10 @@ namespace softgrip::sysid {
 struct Claim {
   /// 95 % interval of the size of the cause; empty: the data do not determine the size.
   std::optional<Interval> size;
-  double largest_size = 0;   ///< range of the signal on which the cause acts, in the unit of the size
+  /// Largest possible size of the cause, in the unit of `size`: the span of the displacement [mm], the
+  /// largest pressure [kPa] or the length of the longest log [s]. For other units, it is infinity: every size
+  /// is possible.
+  double largest_size = 0;
   double error_without = 0;  ///< RMSE without the cause, over all readings that should show the cause
   double error_with = 0;     ///< RMSE with the cause, over all readings that should show the cause
   /// True: with the cause, the error of readings that were left out of the fit is larger.

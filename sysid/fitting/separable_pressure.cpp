@@ -35,7 +35,7 @@ class DurationTable {
   std::vector<double>& durations_;
 };
 
-/// A piece of the drive in which it is linear.
+/// A time interval in which the input pressure of the model is linear in time.
 struct Piece {
   double duration_s;
   double end_kpa;
@@ -66,7 +66,7 @@ void append_straight(PressureWalk& walk, double begin_kpa, double end_kpa, doubl
   walk.stretches.push_back(s);
 }
 
-/// Appends the pieces of the drive for a chain without a delay.
+/// Appends the linear pieces of the input pressure to `walk`. The model chain has no delay.
 void append_undelayed(PressureWalk& walk, const std::vector<Piece>& pieces, DurationTable& durations) {
   double last = walk.first_kpa;
   for (const Piece& piece : pieces) {
@@ -76,7 +76,8 @@ void append_undelayed(PressureWalk& walk, const std::vector<Piece>& pieces, Dura
   }
 }
 
-/// Appends the pieces of the drive, delayed by `delay_s` and split at the samples.
+/// Delays the linear pieces of the input pressure by `delay_s` [s], splits them at the samples of the record
+/// and appends them to `walk`.
 void append_delayed(PressureWalk& walk, const Record& record, const std::vector<Piece>& pieces,
                     double delay_s, DurationTable& durations) {
   std::size_t next = 0;  // index of the piece after the current one

@@ -154,8 +154,8 @@ double length_s(const Compared& c, const Stretch& stretch) {
   return stretch.last > stretch.first ? c.log.time_s[stretch.last - 1] - c.log.time_s[stretch.first] : 0;
 }
 
-/// Returns the longest segment of a part of the grip with a constant command. The first `settling_s` of the
-/// segment are left out.
+/// Returns the longest segment of samples that belong to `part` and have a constant command. The first
+/// `settling_s` seconds of the segment are excluded.
 Stretch longest_still(const Compared& c, Part part, double full_kpa) {
   Stretch best;
   for (std::size_t begin = 0; begin < c.log.size();) {

@@ -170,7 +170,8 @@ void draw_stalls(const Draw& draw, std::vector<Incident>& incidents) {
   }
 }
 
-/// Draws incidents of softgrip-plc after the first second, during which master and gateway connect.
+/// Draws random incidents of softgrip-plc. No incident begins in the first second, because the PLC clients
+/// connect to softgrip-plc in this time.
 void draw_plc(const Draw& draw, std::vector<Incident>& incidents) {
   Drawing drawing(derived_seed(draw.seed, 5));
   for (double at_s = 1;;) {

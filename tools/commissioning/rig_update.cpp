@@ -20,7 +20,8 @@ using document::Node;
 constexpr std::size_t most_bytes = 256 * 1024;
 constexpr std::string_view mark = "# softgrip calibrate";
 
-/// A map of the channel (for example `sensor`) that gets new points.
+/// Data for the replacement of the calibration points in one YAML map of the rig file, for example in the map
+/// `sensor` of a channel.
 struct Target {
   std::string map;  ///< key of the map, for example "sensor"
   std::string is;   ///< key of the values in the map, for example "is_mm"

@@ -63,9 +63,11 @@ class Rigs {
   [[nodiscard]] double mean() const { return mean_mm_; }
   [[nodiscard]] double amplitude() const { return amplitude_mm_; }
 
-  /// Returns the result with a feedforward from this model. The feedforward is the inverse of the whole
-  /// model, if this inverse exists. Otherwise, it is the better of two: a plan with the model, or the inverse
-  /// of the model's invertible part. The error is infinite if neither exists.
+  /// Returns the closed-loop result with a feedforward from this model. If the whole model has an inverse,
+  /// the feedforward is this inverse. If it has no inverse, two feedforwards are compared: a plan that is
+  /// computed with the model, and the inverse of the model's invertible part. The result is that of the
+  /// feedforward with the smaller tracking error. If none of these feedforwards can be computed, the tracking
+  /// error is infinite.
   [[nodiscard]] ClosedLoopScheme with_model(const model::Model& believed) const {
     ClosedLoopScheme whole = measured(believed, FeedforwardKind::full_model);
     if (whole.refused.empty()) return whole;

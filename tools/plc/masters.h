@@ -63,9 +63,9 @@ class Masters {
   void drop_silent(Nanoseconds now, Nanoseconds longest);
   /// Stores the counter of this connection, with which later connections of the same address begin.
   void remember_counter(const Master& master) { past_[master.address].at = master.cursor.at; }
-  /// Prevents the connections of this address from executing commands until they have written the newest
-  /// counter. Call this function after a refused command, because another connection of the address may send
-  /// the same command or an older start.
+  /// Blocks the commands of each connection of this address until this connection writes the newest counter.
+  /// Call this function after a command of the address was refused. Another connection of the same address
+  /// may otherwise send the refused command or an older start, and this command would be executed.
   void lose_step(const std::string& address);
   /// Stores a heartbeat. Returns true if it differs from the last heartbeat of this connection. The first
   /// heartbeat of a new connection is compared with the last heartbeat of its address.

@@ -15,8 +15,9 @@
 
 namespace softgrip::web {
 
-/// Converts the body of a browser's request to a request for the daemon: start, stop, vent, release or
-/// acknowledge. Only a start may have a sequence and parameters. The error is a sentence.
+/// Converts the JSON body of a browser's request to a request for the daemon. The permitted commands are
+/// start, stop, vent, release and acknowledge. Only the command start may contain a sequence and parameters.
+/// If the body is invalid, returns an error message.
 [[nodiscard]] tl::expected<nlohmann::ordered_json, std::string> command_in(std::string_view body);
 
 /// Sends commands and gives every start its own id. If the outcome of a start cannot be sent to the browser,

@@ -25,7 +25,8 @@ struct SensorSaturation : FormOf<model::SensorSaturation> {
     return every({{"lower_mm", {no_floor_mm}},
                   {"upper_mm", {0.97 * s.span_mm, 0.9 * s.span_mm, 0.75 * s.span_mm, 0.6 * s.span_mm}}});
   }
-  /// Returns parameter values of the block as the start of a fit to gauge readings.
+  /// Returns the parameter values of a block that saturates at `upper_mm`. The gauge check fits `upper_mm` to
+  /// readings of the sensor at positions that a gauge measured.
   static Values ending(double upper_mm) {
     return start({{"lower_mm", no_floor_mm}, {"upper_mm", std::max(upper_mm, 0.9 * no_floor_mm)}});
   }

@@ -50,8 +50,8 @@ struct RunError {
   std::string run;
   double given = 0;
   double recalibrated = 0;  ///< RMSE of the refitted model, which was fitted to the other runs
-  /// RMSE of the extended model, which was fitted to the other runs; `recalibrated` if there is no such
-  /// model.
+  /// RMSE of the extended model, which was fitted to the other runs. If there is no extended model, the value
+  /// of the member `recalibrated`.
   double extended = 0;
 };
 

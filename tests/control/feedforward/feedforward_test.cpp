@@ -328,8 +328,9 @@ struct Follower {
   int ticks = 0;
 };
 
-// In a finger with an elastic part and a creeping part, the part that needs less pressure makes the jump. In
-// a finger without creep, the elastic part makes the jump.
+// The reference jumps from 0 to 8 mm, and the finger must reach 8 mm within a limited time. If the finger has
+// an elastic and a creeping element, it moves by the element that needs less pressure. A finger without creep
+// moves by its elastic element.
 TEST(FullModelFeedforward, AJumpTakesAsLongAsTheEasierWayThere) {
   const model::Model twin = model_named("bench_twin");
   struct Case {

@@ -200,8 +200,8 @@ TEST_F(ContactTest, FreeMotionsMeetNothing) {
   EXPECT_EQ(rig.count(Event::Kind::limit_binds), 0U);
 }
 
-// A frozen reading looks like a finger that a part has stopped. The result must never be HOLDING, whenever
-// the reading freezes.
+// A frozen displacement reading looks like the reading of a finger that a part has stopped. The test freezes
+// the reading at different times of a sequence. The grip result must never be HOLDING.
 TEST_F(ContactTest, ASensorThatFreezesIsNoPart) {
   for (const char* name : {"pick_stone", "hand_over", "pick_screw", "empty_grip"}) {
     const PreparedSequence sequence = example_sequence(name, settings);
