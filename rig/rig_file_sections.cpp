@@ -88,7 +88,8 @@ void read_socket_mode(MapReader& reader, SocketFile& socket, bool moves) {
   const auto letters = in_letters(text);
   const auto mode = letters ? letters : octal(text);
   if (!mode) {
-    reader.report("mode", "`mode` must be permissions, found `" + document::shown(text) + "`",
+    reader.report("mode",
+                  "`mode` must state the permissions of the socket, found `" + document::shown(text) + "`",
                   "write rw-rw----, or \"0660\" in octal: then the owner and the group may connect");
     return;
   }

@@ -143,9 +143,9 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
         info);  // the asymmetry block is a part of the element
   });
   if (!model::position_of<model::BoucWen>(part)) {
-    return tl::unexpected(
-        Refusal{"this feedforward is the inverse of a `bouc_wen` block, which the model does not have; "
-                "`full_model` is the inverse of the complete chain"});
+    return tl::unexpected(Refusal{
+        "the feedforward `bouc_wen` is the inverse of a `bouc_wen` block, but the model has no such block; "
+        "the feedforward `full_model` is the inverse of the complete model"});
   }
   return check_gain(part, limits, tick_s, 0, "");
 }

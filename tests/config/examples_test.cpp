@@ -159,7 +159,8 @@ TEST_F(CheckFolder, SequencesAreFittedToARigThatHasErrorsElsewhere) {
   write("far.yaml",
         "name: far\nchannels: [left, middle]\nsteps:\n  - move: {displacement_mm: 90, duration_s: 1}\n");
   const rig::CheckReport report = check();
-  EXPECT_TRUE(says(report, "`mode` must be permissions, found `9999`")) << report.problems.format();
+  EXPECT_TRUE(says(report, "`mode` must state the permissions of the socket, found `9999`"))
+      << report.problems.format();
   EXPECT_TRUE(says(report, "the rig has no channel 'middle'")) << report.problems.format();
   EXPECT_TRUE(says(report, "goes to 90 mm")) << report.problems.format();
 }
@@ -180,7 +181,8 @@ TEST_F(CheckFolder, AndToTheChannelsOfOneThatCouldBeRead) {
 TEST_F(CheckFolder, WhatComparesSeveralPartsIsToldBesideOtherErrors) {
   write_rig({{"watchdog_timeout_s: 0.5", "watchdog_timeout_s: 0.02"}, {"mode: \"0660\"", "mode: \"9999\""}});
   const rig::CheckReport report = check();
-  EXPECT_TRUE(says(report, "`mode` must be permissions, found `9999`")) << report.problems.format();
+  EXPECT_TRUE(says(report, "`mode` must state the permissions of the socket, found `9999`"))
+      << report.problems.format();
   EXPECT_TRUE(says(report, "`bus_down_cycles` correspond to")) << report.problems.format();
 }
 

@@ -319,14 +319,16 @@ void add_calibrate(CLI::App& program, ExitCode& outcome) {
   command->add_flag("--manometer", options->manometer,
                     "Use a manometer, although the channel has a pressure monitor");
   command
-      ->add_option("--gauge-mm", options->gauge_mm,
-                   "Readings of the gauge, instead of questions at the terminal: two values, or two values "
-                   "for each visit")
+      ->add_option(
+          "--gauge-mm", options->gauge_mm,
+          "Readings of the gauge; the command then does not request readings at the terminal. Give one "
+          "reading for each of the 2 positions, or 2 readings for each repetition (--repeats)")
       ->expected(2, 40);
   command
-      ->add_option("--manometer-kpa", options->manometer_kpa,
-                   "Readings of the manometer, instead of questions at the terminal: two values, or two "
-                   "values for each visit")
+      ->add_option(
+          "--manometer-kpa", options->manometer_kpa,
+          "Readings of the manometer; the command then does not request readings at the terminal. Give "
+          "one reading for each of the 2 pressures, or 2 readings for each repetition (--repeats)")
       ->expected(2, 40);
   add_measuring_options(*command, *options);
   command->add_option("--date", options->date, "Date of the calibration [today]");

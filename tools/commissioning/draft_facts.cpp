@@ -319,8 +319,9 @@ const std::vector<Fact>& draft_facts() {
       {"sensor-mm", "Displacements at the lower and the upper end of the sensor's signal [-5 45]", 2,
        ask_sensor, take_sensor},
       {"monitor",
-       "`yes` if the pressure of each finger is measured, else `no` [yes if there are enough inputs]", 1,
-       ask_monitor, take_monitor},
+       "`yes`: the monitor output of each valve, which measures the pressure, is wired to an input of the "
+       "board. `no`: no pressure is measured [yes if the board has enough inputs]",
+       1, ask_monitor, take_monitor},
       {"accept-no-watchdog", "`yes`: accept a board that does not vent without communication", 1,
        ask_watchdog, take_watchdog},
   };

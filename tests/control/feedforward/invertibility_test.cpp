@@ -65,8 +65,8 @@ TEST(Invertibility, PlaysAreAcceptedAsAWholeAlone) {
   ASSERT_FALSE(part);
   EXPECT_EQ(
       part.error().with_advice(),
-      "this feedforward is the inverse of a `bouc_wen` block, which the model does not have; `full_model` is "
-      "the inverse of the complete chain");
+      "the feedforward `bouc_wen` is the inverse of a `bouc_wen` block, but the model has no such block; the "
+      "feedforward `full_model` is the inverse of the complete model");
 }
 
 // A play operator does not move while its input stays within its threshold. In this range, creep alone moves

@@ -537,8 +537,8 @@ TEST_F(BusTest, OutputsFoundNearerToRestAreNotWrittenBack) {
   EXPECT_EQ(last_written(), 5);
   command(12, 0, false, shared_.bus.value().health.inhibit);
   step();
-  EXPECT_EQ(last_written(), 5) << "the control loop knows the fault, but its command is further from the "
-                                  "rest pressure than the output";
+  EXPECT_EQ(last_written(), 5) << "the command of 12 kPa must not be written: it is further from the rest "
+                                  "pressure than the output of 5 kPa";
   command(4, 0, false, shared_.bus.value().health.inhibit);
   step();
   EXPECT_EQ(last_written(), 4);
