@@ -10,8 +10,8 @@
 #include "base/parallel.h"
 #include "sysid/diagnosis/causes/backlash.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
+#include "sysid/diagnosis/search/linear_fit.h"
 #include "sysid/diagnosis/search/linear_holdout.h"
-#include "sysid/diagnosis/search/linear_look.h"
 #include "sysid/diagnosis/search/named_claim.h"
 #include "sysid/diagnosis/search/scan.h"
 #include "sysid/diagnosis/search/scored.h"
@@ -58,11 +58,11 @@ Start start_at(const std::vector<Record>& records, FitPoint point) {
 }
 
 Start best_answer(const std::vector<Record>& records, const Scan& base, const Cause& cause,
-                  const Look& look) {
-  const model::BlockSpec& block = look.beside.model.blocks[*position_of(look.beside.model, cause)];
-  Start best{look.beside};
+                  const LinearFit& fit) {
+  const model::BlockSpec& block = fit.beside.model.blocks[*position_of(fit.beside.model, cause)];
+  Start best{fit.beside};
   for (const double share : answers) {
-    FitPoint point = base.answer_to(look.left, share);
+    FitPoint point = base.answer_to(fit.left, share);
     point.model = model::with_block(point.model, block);
     Start one = start_at(records, std::move(point));
     if (one.left_mm2 < best.left_mm2) best = std::move(one);
@@ -91,7 +91,7 @@ class SelectorUpon {
   /// Returns the fits of all causes that the structure does not contain, in the order of increasing mean
   /// square. A cause with a free form has two elements: the fit of its best physical law, and the fit of its
   /// free form.
-  std::vector<std::pair<Cause, Look>> looks(const Scan& scan) {
+  std::vector<std::pair<Cause, LinearFit>> linear_fits(const Scan& scan) {
     const StructureFit& current = result_.extended;
     if (!scan.usable()) return {};
     std::vector<Cause> causes;
@@ -101,22 +101,22 @@ class SelectorUpon {
         causes.push_back(cause);
     }
     // For each cause, the best physical law and the best free form.
-    std::vector<std::array<Look, 2>> best(causes.size());
+    std::vector<std::array<LinearFit, 2>> best(causes.size());
     std::atomic<std::size_t> tried{0};
     parallel_for(causes.size(), data_.threads, [&](std::size_t i) {
       for (const FitPoint& start : best_starts({&scan, 1}, causes[i], scales_, fewest_looks)) {
-        Look look = look_from(data_.thinned, scan, causes[i], start);
-        Look& of_its_kind = best[i][has_free_form(start.model, causes[i]) ? 1 : 0];
-        if (look.mean_square_mm2 < of_its_kind.mean_square_mm2) of_its_kind = std::move(look);
+        LinearFit fit = linear_fit_from(data_.thinned, scan, causes[i], start);
+        LinearFit& of_its_kind = best[i][has_free_form(start.model, causes[i]) ? 1 : 0];
+        if (fit.mean_square_mm2 < of_its_kind.mean_square_mm2) of_its_kind = std::move(fit);
       }
       if (options_.progress)
         options_.progress("another base: tested " + std::to_string(++tried) + " of " +
                           std::to_string(causes.size()));
     });
-    std::vector<std::pair<Cause, Look>> list;
+    std::vector<std::pair<Cause, LinearFit>> list;
     for (std::size_t i = 0; i < causes.size(); ++i) {
-      for (Look& look : best[i]) {
-        if (std::isfinite(look.mean_square_mm2)) list.emplace_back(causes[i], std::move(look));
+      for (LinearFit& fit : best[i]) {
+        if (std::isfinite(fit.mean_square_mm2)) list.emplace_back(causes[i], std::move(fit));
       }
     }
     std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) {
@@ -140,10 +140,10 @@ class SelectorUpon {
       const Scan scan(data_.thinned, others, again);
       if (!scan.usable()) break;
       again.model = model::with_block(again.model, model.blocks[*position_of(model, cause)]);
-      const Look look = look_from(data_.thinned, scan, cause, again);
+      const LinearFit fit = linear_fit_from(data_.thinned, scan, cause, again);
       Start now = start_at(data_.thinned, std::move(again));
-      if (std::isfinite(look.mean_square_mm2)) {
-        Start answered = best_answer(data_.thinned, scan, cause, look);
+      if (std::isfinite(fit.mean_square_mm2)) {
+        Start answered = best_answer(data_.thinned, scan, cause, fit);
         if (answered.left_mm2 < now.left_mm2) now = std::move(answered);
       }
       if (!(now.left_mm2 < best.left_mm2)) break;
@@ -165,17 +165,17 @@ class SelectorUpon {
 
   std::vector<ScoredCandidate> score() {
     const Scan scan(data_.thinned, result_.extended.causes, result_.extended.point);
-    const std::vector<std::pair<Cause, Look>> found = looks(scan);
+    const std::vector<std::pair<Cause, LinearFit>> found = linear_fits(scan);
     const auto worse = std::find_if(found.begin(), found.end(), [&](const auto& one) {
       return one.second.mean_square_mm2 > hopeless_ratio * found.front().second.mean_square_mm2;
     });
     std::vector<ScoredCandidate> followed(
         std::min(most_finalists, static_cast<std::size_t>(worse - found.begin())));
     parallel_for(followed.size(), data_.threads, [&](std::size_t i) {
-      const auto& [cause, look] = found[i];
+      const auto& [cause, fit] = found[i];
       std::vector<Cause> causes = result_.extended.causes;
       causes.push_back(cause);
-      followed[i] = finished(best_answer(data_.thinned, scan, cause, look), causes);
+      followed[i] = finished(best_answer(data_.thinned, scan, cause, fit), causes);
     });
     std::vector<ScoredCandidate> scored;
     for (ScoredCandidate& one : followed) put_if_better(std::move(one), scored);

@@ -14,7 +14,7 @@
 namespace softgrip::sysid {
 
 /// A cause that was fitted to thinned records. The base structure responds linearly to the cause.
-struct Look {
+struct LinearFit {
   /// Model with the fitted parameters of the cause; the parameters of the base structure are not changed.
   FitPoint beside;
   Eigen::VectorXd left;
@@ -26,7 +26,7 @@ struct Look {
 /// simulated.
 /// @param base  base structure on the same records.
 /// @param start  model with the cause, at which the fit starts.
-[[nodiscard]] Look look_from(const std::vector<Record>& records, const Scan& base, const Cause& cause,
-                             const FitPoint& start);
+[[nodiscard]] LinearFit linear_fit_from(const std::vector<Record>& records, const Scan& base,
+                                        const Cause& cause, const FitPoint& start);
 
 }  // namespace softgrip::sysid

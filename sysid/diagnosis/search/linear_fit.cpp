@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/search/linear_look.h"
+#include "sysid/diagnosis/search/linear_fit.h"
 
 #include <memory>
 #include <span>
@@ -42,8 +42,8 @@ class ResidualsBesideBase final : public Residuals {
 
 }  // namespace
 
-Look look_from(const std::vector<Record>& records, const Scan& base, const Cause& cause,
-               const FitPoint& start) {
+LinearFit linear_fit_from(const std::vector<Record>& records, const Scan& base, const Cause& cause,
+                          const FitPoint& start) {
   const FitSpace numbers = cause_space(records, start, cause);
   const ResidualsBesideBase residuals(base, records, numbers);
   MinimiseOptions options;

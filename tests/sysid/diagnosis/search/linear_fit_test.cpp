@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/search/linear_look.h"
+#include "sysid/diagnosis/search/linear_fit.h"
 
 #include <cmath>
 #include <vector>
@@ -9,12 +9,12 @@
 #include "sysid/fitting/start_estimate.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid::linear_look_test {
+namespace softgrip::sysid::linear_fit_test {
 namespace {
 
 constexpr double noise_mm = 0.04;
 
-TEST(LinearLook, FitsTheCauseAndLeavesTheBaseStructureAsItIs) {
+TEST(LinearFit, FitsTheCauseAndLeavesTheBaseStructureAsItIs) {
   const model::Model base = loaded("zhang2025");
   const Cause cause = *find_cause("backlash");
   const auto with_gap = [&](double gap_mm) {
@@ -25,12 +25,12 @@ TEST(LinearLook, FitsTheCauseAndLeavesTheBaseStructureAsItIs) {
   const Scan scan(records, {}, {base, rest_starts(base, records)});
   ASSERT_TRUE(scan.usable());
   const model::Model start = with_gap(0.7);
-  const Look look = look_from(records, scan, cause, {start, rest_starts(start, records)});
-  EXPECT_NEAR(std::sqrt(look.mean_square_mm2), noise_mm, 0.1 * noise_mm);
-  const model::Model& fitted = look.beside.model;
+  const LinearFit fit = linear_fit_from(records, scan, cause, {start, rest_starts(start, records)});
+  EXPECT_NEAR(std::sqrt(fit.mean_square_mm2), noise_mm, 0.1 * noise_mm);
+  const model::Model& fitted = fit.beside.model;
   EXPECT_NEAR(fitted.blocks[*position_of(fitted, cause)].values[0], 1.2, 0.12);
   EXPECT_EQ(fitted.blocks[0].values, base.blocks[0].values);
 }
 
 }  // namespace
-}  // namespace softgrip::sysid::linear_look_test
+}  // namespace softgrip::sysid::linear_fit_test
