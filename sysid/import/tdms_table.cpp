@@ -1,10 +1,8 @@
 #include "sysid/import/tdms_table.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -12,12 +10,10 @@
 
 #include "sysid/import/array_table.h"
 #include "sysid/import/byte_scanner.h"
+#include "sysid/import/tdms_value.h"
 
 namespace softgrip::sysid {
 namespace {
-
-static_assert(std::endian::native == std::endian::little,
-              "the values are copied from the file without a conversion");
 
 constexpr std::size_t lead_in_bytes = 28;
 constexpr std::size_t most_channels = 10'000;
@@ -38,102 +34,6 @@ constexpr std::uint32_t is_interleaved = 32;
 constexpr std::uint32_t is_big_endian = 64;
 constexpr std::uint32_t is_daqmx = 128;
 
-enum class TdmsType : std::uint32_t {
-  i8 = 1,
-  i16,
-  i32,
-  i64,
-  u8,
-  u16,
-  u32,
-  u64,
-  f32,
-  f64,
-  f32_unit = 0x19,
-  f64_unit = 0x1a,
-  string = 0x20,
-  boolean = 0x21,
-  time = 0x44
-};
-
-/// Returns the size of one value of this type [bytes]; 0 for a text or an unknown type.
-std::size_t size_of(TdmsType type) {
-  switch (type) {
-    case TdmsType::i8:
-    case TdmsType::u8:
-    case TdmsType::boolean:
-      return 1;
-    case TdmsType::i16:
-    case TdmsType::u16:
-      return 2;
-    case TdmsType::i32:
-    case TdmsType::u32:
-    case TdmsType::f32:
-    case TdmsType::f32_unit:
-      return 4;
-    case TdmsType::i64:
-    case TdmsType::u64:
-    case TdmsType::f64:
-    case TdmsType::f64_unit:
-      return 8;
-    case TdmsType::time:
-      return 16;
-    default:
-      return 0;
-  }
-}
-
-template <class T>
-T copied(const char* at) {
-  T value{};
-  std::memcpy(&value, at, sizeof(T));
-  return value;
-}
-
-/// A time stamp since 1904, stored in two parts, because a single double has too few digits.
-struct Stamp {
-  std::int64_t seconds = 0;
-  double fraction = 0;
-};
-Stamp stamp_at(const char* at) {
-  return {copied<std::int64_t>(at + 8), std::ldexp(static_cast<double>(copied<std::uint64_t>(at)), -64)};
-}
-double between(const Stamp& from, const Stamp& to) {
-  // A damaged file can contain any number of seconds. The difference of two doubles cannot overflow, but the
-  // difference of two integers can.
-  return (static_cast<double>(to.seconds) - static_cast<double>(from.seconds)) +
-         (to.fraction - from.fraction);
-}
-
-/// Reads a value as a number. The type must not be a time stamp.
-double number_at(TdmsType type, const char* at) {
-  switch (type) {
-    case TdmsType::i8:
-      return copied<std::int8_t>(at);
-    case TdmsType::i16:
-      return copied<std::int16_t>(at);
-    case TdmsType::i32:
-      return copied<std::int32_t>(at);
-    case TdmsType::i64:
-      return static_cast<double>(copied<std::int64_t>(at));
-    case TdmsType::u8:
-      return copied<std::uint8_t>(at);
-    case TdmsType::boolean:
-      return copied<std::uint8_t>(at) != 0 ? 1 : 0;
-    case TdmsType::u16:
-      return copied<std::uint16_t>(at);
-    case TdmsType::u32:
-      return copied<std::uint32_t>(at);
-    case TdmsType::u64:
-      return static_cast<double>(copied<std::uint64_t>(at));
-    case TdmsType::f32:
-    case TdmsType::f32_unit:
-      return static_cast<double>(copied<float>(at));
-    default:
-      return copied<double>(at);
-  }
-}
-
 struct TdmsChannel {
   std::string name;
   std::string unit;
@@ -142,10 +42,10 @@ struct TdmsChannel {
   std::uint64_t count = 0;  ///< number of values of this channel in a chunk
   std::uint64_t bytes = 0;  ///< size of the values of this channel in a chunk
   std::vector<double> values;
-  std::optional<Stamp> first;  ///< first value, if the channel contains time stamps
-  double increment_s = 0;      ///< sampling interval of a waveform; 0: not a waveform
+  std::optional<TdmsStamp> first;  ///< first value, if the channel contains time stamps
+  double increment_s = 0;          ///< sampling interval of a waveform; 0: not a waveform
   double start_offset_s = 0;
-  std::optional<Stamp> start;
+  std::optional<TdmsStamp> start;
   bool needs_scale = false;
   std::size_t cut_off = 0;  ///< number of values in the incomplete chunk at the end of the file
 };
@@ -316,7 +216,7 @@ class TdmsReader {
       const char* const at = scan.skip(size);
       if (at == nullptr) return false;
       if (size == 0) return unread_type(type, "a property " + quoted(name));
-      if (type == TdmsType::time && name == "wf_start_time") channel.start = stamp_at(at);
+      if (type == TdmsType::time && name == "wf_start_time") channel.start = tdms_stamp_at(at);
       if (type == TdmsType::time) continue;
       if (name == "wf_increment") channel.increment_s = number_at(type, at);
       if (name == "wf_start_offset") channel.start_offset_s = number_at(type, at);
@@ -397,9 +297,9 @@ class TdmsReader {
 
   static void take(TdmsChannel& channel, const char* at) {
     if (channel.type != TdmsType::time) return channel.values.push_back(number_at(channel.type, at));
-    const Stamp stamp = stamp_at(at);
+    const TdmsStamp stamp = tdms_stamp_at(at);
     if (!channel.first) channel.first = stamp;
-    channel.values.push_back(between(*channel.first, stamp));
+    channel.values.push_back(seconds_between(*channel.first, stamp));
   }
 
   void deliver() {
@@ -409,7 +309,7 @@ class TdmsReader {
       arrays_.note("incomplete rows or blocks of values are left out: " + std::to_string(cut_off_bytes_) +
                    " bytes");
     std::map<std::tuple<double, double, std::size_t>, std::string> times;
-    std::optional<Stamp> first_start;
+    std::optional<TdmsStamp> first_start;
     for (TdmsChannel& channel : channels_) {
       if (channel.type == TdmsType::string && channel.has_index) arrays_.skip(channel.name, "a text");
       if (channel.values.empty()) continue;
@@ -426,7 +326,7 @@ class TdmsReader {
       if (channel.increment_s > 0 && std::isfinite(channel.increment_s)) {
         if (channel.start && !first_start) first_start = channel.start;
         const double start =
-            channel.start_offset_s + (channel.start ? between(*first_start, *channel.start) : 0);
+            channel.start_offset_s + (channel.start ? seconds_between(*first_start, *channel.start) : 0);
         std::string& time = times[{channel.increment_s, start, count}];
         if (time.empty()) {
           time = times.size() == 1 ? "wf_time" : "wf_time " + std::to_string(times.size());
