@@ -1,11 +1,9 @@
 #include "sysid/import/workbook_sheet.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <map>
 #include <optional>
 
@@ -13,6 +11,7 @@
 #include "sysid/import/cell_value.h"
 #include "sysid/import/table.h"
 #include "sysid/import/units.h"
+#include "sysid/import/workbook_date.h"
 #include "sysid/import/workbook_xml.h"
 #include "sysid/logs/csv_text.h"
 
@@ -73,31 +72,6 @@ std::optional<Place> place_of(std::string_view reference) {
   const auto row = row_number(reference.substr(letters));
   if (letters == 0 || !row || place.column > most_sheet_columns) return std::nullopt;
   return Place{*row, place.column - 1};
-}
-
-/// Returns a date in ISO 8601, or a time of day if `with_day` is false. @param serial  days since `from`.
-/// Excel stores times with a resolution of about 0.6 us, so finer digits are rounding errors.
-std::string iso_date(double serial, std::chrono::sys_days from, bool with_day) {
-  constexpr std::int64_t ticks_a_second = 1'000'000;
-  constexpr std::int64_t ticks_a_day = 86400 * ticks_a_second;
-  const std::int64_t step = with_day ? 10 : 1;
-  const auto ticks =
-      static_cast<std::int64_t>(std::llround(serial * ticks_a_day / static_cast<double>(step))) * step;
-  const std::chrono::year_month_day day{from + std::chrono::days{ticks / ticks_a_day}};
-  const std::int64_t of_day = ticks % ticks_a_day;
-  const std::int64_t second = of_day / ticks_a_second;
-  std::array<char, 64> text{};
-  if (with_day)
-    std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%06d",
-                  static_cast<int>(day.year()), static_cast<unsigned>(day.month()),
-                  static_cast<unsigned>(day.day()), static_cast<int>(second / 3600),
-                  static_cast<int>(second / 60 % 60), static_cast<int>(second % 60),
-                  static_cast<int>(of_day % ticks_a_second));
-  else
-    std::snprintf(text.data(), text.size(), "%02d:%02d:%02d.%06d", static_cast<int>(second / 3600),
-                  static_cast<int>(second / 60 % 60), static_cast<int>(second % 60),
-                  static_cast<int>(of_day % ticks_a_second));
-  return text.data();
 }
 
 /// Returns a text as a cell of CSV. A text that begins like a comment is put in quotes, so that the reader of
@@ -399,30 +373,6 @@ class SheetReader {
 
 std::string cell_name(std::size_t row, std::size_t column) {
   return column_letters(column) + std::to_string(row);
-}
-
-bool is_date_format(std::size_t builtin) {
-  return (builtin >= 14 && builtin <= 22) || (builtin >= 27 && builtin <= 36) ||
-         (builtin >= 45 && builtin <= 47) || (builtin >= 50 && builtin <= 58);
-}
-
-bool is_date_format(std::string_view code) {
-  for (std::size_t i = 0; i < code.size() && code[i] != ';'; ++i) {
-    const char c = code[i];
-    if (c == '\\' || c == '_' || c == '*') {
-      ++i;  // the character after a backslash is literal
-    } else if (c == '"') {
-      i = std::min(code.find('"', i + 1), code.size());
-    } else if (c == '[') {
-      const std::size_t end = std::min(code.find(']', i), code.size());
-      const std::string_view inside = code.substr(i + 1, end - i - 1);
-      if (!inside.empty() && inside.find_first_not_of("hHmMsS") == std::string_view::npos) return true;
-      i = end;
-    } else if (std::string_view("yYmMdDhHsS").find(c) != std::string_view::npos) {
-      return true;
-    }
-  }
-  return false;
 }
 
 tl::expected<SheetText, SheetProblem> sheet_text(const pugi::xml_document& sheet,

@@ -36,11 +36,6 @@ struct SheetProblem {
   std::string message;
 };
 
-/// Returns true if a number in this format is a date or a time of day. Such formats are "yyyy-mm-dd" and
-/// "[h]:mm:ss.000".
-[[nodiscard]] bool is_date_format(std::string_view code);
-[[nodiscard]] bool is_date_format(std::size_t builtin);
-
 /// Returns the name of a cell, such as "B7". Rows are counted from 1 and columns from 0.
 [[nodiscard]] std::string cell_name(std::size_t row, std::size_t column);
 

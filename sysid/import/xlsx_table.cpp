@@ -9,6 +9,7 @@
 #include "base/enumerated.h"
 #include "sysid/import/cell_value.h"
 #include "sysid/import/text_table.h"
+#include "sysid/import/workbook_date.h"
 #include "sysid/import/workbook_package.h"
 #include "sysid/import/workbook_sheet.h"
 #include "sysid/import/workbook_xml.h"

@@ -308,17 +308,6 @@ TEST(WorkbookPackage, BoundsWhatIsUnpacked) {
   EXPECT_EQ(third.error(), "after decompression the workbook has more than 536870912 bytes");
 }
 
-TEST(WorkbookSheet, DatesAreToldByTheirFormat) {
-  for (const char* code :
-       {"yyyy-mm-dd", "hh:mm:ss.000", "[h]:mm:ss", "d. mmmm yy", "[$-407]d/m/yy", "mm:ss.0"})
-    EXPECT_TRUE(is_date_format(std::string_view(code))) << code;
-  for (const char* code :
-       {"General", "0.00", "0.00\" mm\"", "0\\d", "[Red]0.0", "#,##0_d", "0.0E+00", "0;[s]"})
-    EXPECT_FALSE(is_date_format(std::string_view(code))) << code;
-  EXPECT_TRUE(is_date_format(22));
-  EXPECT_FALSE(is_date_format(2));
-}
-
 TEST(WorkbookSheet, DatesCountFrom1900Or1904) {
   pugi::xml_document document;
   std::string xml =
