@@ -8,6 +8,8 @@
 
 #include "control/sequences/blame.h"
 #include "control/sequences/parameters.h"
+#include "control/sequences/profile_reader.h"
+#include "control/sequences/step_ranges.h"
 #include "document/reader.h"
 
 namespace softgrip::control {
@@ -18,17 +20,15 @@ using document::Document;
 using document::MapReader;
 using document::Node;
 using document::Problems;
-using document::Range;
+using step_ranges::displacement_mm;
+using step_ranges::long_time_s;
+using step_ranges::pressure_kpa;
+using step_ranges::ramp_s;
+using step_ranges::short_time_s;
+using step_ranges::speed;
+using step_ranges::squeeze_kpa;
+using step_ranges::window_s;
 
-// Bounds that no rig of soft fingers exceeds. The limits of the rig are narrower; prepare() checks them.
-constexpr Range displacement_mm{-100, 200};
-constexpr Range pressure_kpa{-100, 1000};
-constexpr Range squeeze_kpa{0.1, 1000};
-constexpr Range speed{0.01, 1000};
-constexpr Range short_time_s{0, 600};
-constexpr Range long_time_s{0, 86400};
-constexpr Range ramp_s{0.01, 600};
-constexpr Range window_s{0.02, 60};
 constexpr std::size_t most_steps = 200;
 
 template <class Enum>
@@ -154,7 +154,7 @@ class FileReader {
         on_contact(map, step, OnContact::ignore);
         break;
       case StepKind::pressure:
-        profile(map, step.profile);
+        read_profile(map, document_, problems_, step.profile);
         bounds(map, step.bounds);
         on_contact(map, step, OnContact::ignore);
         break;
@@ -315,46 +315,6 @@ class FileReader {
     step.purge_s = map.number("purge_s", short_time_s);
     step.timeout_s = map.number("timeout_s", short_time_s);
     step.on_fail = on_fail(map);
-  }
-
-  void profile(MapReader& map, Profile& profile) {
-    const bool has_signal = map.has("signal");
-    const bool has_points = map.has("points");
-    if (has_signal && has_points) {
-      map.report("signal", "a pressure step has points or a signal, not both");
-    }
-    if (has_signal) {
-      std::vector<std::string> signals;
-      for (const model::SignalName signal : model::all_signals()) {
-        signals.emplace_back(model::name_of(signal));
-      }
-      profile.signal = model::all_signals()[map.choice("signal", signals)];
-      profile.scale = map.optional_number("scale", {0.01, 20}).value_or(1);
-    }
-    if (has_points || !has_signal) points(map, profile.points);
-    profile.cycles = static_cast<std::uint32_t>(map.optional_integer("cycles", 1, 10'000).value_or(1));
-    if (profile.cycles > 1 && !profile.points.empty() &&
-        profile.points.front().pressure_kpa != profile.points.back().pressure_kpa) {
-      map.report("cycles", "the last point of a repeated profile must have the pressure of the first point");
-    }
-  }
-
-  /// Reads the points of a pressure profile. The largest number of values in a document limits the number of
-  /// points.
-  void points(MapReader& map, std::vector<Point>& points) {
-    for (const Node* item : map.sequence("points", true)) {
-      MapReader inner(document_, *item, problems_, "point");
-      const Point point{inner.number("time_s", long_time_s), inner.number("pressure_kpa", pressure_kpa)};
-      if (points.empty() ? point.time_s != 0 : point.time_s < points.back().time_s) {
-        inner.report("time_s", points.empty()
-                                   ? "the first point must be at time_s: 0"
-                                   : "time_s of a point must not be below time_s of the previous point");
-      }
-      points.push_back(point);
-    }
-    if (points.size() < 2 && map.has("points")) {
-      map.report("points", "a profile needs at least two points");
-    }
   }
 
   const Document& document_;
