@@ -15,6 +15,7 @@
 #include "drivers/board/round_trip.h"
 #include "drivers/iio/iio_attribute.h"
 #include "drivers/iio/iio_device.h"
+#include "drivers/iio/iio_scaling.h"
 
 namespace softgrip::drivers {
 namespace {
@@ -22,12 +23,6 @@ namespace {
 constexpr int probes = 5;
 constexpr const char* stays_off_text =
     "this attribute stays 1 after 0 was written, so the output remains switched off";
-
-/// Returns the factor from the unit of the kernel to V, mA or kPa. The kernel gives voltages in mV, currents
-/// in mA and pressures in kPa.
-double per_unit(std::string_view channel) noexcept {
-  return unit_of_channel(channel) == ElectricalUnit::volt ? 1e-3 : 1;
-}
 
 /// Returns the name and the place of the converter, which must not change while a rig runs. Returns an empty
 /// text if the rig file names the converter by its label or serial number. The label or the serial number
@@ -37,47 +32,7 @@ std::string identity_behind(const std::string& word, const ComputerDevice& devic
   return says_which ? std::string{} : identity_of(device);
 }
 
-/// Returns the number in the attribute `what` of one channel, or in the attribute `what` that all channels of
-/// this kind share. If neither attribute exists, returns `otherwise`.
-double shared_number(const std::filesystem::path& folder, const std::string& direction,
-                     const std::string& channel, const std::string& what, double otherwise) {
-  for (const std::string& whose : {channel, type_of(channel)}) {
-    IioAttribute attribute;
-    if (attribute.open((folder / (direction + whose + what)).string(), false) != 0) continue;
-    if (const auto value = attribute.read()) return *value;
-  }
-  return otherwise;
-}
-
 }  // namespace
-
-std::optional<ElectricalUnit> unit_of_channel(std::string_view channel) noexcept {
-  const auto begins = [&](std::string_view word) {
-    return channel.size() > word.size() && channel.substr(0, word.size()) == word &&
-           channel[word.size()] >= '0' && channel[word.size()] <= '9';
-  };
-  const bool plain = std::all_of(channel.begin(), channel.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
-  });
-  if (plain && begins("voltage")) return ElectricalUnit::volt;
-  if (plain && begins("current")) return ElectricalUnit::milliampere;
-  if (plain && (begins("pressure") || channel == "pressure")) return ElectricalUnit::kilopascal;
-  return std::nullopt;
-}
-
-ModuleTerminals terminals_of(const IioSettings& settings) {
-  const auto terminals = [](const std::vector<IioTerminal>& from) {
-    constexpr double anything = std::numeric_limits<double>::infinity();
-    std::vector<Terminal> result;
-    result.reserve(from.size());
-    for (const IioTerminal& terminal : from) {
-      result.push_back(
-          {unit_of_channel(terminal.channel).value_or(ElectricalUnit::volt), -anything, anything});
-    }
-    return result;
-  };
-  return {"iio", terminals(settings.inputs), terminals(settings.outputs)};
-}
 
 struct IioBoard::Parts {
   /// One wired terminal: the attribute that contains its raw number, and the scaling of this number.
@@ -170,10 +125,9 @@ BusStatus IioBoard::Parts::open_number(const std::filesystem::path& folder, cons
   const bool processed =
       error == ENOENT && !output && converter.raw.open((folder / (stem + "_input")).string(), false) == 0;
   if (error != 0 && !processed) return say(BusStatus::disconnected, converter.path, text_of_errno(error));
-  const std::string direction = output ? "out_" : "in_";
-  const double scale = processed ? 1 : shared_number(folder, direction, channel, "_scale", 0);
-  converter.scale = scale * per_unit(channel);
-  converter.offset = processed ? 0 : shared_number(folder, direction, channel, "_offset", 0);
+  const IioScaling scaling = processed ? scaling_of_processed(channel) : scaling_of(folder, channel, output);
+  converter.scale = scaling.scale;
+  converter.offset = scaling.offset;
   if (!(std::abs(converter.scale) > 0) || !std::isfinite(converter.scale) ||
       !std::isfinite(converter.offset)) {
     return say(BusStatus::disconnected, converter.name,

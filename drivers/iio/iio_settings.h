@@ -1,0 +1,50 @@
+#pragma once
+// Settings of a board that consists of converters of this computer (iio_board.h), and the units of its
+// channels.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/board/channel_wiring.h"
+
+namespace softgrip::drivers {
+
+/// One channel of a converter. `channel` is, for example, "voltage0", "current2", or "voltage0-voltage1" for
+/// a differential channel.
+struct IioTerminal {
+  std::string device;  ///< a word that matches exactly one of converters_in()
+  std::string channel;
+  long raw_max = 0;  ///< for outputs: largest raw number of the converter; the smallest raw number is 0
+};
+
+/// An output that each exchange changes, as a heartbeat. An external circuit switches off the supply of the
+/// valves if the output has not changed for `timeout_s`.
+struct IioHeartbeat {
+  IioTerminal terminal;
+  long first = 0;        ///< raw number of the first, third, fifth ... write
+  long second = 0;       ///< raw number of the second, fourth ... write
+  double timeout_s = 0;  ///< time-out of the external circuit [s]
+};
+
+/// Largest number of channels; the controller has the same limit.
+inline constexpr std::size_t most_channels = 16;
+
+struct IioSettings {
+  std::string root = "/sys/bus/iio/devices";
+  std::vector<IioTerminal> inputs;   ///< terminals of the inputs, by the number of the input in the wiring
+  std::vector<IioTerminal> outputs;  ///< terminals of the outputs, by the number of the output in the wiring
+  std::optional<IioHeartbeat> heartbeat;
+  std::vector<ChannelWiring> wiring;
+};
+
+/// Returns the unit of a channel according to its name; nothing if the channel is not a voltage, current or
+/// pressure.
+[[nodiscard]] std::optional<ElectricalUnit> unit_of_channel(std::string_view channel) noexcept;
+/// Returns the terminals of an industrial I/O board with their units. The ranges in the result are unlimited,
+/// because the actual ranges are unknown until the converters are open.
+[[nodiscard]] ModuleTerminals terminals_of(const IioSettings& settings);
+
+}  // namespace softgrip::drivers
