@@ -3,26 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <utility>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "sysid/import/clock.h"
-#include "sysid/import/fingers.h"
-#include "sysid/import/proposal.h"
+#include "sysid/import/role_sources.h"
 #include "sysid/import/samples.h"
+#include "sysid/import/unused_parts.h"
 #include "sysid/logs/log_columns.h"
 
 namespace softgrip::sysid {
 namespace {
-
-/// Columns of one role and the conversion of their values. The value in the log is factor * value + offset.
-struct Source {
-  std::vector<std::size_t> columns;
-  double factor = 1;
-  double offset = 0;
-};
 
 class Converter {
  public:
@@ -31,8 +22,7 @@ class Converter {
 
   std::optional<ImportedLog> run() {
     const std::size_t before = problems_.size();
-    check_completeness();
-    for (const RoleSpec& spec : roles) resolve(spec);
+    sources_ = resolve_sources(table_, mapping_, problems_);
     if (problems_.size() != before) return std::nullopt;
     remarks_.account = table_.account;
     ForeignSamples samples = samples_of_table();
@@ -48,10 +38,7 @@ class Converter {
     cut_at_holes(samples, remarks_);
     check_account(samples.size());
     if (problems_.size() != before) return std::nullopt;
-    name_unused_times();
-    refuse_rows_of_fingers();
-    name_unused_columns();
-    name_idle_options();
+    report_unused(table_, mapping_, sources_, remarks_, problems_);
     return ImportedLog{log_of(std::move(samples)), std::move(remarks_.notes), std::move(remarks_.warnings),
                        remarks_.account};
   }
@@ -69,112 +56,6 @@ class Converter {
                    problem.hint});
   }
 
-  void check_completeness() {
-    const Proposal proposal = propose(table_, mapping_, false);
-    for (const std::string& missing : proposal.missing) refuse("no column was recognised as " + missing);
-    for (const Role role : proposal.guessed)
-      refuse("no column is assigned to the role " + std::string(spec_of(role).word),
-             "--" + std::string(spec_of(role).word) + " COLUMN");
-    for (const Proposal::Question& question : proposal.questions) refuse(question.text, question.hint);
-    if (table_.channels.size() > 1 && mapping_.channel.empty()) {
-      std::string names;
-      for (const std::string& name : table_.channels) names += (names.empty() ? "'" : ", '") + name + "'";
-      refuse("the file has " + std::to_string(table_.channels.size()) + " channels: " + names,
-             "select one finger with --channel");
-    } else if (!mapping_.channel.empty() && table_.rows() == 0) {
-      refuse("no row belongs to channel '" + document::shown(mapping_.channel) + "'");
-    }
-  }
-
-  void resolve(const RoleSpec& spec) {
-    const ColumnMapping& mapped = mapping_[spec.role];
-    Source& source = sources_[static_cast<std::size_t>(spec.role)];
-    for (const std::string& word : mapped.columns) {
-      const std::size_t index = column_index(table_, word);
-      if (index < table_.columns.size()) {
-        source.columns.push_back(index);
-        check_cells(spec, table_.columns[index]);
-      } else {
-        refuse_column(spec, word);
-      }
-    }
-    if (!source.columns.empty()) find_unit(spec, mapped, source);
-  }
-
-  void refuse_column(const RoleSpec& spec, const std::string& word) {
-    const auto same = std::count_if(table_.columns.begin(), table_.columns.end(),
-                                    [&](const TableColumn& column) { return column.name == word; });
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < table_.columns.size(); ++i) names.push_back(word_of(table_, i));
-    const std::string near = document::nearest(word, names);
-    const std::string all = with_commas(names, [](const std::string& name) { return document::shown(name); });
-    refuse(std::string(spec.word) + ": " + (same > 1 ? "more than one column '" : "no column '") +
-               document::shown(word) + "'",
-           same > 1       ? "give the number of the column, counted from 1"
-           : near.empty() ? "the columns are " + all.substr(0, 400)
-                          : "is '" + document::shown(near) + "' meant?");
-  }
-
-  void check_cells(const RoleSpec& spec, const TableColumn& column) {
-    if (mapping_.skip_bad_lines) {
-      bad_rows_.insert(column.bad_rows.begin(), column.bad_rows.end());
-    } else {
-      refuse_bad_cells(spec, column);
-    }
-    const bool time = spec.role == Role::time;
-    const auto numbers = static_cast<std::size_t>(
-        std::count_if(column.values.begin(), column.values.end(), [](double v) { return std::isfinite(v); }));
-    if (column.moments > 0 && (!time || numbers != column.moments))
-      refuse(std::string(spec.word) + ": '" + document::shown(column.name) + "' has dates or times of day" +
-             (time ? " and numbers" : ""));
-  }
-
-  void refuse_bad_cells(const RoleSpec& spec, const TableColumn& column) {
-    for (const BadCell& cell : column.bad) {
-      problems_.add({table_.file, cell.at, cell.line_text,
-                     std::string(spec.word) + ": " + (cell.cell.empty() ? "" : "cell " + cell.cell + ": ") +
-                         "'" + document::shown(cell.text, 40) + "' is not a number",
-                     "state the text of missing readings with --missing, or leave out such lines with "
-                     "--skip-bad-lines"});
-    }
-    if (column.bad_count > column.bad.size())
-      refuse(std::string(spec.word) + ": " + std::to_string(column.bad_count - column.bad.size()) +
-             " more of these");
-  }
-
-  void find_unit(const RoleSpec& spec, const ColumnMapping& mapped, Source& source) {
-    // Samples_by_times() converts the time columns one by one.
-    if (spec.role == Role::time && source.columns.size() > 1) return;
-    if (spec.role == Role::time && !find_clock(table_.columns[source.columns.front()], mapped, source))
-      return;
-    const bool moments = table_.columns[source.columns.front()].moments > 0;
-    const std::string text = unit_text(table_, mapped, spec.quantity);
-    const std::string word(spec.word);
-    if (mapped.scale) {
-      source.factor = *mapped.scale;
-      if (const auto angle = angle_of_scale(spec, mapped)) {
-        source.factor *= angle->factor;
-        output_unit_ = angle->output;
-      }
-    } else if (const auto unit =
-                   moments ? Unit{"s", Quantity::time, source.factor} : unit_named(text, spec.quantity);
-               unit) {
-      source.factor = unit->factor;
-      source.offset = unit->offset;
-      if (spec.role == Role::displacement) output_unit_ = unit->output;
-    } else if (text.empty()) {
-      refuse(
-          word + ": '" + document::shown(mapped.columns.front()) + "' has no unit",
-          "--unit " + word + "=" + std::string(spec.unit) + " (known are " + unit_names(spec.quantity) + ")");
-    } else {
-      refuse(
-          word + ": '" + document::shown(text) + "' is not a unit of " + std::string(name_of(spec.quantity)),
-          "--scale " + word + "=X, " + std::string(spec.unit) + " per " + document::shown(text) +
-              "; known are " + unit_names(spec.quantity));
-    }
-    if (mapped.zero) source.offset -= source.factor * *mapped.zero;
-  }
-
   [[nodiscard]] std::vector<double> missing_codes() const {
     std::vector<double> codes;
     for (const std::string& word : mapping_.missing) {
@@ -183,34 +64,11 @@ class Converter {
     return codes;
   }
 
-  /// Returns the unit of the angle if the options contain --scale and --unit displacement=deg or rad.
-  static std::optional<Unit> angle_of_scale(const RoleSpec& spec, const ColumnMapping& mapped) {
-    if (spec.role != Role::displacement || !mapped.scale || mapped.unit.empty()) return std::nullopt;
-    auto unit = unit_named(mapped.unit, spec.quantity);
-    if (unit && unit->output == model::OutputUnit::mm) unit.reset();
-    return unit;
-  }
-
-  /// Determines how times with two fields are read. "12:34" can be hh:mm or mm:ss, so the unit of the column
-  /// decides.
-  bool find_clock(const TableColumn& column, const ColumnMapping& mapped, Source& source) {
-    if (column.short_clocks == 0) return true;
-    const std::string unit = lower_case(unit_text(table_, mapped, Quantity::time));
-    const bool hours = unit == "hh:mm";
-    if (hours && !column.surely_minutes && column.short_clocks == column.moments) source.factor = 60;
-    if (source.factor == 60 || (!hours && (column.surely_minutes || unit == "mm:ss"))) return true;
-    refuse("time: '" + document::shown(column.name, 40) +
-               (hours ? "' contains times that cannot be hours and minutes"
-                      : "' contains times that can be hours and minutes, or minutes and seconds"),
-           "--unit time=mm:ss" + std::string(hours ? "" : ", or --unit time=hh:mm"));
-    return false;
-  }
-
   [[nodiscard]] bool is_missing(double value) const {
     return std::find(missing_.begin(), missing_.end(), value) != missing_.end();
   }
 
-  [[nodiscard]] double value_at(const Source& source, std::size_t row) const {
+  [[nodiscard]] double value_at(const RoleSource& source, std::size_t row) const {
     double sum = 0;
     for (const std::size_t column : source.columns) {
       const double value = table_.columns[column].values[row];
@@ -223,7 +81,7 @@ class Converter {
     if (!table_.is_text) remarks_.account.rows += table_.rows();
     std::vector<std::size_t> rows;
     for (std::size_t i = 0; i < table_.rows(); ++i) {
-      if (bad_rows_.count(i) == 0) rows.push_back(i);
+      if (sources_.bad_rows.count(i) == 0) rows.push_back(i);
     }
     remarks_.account.leave_out(LeftOut::bad_line, table_.rows() - rows.size());
     if (rows.size() < table_.rows())
@@ -239,7 +97,7 @@ class Converter {
   void leave_out_unused(std::vector<std::size_t>& rows) {
     const auto unused = [&](std::size_t row) {
       return std::none_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
-        const Source& source = sources_[static_cast<std::size_t>(spec.role)];
+        const RoleSource& source = sources_.of_roles[static_cast<std::size_t>(spec.role)];
         return spec.role != Role::time && !source.columns.empty() && std::isfinite(value_at(source, row));
       });
     };
@@ -252,7 +110,7 @@ class Converter {
     ForeignSamples samples;
     samples.row = rows;
     for (const RoleSpec& spec : roles) {
-      const Source& source = sources_[static_cast<std::size_t>(spec.role)];
+      const RoleSource& source = sources_.of_roles[static_cast<std::size_t>(spec.role)];
       if (source.columns.empty()) continue;
       std::vector<double>& values = samples[spec.role];
       values.reserve(rows.size());
@@ -261,7 +119,7 @@ class Converter {
                                                  : value_at(source, row));
     }
     std::vector<double>& time = samples[Role::time];
-    const Source& source = sources_[static_cast<std::size_t>(Role::time)];
+    const RoleSource& source = sources_.of_roles[static_cast<std::size_t>(Role::time)];
     if (!time.empty()) continue_clock(time, source.factor, rows);
     for (double& value : time) value = source.factor * value + source.offset;
     for (std::size_t i = 0; i < rows.size() && time.size() < rows.size(); ++i)
@@ -293,7 +151,7 @@ class Converter {
   /// Returns one sample for each row and time column, sorted by time. Each sample contains only the values
   /// that belong to its time column.
   ForeignSamples samples_by_times(const std::vector<std::size_t>& rows) {
-    const std::vector<std::size_t>& clocks = sources_[static_cast<std::size_t>(Role::time)].columns;
+    const std::vector<std::size_t>& clocks = sources_.of_roles[static_cast<std::size_t>(Role::time)].columns;
     const auto of_roles = times_of_roles(table_, mapping_, clocks);
     std::vector<Entry> entries;
     bool good = of_roles.has_value();
@@ -315,9 +173,9 @@ class Converter {
       samples[Role::time].push_back(entry.time_s);
       for (const RoleSpec& spec : roles) {
         const auto role = static_cast<std::size_t>(spec.role);
-        if (spec.role == Role::time || sources_[role].columns.empty()) continue;
+        if (spec.role == Role::time || sources_.of_roles[role].columns.empty()) continue;
         const bool here = (*of_roles)[role] == entry.clock;
-        samples[spec.role].push_back(here ? value_at(sources_[role], entry.row) : std::nan(""));
+        samples[spec.role].push_back(here ? value_at(sources_.of_roles[role], entry.row) : std::nan(""));
       }
     }
     remarks_.notes.push_back(
@@ -363,8 +221,9 @@ class Converter {
       if (std::isfinite(entry.time_s)) return false;
       for (const RoleSpec& spec : roles) {
         const auto role = static_cast<std::size_t>(spec.role);
-        if (spec.role != Role::time && of_roles[role] == entry.clock && !sources_[role].columns.empty() &&
-            std::isfinite(value_at(sources_[role], entry.row)))
+        if (spec.role != Role::time && of_roles[role] == entry.clock &&
+            !sources_.of_roles[role].columns.empty() &&
+            std::isfinite(value_at(sources_.of_roles[role], entry.row)))
           return false;
       }
       return true;
@@ -387,128 +246,6 @@ class Converter {
              remarks_.warnings.empty() ? std::string() : remarks_.warnings.front());
     } else if (account.lost_share() > warned_share) {
       remarks_.warnings.insert(remarks_.warnings.begin(), account.sentence());
-    }
-  }
-
-  [[nodiscard]] bool is_used(std::size_t column) const {
-    return std::any_of(sources_.begin(), sources_.end(), [&](const Source& source) {
-      return std::find(source.columns.begin(), source.columns.end(), column) != source.columns.end();
-    });
-  }
-
-  void name_unused_times() {
-    const std::vector<std::size_t> times = time_columns(table_);
-    const std::vector<std::size_t>& used = sources_[static_cast<std::size_t>(Role::time)].columns;
-    for (std::size_t i = 0; i < table_.columns.size(); ++i) {
-      if (is_used(i)) continue;
-      const TableColumn& column = table_.columns[i];
-      const std::string name = "the column '" + document::shown(column.name, 40) + "' looks like a time";
-      const bool is_time = std::find(times.begin(), times.end(), i) != times.end();
-      if (is_time && used.empty()) {
-        remarks_.warnings.push_back(name + " and is not used, because --rate-hz replaces this column");
-      } else if (is_time && same_clock(table_, mapping_, used.front(), i)) {
-        remarks_.notes.push_back(name + " and contains the same times as the time column that is used");
-      } else if (is_time) {
-        remarks_.warnings.push_back(name + " and is not used, because its times differ from those of '" +
-                                    document::shown(table_.columns[used.front()].name, 40) + "'");
-      } else if (names_role(column.name, Role::time) && column.bad_count * 2 > column.values.size()) {
-        remarks_.warnings.push_back(name + " and cannot be read ('" +
-                                    document::shown(column.bad.front().text, 30) +
-                                    "'), so this column is not used");
-      }
-    }
-  }
-
-  /// Refuses a table that contains rows of several fingers, if a column of numbers identifies the finger of
-  /// each row.
-  void refuse_rows_of_fingers() {
-    for (std::size_t i = 0; i < table_.columns.size() && !table_.is_text; ++i) {
-      const TableColumn& column = table_.columns[i];
-      if (is_used(i) || !names_channel(column.name)) continue;
-      std::vector<std::string> fingers;
-      for (const double value : column.values) {
-        const std::string finger = std::isfinite(value) ? shortest(value) : "";
-        const bool is_new = std::find(fingers.begin(), fingers.end(), finger) == fingers.end();
-        if (!finger.empty() && is_new) fingers.push_back(finger);
-        if (fingers.size() > most_fingers) break;
-      }
-      if (fingers.size() > 1 && fingers.size() <= most_fingers)
-        refuse("the rows belong to " + std::to_string(fingers.size()) + " fingers: '" +
-                   document::shown(column.name, 40) + "' has " +
-                   with_commas(fingers, [](const std::string& finger) { return finger; }),
-               "export the rows of each finger to a separate file, or export a text file that contains this "
-               "column");
-    }
-  }
-
-  void name_unused_columns() {
-    constexpr std::size_t names_a_note = 8;
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < table_.columns.size(); ++i) {
-      const bool is_channel = !table_.channels.empty() && table_.columns[i].name == table_.channel_column;
-      if (!is_used(i) && !is_channel && !table_.columns[i].is_part_of_time)
-        names.push_back("'" + document::shown(word_of(table_, i), 40) + "'");
-    }
-    for (std::size_t i = 0; i < names.size(); i += names_a_note) {
-      const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(i + names_a_note, names.size()));
-      remarks_.notes.push_back(
-          "not used: " +
-          with_commas(std::vector<std::string>(names.begin() + static_cast<std::ptrdiff_t>(i), end),
-                      [](const std::string& name) { return name; }));
-    }
-  }
-
-  void idle(const std::string& option, const std::string& why) {
-    remarks_.warnings.push_back(option + " has no effect: " + why);
-  }
-
-  /// Adds a warning for each option that has no effect on this file.
-  void name_idle_options() {
-    for (const RoleSpec& spec : roles) {
-      const ColumnMapping& mapped = mapping_[spec.role];
-      const std::string word = " " + std::string(spec.word) + "=";
-      const bool time = spec.role == Role::time;
-      const bool dates = time && mapped.given() && table_.columns[sources_[0].columns.front()].moments > 0 &&
-                         table_.columns[sources_[0].columns.front()].short_clocks == 0;
-      const std::string why =
-          mapped.given() ? "" : "no column is assigned to the role " + std::string(spec.word);
-      const bool scaled = mapped.scale && !angle_of_scale(spec, mapped);
-      if (!mapped.unit.empty() && (!mapped.given() || scaled || dates))
-        idle("--unit" + word + mapped.unit, !why.empty() ? why
-                                            : scaled     ? "--scale replaces the unit"
-                                                         : "the column has dates or times of day");
-      if (mapped.scale && !mapped.given()) idle("--scale" + word + shortest(*mapped.scale), why);
-      if ((mapped.zero || mapped.zero_first) && (!mapped.given() || time))
-        idle("--zero" + word + (mapped.zero ? shortest(*mapped.zero) : "first"),
-             !why.empty() ? why : "times count from the first sample");
-    }
-    name_idle_words();
-    if (mapping_.separator != 0 && !table_.has_separators)
-      idle("--separator", table_.is_text ? "the file itself states the separator" : "the file is not a text");
-    if (!mapping_.sheet.empty() && table_.sheet.empty()) idle("--sheet", "the file is not a workbook");
-    if (mapping_.skip_bad_lines &&
-        remarks_.account.left_out[static_cast<std::size_t>(LeftOut::bad_line)] == 0)
-      remarks_.notes.emplace_back("--skip-bad-lines had no effect, because all lines are readable");
-    const bool cuts = mapping_.from_s > 0 || std::isfinite(mapping_.to_s);
-    if (cuts && remarks_.account.left_out[static_cast<std::size_t>(LeftOut::outside_stretch)] == 0)
-      idle("--from-s or --to-s", "all samples are between these two times");
-  }
-
-  void name_idle_words() {
-    std::size_t text_word = 0;
-    for (const std::string& word : mapping_.missing) {
-      std::size_t cells = 0;
-      if (const auto number = missing_number(word)) {
-        for (std::size_t i = 0; i < table_.columns.size(); ++i) {
-          const std::vector<double>& values = table_.columns[i].values;
-          if (is_used(i))
-            cells += static_cast<std::size_t>(std::count(values.begin(), values.end(), *number));
-        }
-      } else if (text_word < table_.missing_cells.size()) {
-        cells = table_.missing_cells[text_word++];
-      }
-      if (cells == 0)
-        idle("--missing " + document::shown(word, 40), "no cell of the used columns contains this text");
     }
   }
 
@@ -536,7 +273,7 @@ class Converter {
 
   [[nodiscard]] Log log_of(ForeignSamples samples) const {
     Log log;
-    log.output_unit = output_unit_;
+    log.output_unit = sources_.output_unit;
     for (const RoleSpec& spec : roles) log.*spec.values = std::move(samples[spec.role]);
     return log;
   }
@@ -544,11 +281,9 @@ class Converter {
   const ForeignTable& table_;
   const Mapping& mapping_;
   document::Problems& problems_;
-  std::array<Source, role_count> sources_;
-  std::set<std::size_t> bad_rows_;
+  RoleSources sources_;
   std::vector<double> missing_ = missing_codes();
   ImportRemarks remarks_;
-  model::OutputUnit output_unit_ = model::OutputUnit::mm;
   double clocks_begin_s_ = -std::numeric_limits<double>::infinity();
   double clocks_end_s_ = std::numeric_limits<double>::infinity();
 };

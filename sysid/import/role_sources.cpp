@@ -1,0 +1,178 @@
+#include "sysid/import/role_sources.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "base/enumerated.h"
+#include "base/numbers.h"
+#include "sysid/import/clock.h"
+#include "sysid/import/proposal.h"
+
+namespace softgrip::sysid {
+namespace {
+
+class SourceResolver {
+ public:
+  SourceResolver(const ForeignTable& table, const Mapping& mapping, document::Problems& problems)
+      : table_(table), mapping_(mapping), problems_(problems) {}
+
+  RoleSources run() {
+    check_completeness();
+    for (const RoleSpec& spec : roles) resolve(spec);
+    return std::move(sources_);
+  }
+
+ private:
+  void refuse(std::string message, std::string hint = {}) {
+    problems_.add({table_.file, {1, 1}, {}, std::move(message), std::move(hint)});
+  }
+
+  void check_completeness() {
+    const Proposal proposal = propose(table_, mapping_, false);
+    for (const std::string& missing : proposal.missing) refuse("no column was recognised as " + missing);
+    for (const Role role : proposal.guessed)
+      refuse("no column is assigned to the role " + std::string(spec_of(role).word),
+             "--" + std::string(spec_of(role).word) + " COLUMN");
+    for (const Proposal::Question& question : proposal.questions) refuse(question.text, question.hint);
+    if (table_.channels.size() > 1 && mapping_.channel.empty()) {
+      std::string names;
+      for (const std::string& name : table_.channels) names += (names.empty() ? "'" : ", '") + name + "'";
+      refuse("the file has " + std::to_string(table_.channels.size()) + " channels: " + names,
+             "select one finger with --channel");
+    } else if (!mapping_.channel.empty() && table_.rows() == 0) {
+      refuse("no row belongs to channel '" + document::shown(mapping_.channel) + "'");
+    }
+  }
+
+  void resolve(const RoleSpec& spec) {
+    const ColumnMapping& mapped = mapping_[spec.role];
+    RoleSource& source = sources_.of_roles[static_cast<std::size_t>(spec.role)];
+    for (const std::string& word : mapped.columns) {
+      const std::size_t index = column_index(table_, word);
+      if (index < table_.columns.size()) {
+        source.columns.push_back(index);
+        check_cells(spec, table_.columns[index]);
+      } else {
+        refuse_column(spec, word);
+      }
+    }
+    if (!source.columns.empty()) find_unit(spec, mapped, source);
+  }
+
+  void refuse_column(const RoleSpec& spec, const std::string& word) {
+    const auto same = std::count_if(table_.columns.begin(), table_.columns.end(),
+                                    [&](const TableColumn& column) { return column.name == word; });
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < table_.columns.size(); ++i) names.push_back(word_of(table_, i));
+    const std::string near = document::nearest(word, names);
+    const std::string all = with_commas(names, [](const std::string& name) { return document::shown(name); });
+    refuse(std::string(spec.word) + ": " + (same > 1 ? "more than one column '" : "no column '") +
+               document::shown(word) + "'",
+           same > 1       ? "give the number of the column, counted from 1"
+           : near.empty() ? "the columns are " + all.substr(0, 400)
+                          : "is '" + document::shown(near) + "' meant?");
+  }
+
+  void check_cells(const RoleSpec& spec, const TableColumn& column) {
+    if (mapping_.skip_bad_lines) {
+      sources_.bad_rows.insert(column.bad_rows.begin(), column.bad_rows.end());
+    } else {
+      refuse_bad_cells(spec, column);
+    }
+    const bool time = spec.role == Role::time;
+    const auto numbers = static_cast<std::size_t>(
+        std::count_if(column.values.begin(), column.values.end(), [](double v) { return std::isfinite(v); }));
+    if (column.moments > 0 && (!time || numbers != column.moments))
+      refuse(std::string(spec.word) + ": '" + document::shown(column.name) + "' has dates or times of day" +
+             (time ? " and numbers" : ""));
+  }
+
+  void refuse_bad_cells(const RoleSpec& spec, const TableColumn& column) {
+    for (const BadCell& cell : column.bad) {
+      problems_.add({table_.file, cell.at, cell.line_text,
+                     std::string(spec.word) + ": " + (cell.cell.empty() ? "" : "cell " + cell.cell + ": ") +
+                         "'" + document::shown(cell.text, 40) + "' is not a number",
+                     "state the text of missing readings with --missing, or leave out such lines with "
+                     "--skip-bad-lines"});
+    }
+    if (column.bad_count > column.bad.size())
+      refuse(std::string(spec.word) + ": " + std::to_string(column.bad_count - column.bad.size()) +
+             " more of these");
+  }
+
+  void find_unit(const RoleSpec& spec, const ColumnMapping& mapped, RoleSource& source) {
+    // Samples_by_times() converts the time columns one by one.
+    if (spec.role == Role::time && source.columns.size() > 1) return;
+    if (spec.role == Role::time && !find_clock(table_.columns[source.columns.front()], mapped, source))
+      return;
+    const bool moments = table_.columns[source.columns.front()].moments > 0;
+    const std::string text = unit_text(table_, mapped, spec.quantity);
+    const std::string word(spec.word);
+    if (mapped.scale) {
+      source.factor = *mapped.scale;
+      if (const auto angle = angle_of_scale(spec, mapped)) {
+        source.factor *= angle->factor;
+        sources_.output_unit = angle->output;
+      }
+    } else if (const auto unit =
+                   moments ? Unit{"s", Quantity::time, source.factor} : unit_named(text, spec.quantity);
+               unit) {
+      source.factor = unit->factor;
+      source.offset = unit->offset;
+      if (spec.role == Role::displacement) sources_.output_unit = unit->output;
+    } else if (text.empty()) {
+      refuse(
+          word + ": '" + document::shown(mapped.columns.front()) + "' has no unit",
+          "--unit " + word + "=" + std::string(spec.unit) + " (known are " + unit_names(spec.quantity) + ")");
+    } else {
+      refuse(
+          word + ": '" + document::shown(text) + "' is not a unit of " + std::string(name_of(spec.quantity)),
+          "--scale " + word + "=X, " + std::string(spec.unit) + " per " + document::shown(text) +
+              "; known are " + unit_names(spec.quantity));
+    }
+    if (mapped.zero) source.offset -= source.factor * *mapped.zero;
+  }
+
+  /// Determines how times with two fields are read. "12:34" can be hh:mm or mm:ss, so the unit of the column
+  /// decides.
+  bool find_clock(const TableColumn& column, const ColumnMapping& mapped, RoleSource& source) {
+    if (column.short_clocks == 0) return true;
+    const std::string unit = lower_case(unit_text(table_, mapped, Quantity::time));
+    const bool hours = unit == "hh:mm";
+    if (hours && !column.surely_minutes && column.short_clocks == column.moments) source.factor = 60;
+    if (source.factor == 60 || (!hours && (column.surely_minutes || unit == "mm:ss"))) return true;
+    refuse("time: '" + document::shown(column.name, 40) +
+               (hours ? "' contains times that cannot be hours and minutes"
+                      : "' contains times that can be hours and minutes, or minutes and seconds"),
+           "--unit time=mm:ss" + std::string(hours ? "" : ", or --unit time=hh:mm"));
+    return false;
+  }
+
+  const ForeignTable& table_;
+  const Mapping& mapping_;
+  document::Problems& problems_;
+  RoleSources sources_;
+};
+
+}  // namespace
+
+bool RoleSources::uses(std::size_t column) const {
+  return std::any_of(of_roles.begin(), of_roles.end(), [&](const RoleSource& source) {
+    return std::find(source.columns.begin(), source.columns.end(), column) != source.columns.end();
+  });
+}
+
+RoleSources resolve_sources(const ForeignTable& table, const Mapping& mapping, document::Problems& problems) {
+  return SourceResolver(table, mapping, problems).run();
+}
+
+std::optional<Unit> angle_of_scale(const RoleSpec& spec, const ColumnMapping& mapped) {
+  if (spec.role != Role::displacement || !mapped.scale || mapped.unit.empty()) return std::nullopt;
+  auto unit = unit_named(mapped.unit, spec.quantity);
+  if (unit && unit->output == model::OutputUnit::mm) unit.reset();
+  return unit;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,42 @@
+#pragma once
+// Finds the columns of each role in a table, and the conversion of their values to the units of a log.
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "document/problem.h"
+#include "sysid/import/mapping.h"
+#include "sysid/import/table.h"
+#include "sysid/import/units.h"
+
+namespace softgrip::sysid {
+
+/// Columns of one role and the conversion of their values. The value in the log is factor * value + offset.
+struct RoleSource {
+  std::vector<std::size_t> columns;
+  double factor = 1;
+  double offset = 0;
+};
+
+/// Sources of all roles.
+struct RoleSources {
+  std::array<RoleSource, role_count> of_roles;
+  std::set<std::size_t> bad_rows;  ///< rows with a bad cell; filled only if bad lines are to be skipped
+  model::OutputUnit output_unit = model::OutputUnit::mm;
+
+  /// Returns true if a role uses the column.
+  [[nodiscard]] bool uses(std::size_t column) const;
+};
+
+/// Finds the sources of the roles by the mapping. A role without a column, an unknown column, a column with
+/// bad cells and a missing unit are problems.
+[[nodiscard]] RoleSources resolve_sources(const ForeignTable& table, const Mapping& mapping,
+                                          document::Problems& problems);
+
+/// Returns the unit of the angle if the options contain --scale and --unit displacement=deg or rad.
+[[nodiscard]] std::optional<Unit> angle_of_scale(const RoleSpec& spec, const ColumnMapping& mapped);
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,168 @@
+#include "sysid/import/unused_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/enumerated.h"
+#include "base/numbers.h"
+#include "sysid/import/clock.h"
+#include "sysid/import/conversion.h"
+#include "sysid/import/fingers.h"
+#include "sysid/import/proposal.h"
+
+namespace softgrip::sysid {
+namespace {
+
+class UnusedParts {
+ public:
+  UnusedParts(const ForeignTable& table, const Mapping& mapping, const RoleSources& sources,
+              ImportRemarks& remarks, document::Problems& problems)
+      : table_(table), mapping_(mapping), sources_(sources), remarks_(remarks), problems_(problems) {}
+
+  void report() {
+    name_unused_times();
+    refuse_rows_of_fingers();
+    name_unused_columns();
+    name_idle_options();
+  }
+
+ private:
+  void refuse(std::string message, std::string hint) {
+    problems_.add({table_.file, {1, 1}, {}, std::move(message), std::move(hint)});
+  }
+
+  void name_unused_times() {
+    const std::vector<std::size_t> times = time_columns(table_);
+    const std::vector<std::size_t>& used = sources_.of_roles[static_cast<std::size_t>(Role::time)].columns;
+    for (std::size_t i = 0; i < table_.columns.size(); ++i) {
+      if (sources_.uses(i)) continue;
+      const TableColumn& column = table_.columns[i];
+      const std::string name = "the column '" + document::shown(column.name, 40) + "' looks like a time";
+      const bool is_time = std::find(times.begin(), times.end(), i) != times.end();
+      if (is_time && used.empty()) {
+        remarks_.warnings.push_back(name + " and is not used, because --rate-hz replaces this column");
+      } else if (is_time && same_clock(table_, mapping_, used.front(), i)) {
+        remarks_.notes.push_back(name + " and contains the same times as the time column that is used");
+      } else if (is_time) {
+        remarks_.warnings.push_back(name + " and is not used, because its times differ from those of '" +
+                                    document::shown(table_.columns[used.front()].name, 40) + "'");
+      } else if (names_role(column.name, Role::time) && column.bad_count * 2 > column.values.size()) {
+        remarks_.warnings.push_back(name + " and cannot be read ('" +
+                                    document::shown(column.bad.front().text, 30) +
+                                    "'), so this column is not used");
+      }
+    }
+  }
+
+  /// Refuses a table that contains rows of several fingers, if a column of numbers identifies the finger of
+  /// each row.
+  void refuse_rows_of_fingers() {
+    for (std::size_t i = 0; i < table_.columns.size() && !table_.is_text; ++i) {
+      const TableColumn& column = table_.columns[i];
+      if (sources_.uses(i) || !names_channel(column.name)) continue;
+      std::vector<std::string> fingers;
+      for (const double value : column.values) {
+        const std::string finger = std::isfinite(value) ? shortest(value) : "";
+        const bool is_new = std::find(fingers.begin(), fingers.end(), finger) == fingers.end();
+        if (!finger.empty() && is_new) fingers.push_back(finger);
+        if (fingers.size() > most_fingers) break;
+      }
+      if (fingers.size() > 1 && fingers.size() <= most_fingers)
+        refuse("the rows belong to " + std::to_string(fingers.size()) + " fingers: '" +
+                   document::shown(column.name, 40) + "' has " +
+                   with_commas(fingers, [](const std::string& finger) { return finger; }),
+               "export the rows of each finger to a separate file, or export a text file that contains this "
+               "column");
+    }
+  }
+
+  void name_unused_columns() {
+    constexpr std::size_t names_a_note = 8;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < table_.columns.size(); ++i) {
+      const bool is_channel = !table_.channels.empty() && table_.columns[i].name == table_.channel_column;
+      if (!sources_.uses(i) && !is_channel && !table_.columns[i].is_part_of_time)
+        names.push_back("'" + document::shown(word_of(table_, i), 40) + "'");
+    }
+    for (std::size_t i = 0; i < names.size(); i += names_a_note) {
+      const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(i + names_a_note, names.size()));
+      remarks_.notes.push_back(
+          "not used: " +
+          with_commas(std::vector<std::string>(names.begin() + static_cast<std::ptrdiff_t>(i), end),
+                      [](const std::string& name) { return name; }));
+    }
+  }
+
+  void idle(const std::string& option, const std::string& why) {
+    remarks_.warnings.push_back(option + " has no effect: " + why);
+  }
+
+  /// Adds a warning for each option that has no effect on this file.
+  void name_idle_options() {
+    for (const RoleSpec& spec : roles) {
+      const ColumnMapping& mapped = mapping_[spec.role];
+      const std::string word = " " + std::string(spec.word) + "=";
+      const bool time = spec.role == Role::time;
+      const bool dates = time && mapped.given() &&
+                         table_.columns[sources_.of_roles[0].columns.front()].moments > 0 &&
+                         table_.columns[sources_.of_roles[0].columns.front()].short_clocks == 0;
+      const std::string why =
+          mapped.given() ? "" : "no column is assigned to the role " + std::string(spec.word);
+      const bool scaled = mapped.scale && !angle_of_scale(spec, mapped);
+      if (!mapped.unit.empty() && (!mapped.given() || scaled || dates))
+        idle("--unit" + word + mapped.unit, !why.empty() ? why
+                                            : scaled     ? "--scale replaces the unit"
+                                                         : "the column has dates or times of day");
+      if (mapped.scale && !mapped.given()) idle("--scale" + word + shortest(*mapped.scale), why);
+      if ((mapped.zero || mapped.zero_first) && (!mapped.given() || time))
+        idle("--zero" + word + (mapped.zero ? shortest(*mapped.zero) : "first"),
+             !why.empty() ? why : "times count from the first sample");
+    }
+    name_idle_words();
+    if (mapping_.separator != 0 && !table_.has_separators)
+      idle("--separator", table_.is_text ? "the file itself states the separator" : "the file is not a text");
+    if (!mapping_.sheet.empty() && table_.sheet.empty()) idle("--sheet", "the file is not a workbook");
+    if (mapping_.skip_bad_lines &&
+        remarks_.account.left_out[static_cast<std::size_t>(LeftOut::bad_line)] == 0)
+      remarks_.notes.emplace_back("--skip-bad-lines had no effect, because all lines are readable");
+    const bool cuts = mapping_.from_s > 0 || std::isfinite(mapping_.to_s);
+    if (cuts && remarks_.account.left_out[static_cast<std::size_t>(LeftOut::outside_stretch)] == 0)
+      idle("--from-s or --to-s", "all samples are between these two times");
+  }
+
+  void name_idle_words() {
+    std::size_t text_word = 0;
+    for (const std::string& word : mapping_.missing) {
+      std::size_t cells = 0;
+      if (const auto number = missing_number(word)) {
+        for (std::size_t i = 0; i < table_.columns.size(); ++i) {
+          const std::vector<double>& values = table_.columns[i].values;
+          if (sources_.uses(i))
+            cells += static_cast<std::size_t>(std::count(values.begin(), values.end(), *number));
+        }
+      } else if (text_word < table_.missing_cells.size()) {
+        cells = table_.missing_cells[text_word++];
+      }
+      if (cells == 0)
+        idle("--missing " + document::shown(word, 40), "no cell of the used columns contains this text");
+    }
+  }
+
+  const ForeignTable& table_;
+  const Mapping& mapping_;
+  const RoleSources& sources_;
+  ImportRemarks& remarks_;
+  document::Problems& problems_;
+};
+
+}  // namespace
+
+void report_unused(const ForeignTable& table, const Mapping& mapping, const RoleSources& sources,
+                   ImportRemarks& remarks, document::Problems& problems) {
+  UnusedParts(table, mapping, sources, remarks, problems).report();
+}
+
+}  // namespace softgrip::sysid

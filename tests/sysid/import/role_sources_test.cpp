@@ -1,0 +1,66 @@
+#include "sysid/import/role_sources.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+namespace softgrip::sysid::role_sources_test {
+namespace {
+
+TableColumn column(const std::string& name, const std::string& unit) {
+  TableColumn made;
+  made.name = name;
+  made.unit = unit;
+  made.values = {1, 2, 3};
+  return made;
+}
+
+ForeignTable table() {
+  ForeignTable made;
+  made.file = "m.csv";
+  made.columns = {column("t", "ms"), column("p", "bar"), column("x", "mm"), column("y", "")};
+  return made;
+}
+
+Mapping mapping(const std::string& displacement) {
+  Mapping made;
+  made[Role::time].columns = {"t"};
+  made[Role::pressure].columns = {"p"};
+  made[Role::displacement].columns = {displacement};
+  return made;
+}
+
+TEST(RoleSources, AreColumnsWithTheConversionOfTheirUnits) {
+  document::Problems problems;
+  const RoleSources sources = resolve_sources(table(), mapping("x"), problems);
+  EXPECT_TRUE(problems.empty()) << problems.format();
+  EXPECT_DOUBLE_EQ(sources.of_roles[static_cast<std::size_t>(Role::time)].factor, 1e-3);
+  EXPECT_DOUBLE_EQ(sources.of_roles[static_cast<std::size_t>(Role::pressure)].factor, 100);
+  EXPECT_EQ(sources.of_roles[static_cast<std::size_t>(Role::displacement)].columns,
+            std::vector<std::size_t>{2});
+  EXPECT_TRUE(sources.uses(2));
+  EXPECT_FALSE(sources.uses(3));
+}
+
+TEST(RoleSources, NeedAUnit) {
+  document::Problems problems;
+  static_cast<void>(resolve_sources(table(), mapping("y"), problems));
+  EXPECT_NE(problems.format().find("displacement: 'y' has no unit"), std::string::npos) << problems.format();
+}
+
+TEST(RoleSources, OfAScaleCanBeInAnAngle) {
+  ColumnMapping mapped;
+  mapped.columns = {"x"};
+  mapped.scale = 2;
+  mapped.unit = "deg";
+  const auto unit = angle_of_scale(spec_of(Role::displacement), mapped);
+  ASSERT_TRUE(unit);
+  EXPECT_NE(unit->output, model::OutputUnit::mm);
+  EXPECT_FALSE(angle_of_scale(spec_of(Role::pressure), mapped));
+  mapped.unit = "mm";
+  EXPECT_FALSE(angle_of_scale(spec_of(Role::displacement), mapped));
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::role_sources_test

@@ -1,0 +1,60 @@
+#include "sysid/import/unused_parts.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+namespace softgrip::sysid::unused_parts_test {
+namespace {
+
+TableColumn column(const std::string& name, std::vector<double> values) {
+  TableColumn made;
+  made.name = name;
+  made.values = std::move(values);
+  return made;
+}
+
+class UnusedPartsTest : public testing::Test {
+ protected:
+  UnusedPartsTest() {
+    table_.file = "m.mat";
+    table_.columns = {column("t", {0, 1, 2}), column("p", {5, 6, 7}), column("x", {1, 2, 3})};
+    for (const Role role : {Role::time, Role::pressure, Role::displacement}) {
+      const std::size_t next = used_++;
+      mapping_[role].columns = {table_.columns[next].name};
+      sources_.of_roles[static_cast<std::size_t>(role)].columns = {next};
+    }
+  }
+  void report() { report_unused(table_, mapping_, sources_, remarks_, problems_); }
+
+  ForeignTable table_;
+  Mapping mapping_;
+  RoleSources sources_;
+  ImportRemarks remarks_;
+  document::Problems problems_;
+  std::size_t used_ = 0;
+};
+
+TEST_F(UnusedPartsTest, AColumnWithoutARoleIsANote) {
+  table_.columns.push_back(column("humidity", {40, 41, 42}));
+  report();
+  EXPECT_EQ(remarks_.notes, std::vector<std::string>{"not used: 'humidity'"});
+  EXPECT_TRUE(remarks_.warnings.empty());
+  EXPECT_TRUE(problems_.empty()) << problems_.format();
+}
+
+TEST_F(UnusedPartsTest, AnOptionWithoutEffectIsAWarning) {
+  mapping_.sheet = "Data";
+  report();
+  EXPECT_EQ(remarks_.warnings, std::vector<std::string>{"--sheet has no effect: the file is not a workbook"});
+}
+
+TEST_F(UnusedPartsTest, RowsOfSeveralFingersAreAProblem) {
+  table_.columns.push_back(column("finger", {1, 2, 1}));
+  report();
+  EXPECT_NE(problems_.format().find("the rows belong to 2 fingers"), std::string::npos) << problems_.format();
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::unused_parts_test
