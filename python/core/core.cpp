@@ -2,13 +2,14 @@
 // package checks the types of arguments and converts the results to typed objects
 // (python/softgrip/models.py).
 
-#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <softgrip/softgrip.h>
 
+#include "python/core/arrays.h"
 #include "python/core/control.h"
+#include "python/core/health.h"
 #include "python/core/interruptible.h"
 #include "python/core/words.h"
 
@@ -16,27 +17,6 @@ namespace py = pybind11;
 
 namespace softgrip::python {
 namespace {
-
-using Array = py::array_t<double, py::array::c_style>;
-
-/// Returns a view of the values of an array. The array must exist as long as the view is used.
-std::span<const double> span_of(const Array& array) {
-  return {array.data(), static_cast<std::size_t>(array.size())};
-}
-
-std::vector<double> vector_of(const Array& array) {
-  return {array.data(), array.data() + array.size()};
-}
-
-/// Returns a NumPy array that takes over the values without a copy.
-template <class Value>
-py::array_t<Value> array_of(std::vector<Value> values) {
-  auto owner = std::make_unique<std::vector<Value>>(std::move(values));
-  auto* const data = owner.get();
-  const py::capsule capsule(owner.release(),
-                            [](void* held) { delete static_cast<std::vector<Value>*>(held); });
-  return py::array_t<Value>(static_cast<py::ssize_t>(data->size()), data->data(), capsule);
-}
 
 Unit unit_named(const std::string& name) {
   if (name == "mm") return Unit::mm;
@@ -298,79 +278,6 @@ py::dict changed(const Model& model, const py::list& healthy, const py::list& la
   return dict;
 }
 
-template <class Value>
-py::object optional_of(const std::optional<Value>& value) {
-  return value ? py::cast(*value) : py::none();
-}
-
-/// Returns the keyword arguments of the Python class softgrip.FingerHealth.
-py::dict dict_of(FingerHealth finger) {
-  py::list indicators, alarms, suspects;
-  for (HealthIndicator& one : finger.indicators) {
-    py::dict dict;
-    dict["id"] = one.id;
-    dict["title"] = one.title;
-    dict["unit"] = one.unit;
-    dict["value"] = optional_of(one.value);
-    dict["reference"] = optional_of(one.reference);
-    dict["spread"] = optional_of(one.spread);
-    dict["values"] = array_of(std::move(one.values));
-    indicators.append(dict);
-  }
-  for (const HealthAlarm& one : finger.alarms) {
-    py::dict dict;
-    dict["indicator"] = one.indicator;
-    dict["change"] = one.change;
-    dict["since"] = one.since;
-    dict["noticed"] = one.noticed;
-    dict["grips_until_noticed"] = one.grips_until_noticed;
-    dict["active"] = one.active;
-    alarms.append(dict);
-  }
-  for (const Suspect& one : finger.suspects) {
-    py::dict dict;
-    dict["id"] = one.id;
-    dict["words"] = one.words;
-    dict["next_steps"] = py::tuple(py::cast(one.next_steps));
-    suspects.append(dict);
-  }
-  py::dict dict;
-  dict["finger"] = finger.finger;
-  dict["state"] = finger.state;
-  dict["sentence"] = finger.sentence;
-  dict["unit"] = name_of(finger.unit);
-  dict["grips"] = finger.grips;
-  dict["points"] = py::tuple(py::cast(finger.points));
-  dict["indicators"] = indicators;
-  dict["alarms"] = alarms;
-  dict["suspects"] = suspects;
-  dict["advice"] = py::tuple(py::cast(finger.advice));
-  dict["html"] = finger.html;
-  return dict;
-}
-
-py::dict judged(const std::vector<std::string>& recordings, const std::string& baseline,
-                const std::string& points, double false_alarm_points, const std::string& notes,
-                const std::string& scores, const py::object& progress) {
-  HealthOptions options;
-  options.points =
-      chosen<HealthPoints>("points", points, {{"day", HealthPoints::day}, {"run", HealthPoints::run}});
-  options.false_alarm_points = false_alarm_points;
-  options.notes = notes;
-  options.scores = scores;
-  Health found = interruptible(progress, options, [&] { return health(recordings, baseline, options); });
-  py::list fingers, skipped;
-  for (FingerHealth& finger : found.fingers) fingers.append(dict_of(std::move(finger)));
-  for (const SkippedRecording& one : found.skipped) skipped.append(py::make_tuple(one.recording, one.reason));
-  py::dict dict;
-  dict["alarm"] = found.alarm;
-  dict["fingers"] = fingers;
-  dict["warnings"] = found.warnings;
-  dict["skipped"] = skipped;
-  dict["json"] = found.json;
-  return dict;
-}
-
 /// Raises the exception of softgrip.errors that has this name.
 void raise(const char* name, const py::tuple& arguments) {
   const py::object type = py::module_::import("softgrip.errors").attr(name);
@@ -419,6 +326,6 @@ PYBIND11_MODULE(_core, module) {
   module.def("validate", validated);
   module.def("diagnose", diagnosed);
   module.def("diagnose_change", changed);
-  module.def("health", judged);
+  add_health(module);
   add_control(module);
 }

@@ -1,0 +1,36 @@
+#pragma once
+// Converts between NumPy arrays and vectors of C++.
+
+#include <pybind11/numpy.h>
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace softgrip::python {
+
+using Array = pybind11::array_t<double, pybind11::array::c_style>;
+
+/// Returns a view of the values of an array. The array must exist as long as the view is used.
+inline std::span<const double> span_of(const Array& array) {
+  return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+/// Returns a copy of the values of an array.
+inline std::vector<double> vector_of(const Array& array) {
+  return {array.data(), array.data() + array.size()};
+}
+
+/// Returns a NumPy array that takes over the values without a copy.
+template <class Value>
+pybind11::array_t<Value> array_of(std::vector<Value> values) {
+  auto owner = std::make_unique<std::vector<Value>>(std::move(values));
+  auto* const data = owner.get();
+  const pybind11::capsule capsule(owner.release(),
+                                  [](void* held) { delete static_cast<std::vector<Value>*>(held); });
+  return pybind11::array_t<Value>(static_cast<pybind11::ssize_t>(data->size()), data->data(), capsule);
+}
+
+}  // namespace softgrip::python
