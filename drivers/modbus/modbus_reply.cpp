@@ -42,9 +42,9 @@ const char* text_of(ReplyDefect defect) noexcept {
     case ReplyDefect::length:
       return "the reply's header states a wrong length";
     case ReplyDefect::unit:
-      return "the unit ids of the request and the reply differ";
+      return "the reply has another unit id";
     case ReplyDefect::function:
-      return "the function codes of the request and the reply differ";
+      return "the reply has another function code";
     case ReplyDefect::byte_count:
       return "the reply's byte count does not match the request";
     case ReplyDefect::echo:
