@@ -39,10 +39,10 @@ class RateLimit {
     const double least_s = least_share * value_of(in.duration_s);
     if (value_of(meeting_s) <= least_s) return follow(in, next);
     if (value_of(in.duration_s - meeting_s) <= least_s) return go(in.duration_s, s_per_kpa, next);
-    Segment<T> rest = in.beyond(meeting_s / in.duration_s);
     go(meeting_s, s_per_kpa, next);
-    rest.duration_s = in.duration_s - meeting_s;
-    follow(rest, next);
+    // The time of the meeting is that of the straight line between the ends of the input. A parabola would
+    // start at another pressure, and its mean could lie outside the range of the segment.
+    follow(Segment<T>::straight(in.duration_s - meeting_s, output_, in.end), next);
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/chamber_lag.h"
@@ -64,6 +65,13 @@ ResonantFit minimised(const FitPoint& from, const std::vector<Record>& records, 
   return {space.point(minimum.z), minimum.rmse_mm};
 }
 
+/// Continues a fit of the dynamics with all parameters, if they are requested and the error decreases.
+ResonantFit completed(ResonantFit found, const std::vector<Record>& records, ResonanceFit fit) {
+  if (fit != ResonanceFit::complete || found.point.model.blocks.empty()) return found;
+  ResonantFit complete = minimised(found.point, records, fit);
+  return complete.rmse_mm < found.rmse_mm ? complete : found;
+}
+
 }  // namespace
 
 ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& records, ResonanceFit fit) {
@@ -91,7 +99,7 @@ ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& rec
     ResonantFit end = minimised(start.point, records, ResonanceFit::dynamics);
     if (end.rmse_mm < found.rmse_mm) found = std::move(end);
   }
-  return fit == ResonanceFit::complete ? minimised(found.point, records, fit) : found;
+  return completed(std::move(found), records, fit);
 }
 
 FitPoint with_resonance_of(const FitPoint& resonant, FitPoint point, const std::vector<Record>& records,
@@ -99,8 +107,7 @@ FitPoint with_resonance_of(const FitPoint& resonant, FitPoint point, const std::
   const model::BlockSpec& mode = *model::find_block<model::Inertia>(resonant.model);
   put(point, model::value<model::Inertia>(mode, "period_s"),
       model::value<model::Inertia>(mode, "damping_ratio"));
-  const ResonantFit found = minimised(point, records, ResonanceFit::dynamics);
-  return fit == ResonanceFit::complete ? minimised(found.point, records, fit).point : found.point;
+  return completed(minimised(point, records, ResonanceFit::dynamics), records, fit).point;
 }
 
 }  // namespace softgrip::sysid

@@ -172,7 +172,6 @@ static void rate_limit_step(double *output, double filling, double venting, segm
   const double s_per_kpa = gap > 0.0 ? filling : -venting;
   const double least_s = 1e-6 * in.duration_s;
   double meeting_s = in.duration_s;
-  segment rest;
   if (in.duration_s <= 0.0) {
     const double begin = *output;
     if ((in.end > begin ? filling : venting) > 0.0) return;
@@ -194,10 +193,9 @@ static void rate_limit_step(double *output, double filling, double venting, segm
     rate_limit_go(output, s_per_kpa, in.duration_s, chain, next);
     return;
   }
-  rest = part_beyond(in, meeting_s / in.duration_s);
-  rest.duration_s = in.duration_s - meeting_s;
   rate_limit_go(output, s_per_kpa, meeting_s, chain, next);
-  rate_limit_follow(output, filling, venting, rest, chain, next);
+  in = straight(in.duration_s - meeting_s, *output, in.end);
+  rate_limit_follow(output, filling, venting, in, chain, next);
 }
 )";
 

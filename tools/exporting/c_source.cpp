@@ -185,7 +185,7 @@ class Generator {
     const bool is_cut_before =
         model::has_any<model::TransportDelay, model::AsymmetricValveLag, model::ChamberLag>(model_);
     const bool passes = model::has_any<model::PrandtlIshlinskii>(model_);
-    if (is_cut_before || passes || model::has_any<model::RateLimit>(model_)) text_ += cutting;
+    if (is_cut_before || passes) text_ += cutting;
     if (is_cut_before) text_ += cutting_before;
     if (passes) text_ += passing;
     if (model::has_any<model::BoucWen, model::Characteristic>(model_)) text_ += phi_one;

@@ -72,6 +72,26 @@ TEST(RateLimit, AgreesWithASmallStepIntegrator) {
   EXPECT_GT(limited, 50);
 }
 
+// A lag before the rate limit bends its output. The mean of each segment must lie between the ends.
+TEST(RateLimit, ABentInputGivesMonotoneSegments) {
+  std::mt19937_64 random(24);
+  std::uniform_real_distribution<double> pressure(0, 60), duration(0.01, 0.4), bend(0.02, 0.98);
+  Block block = make<Block>({0.01, 0.02});
+  double at = 0;
+  int divided = 0;
+  for (int i = 0; i < 500; ++i) {
+    const double to = pressure(random);
+    const auto out = pass(block, {duration(random), at, to, at + (to - at) * bend(random)});
+    divided += out.size() > 1 ? 1 : 0;
+    for (const Segment<double>& s : out) {
+      ASSERT_GE(s.mean, std::min(s.begin, s.end) - 1e-9) << "seed 24, step " << i;
+      ASSERT_LE(s.mean, std::max(s.begin, s.end) + 1e-9) << "seed 24, step " << i;
+    }
+    at = to;
+  }
+  EXPECT_GT(divided, 50);
+}
+
 TEST(RateLimit, GivesTheDerivativesOfTheMeeting) {
   const auto run = [](auto filling) {
     using T = decltype(filling);
