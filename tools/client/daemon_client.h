@@ -3,7 +3,6 @@
 // (docs/reference/socket-api.md).
 
 #include <chrono>
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -13,7 +12,6 @@
 #include "base/descriptor.h"
 #include "base/exit_code.h"
 #include "base/net/line_buffer.h"
-#include "base/time.h"
 
 namespace softgrip::tools {
 
@@ -76,29 +74,6 @@ class DaemonClient {
   std::string path_;
   net::LineBuffer pending_;
   bool deaf_ = false;  // true: the daemon did not accept a request in time
-};
-
-/// The connection of a program that never waits for the daemon. After a loss, the program connects again.
-class DaemonLink {
- public:
-  explicit DaemonLink(std::string path) : path_(std::move(path)) {}
-  /// Connects if there is no connection, at most every 250 ms. Returns true for a new connection.
-  [[nodiscard]] bool connect(Nanoseconds now);
-  /// Connects if there is no connection. Returns the reason of a failure.
-  [[nodiscard]] std::optional<ClientFailure> connect_now();
-  /// Passes the lines that have arrived to `take`. Returns false if the connection has ended.
-  [[nodiscard]] bool hear(const std::function<void(nlohmann::ordered_json&)>& take);
-  void end() noexcept { client_.reset(); }
-  [[nodiscard]] explicit operator bool() const noexcept { return client_.has_value(); }
-  /// Call this function only if there is a connection.
-  void send(const nlohmann::ordered_json& request) { client_->send(request); }
-  /// Returns the descriptor of the connection for poll(), or -1 if there is no connection.
-  [[nodiscard]] int descriptor() const noexcept { return client_ ? client_->descriptor() : -1; }
-
- private:
-  std::string path_;
-  std::optional<DaemonClient> client_;
-  Nanoseconds tried_at_ = 0;  // time of the last attempt of connect()
 };
 
 /// Returns true if a daemon listens on this socket. The daemon then controls the board, even if it does not

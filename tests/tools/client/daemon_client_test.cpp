@@ -104,44 +104,6 @@ TEST_F(HangingDaemon, HoldsNoOneWhoSends) {
   EXPECT_FALSE(client->next_line(std::chrono::milliseconds(0)));
 }
 
-TEST_F(HangingDaemon, ALinkPassesLinesUntilTheConnectionEnds) {
-  DaemonLink link(path_);
-  EXPECT_EQ(link.descriptor(), -1);
-  EXPECT_TRUE(link.connect(ns_per_s));
-  EXPECT_FALSE(link.connect(ns_per_s)) << "the link is connected";
-  EXPECT_GE(link.descriptor(), 0);
-  std::vector<Json> heard;
-  const auto take = [&heard](Json& line) { heard.push_back(std::move(line)); };
-  EXPECT_TRUE(link.hear(take));
-  Descriptor client = net::accept_client(listener_);
-  ASSERT_TRUE(client);
-  const std::string lines = "{\"event\": {\"id\": 1}}\n{\"event\": {\"id\": 2}}\n";
-  ASSERT_EQ(::send(client.get(), lines.data(), lines.size(), 0), static_cast<ssize_t>(lines.size()));
-  EXPECT_TRUE(link.hear(take));
-  EXPECT_EQ(heard.size(), 2U);
-  ASSERT_EQ(::send(client.get(), lines.data(), lines.size(), 0), static_cast<ssize_t>(lines.size()));
-  client.reset();
-  EXPECT_FALSE(link.hear(take));
-  EXPECT_EQ(heard.size(), 4U) << "lines before the end are passed";
-  EXPECT_FALSE(link);
-  EXPECT_EQ(link.descriptor(), -1);
-}
-
-TEST_F(HangingDaemon, ALinkPausesBetweenAttempts) {
-  DaemonLink link(path_);
-  listener_ = Descriptor();
-  ::unlink(path_.c_str());
-  EXPECT_FALSE(link.connect(ns_per_s));
-  listener_ = std::move(*net::listen_unix(path_));
-  EXPECT_FALSE(link.connect(ns_per_s + ns_per_s / 4 - 1)) << "250 ms have not passed";
-  EXPECT_FALSE(link.hear([](Json&) {}));
-  EXPECT_TRUE(link.connect(ns_per_s + ns_per_s / 4));
-  link.end();
-  EXPECT_FALSE(link);
-  EXPECT_FALSE(link.connect_now()) << "connects without a pause";
-  EXPECT_TRUE(link);
-}
-
 TEST(DaemonClient, SaysWhatToDoWhenNoDaemonIsThere) {
   const auto absent = DaemonClient::connect("/tmp/no/such.sock");
   ASSERT_FALSE(absent);
