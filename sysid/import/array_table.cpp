@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 namespace softgrip::sysid {
@@ -11,7 +10,7 @@ namespace {
 constexpr std::size_t widest_matrix = 200;
 
 double finite_or_none(double value) {
-  return std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
+  return std::isfinite(value) ? value : missing_value;
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -18,7 +17,6 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::string_view end_of_header = "***End_of_Header***";
-constexpr double absent = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<std::string> cells_of(std::string_view line, char separator) {
   std::vector<Cell> cells;
@@ -152,7 +150,7 @@ class LvmReader {
   }
 
   [[nodiscard]] double number(const std::string& text) const {
-    return to_number(pointed(text)).value_or(absent);
+    return to_number(pointed(text)).value_or(missing_value);
   }
 
   Header header(const std::vector<std::string_view>& lines, std::size_t& at) {
@@ -272,7 +270,7 @@ class LvmReader {
       if (++column.bad_count <= 3)
         column.bad.push_back({column.values.size(), {static_cast<int>(line), 1}, text, text});
     }
-    const double value = cell.kind == CellKind::number ? cell.number : absent;
+    const double value = cell.kind == CellKind::number ? cell.number : missing_value;
     column.values.push_back(counts && std::isfinite(counted_x) ? counted_x : value);
   }
 

@@ -3,7 +3,6 @@
 // finger each, or contain one signal each.
 
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -13,9 +12,6 @@
 #include "sysid/import/table.h"
 
 namespace softgrip::sysid {
-
-/// Value of a cell without a number.
-inline constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
 
 /// A topic with its messages. Element i of a column belongs to message i of the topic.
 struct McapTopic {

@@ -3,6 +3,7 @@
 // that is used.
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,9 @@ inline constexpr std::size_t longest_line = std::size_t{1} << 20U;
 inline constexpr std::size_t most_rows = std::size_t{1} << 24U;  ///< largest number of rows; 4.6 h at 1 kHz
 /// Largest number of values in all columns or arrays together.
 inline constexpr std::size_t most_values = std::size_t{1} << 27U;
+
+/// Value of a cell without a number.
+inline constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
 
 /// A cell that is neither a number nor a word for a missing value.
 struct BadCell {

@@ -1,7 +1,6 @@
 #include "sysid/import/text_table.h"
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 #include "sysid/import/cell_value.h"
@@ -15,7 +14,6 @@
 namespace softgrip::sysid {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t bad_cells_kept = 3;
 constexpr std::size_t bad_lines_named = 10;
 
@@ -140,7 +138,7 @@ class RowReader {
         if (cell.missing_word >= 0) ++table_.missing_cells[static_cast<std::size_t>(cell.missing_word)];
         break;
     }
-    column.values.push_back(nothing);
+    column.values.push_back(missing_value);
   }
 
   /// Computes times relative to the first timestamp of a column. The times are whole nanoseconds, because
