@@ -25,10 +25,10 @@ std::vector<double> plain_prediction(const model::Model& model, const std::optio
   return predict(model, record, own);
 }
 
-std::vector<double> walked_with(const Driven& driven, const std::vector<model::BlockSpec>& blocks) {
+std::vector<double> simulated_with(const Driven& driven, const std::vector<model::BlockSpec>& blocks) {
   model::Model model = driven.model;
   for (const model::BlockSpec& block : blocks) model = model::with_block(std::move(model), block);
-  return plain_prediction(model, {}, driven.walked, driven.start);
+  return plain_prediction(model, {}, driven.simulated, driven.start);
 }
 
 /// Returns the prediction of the baseline model and the filter bank, with the blocks of an extension. A block
@@ -42,16 +42,16 @@ std::vector<double> extended_prediction(const Driven& driven, const std::vector<
   }
   std::stable_sort(behind.begin(), behind.end(),
                    [](const model::BlockSpec& a, const model::BlockSpec& b) { return a.type < b.type; });
-  const std::vector<double> plain = within.empty() ? driven.plain : walked_with(driven, within);
+  const std::vector<double> plain = within.empty() ? driven.plain : simulated_with(driven, within);
   std::vector<double> with_filters(plain.size());
   std::transform(plain.begin(), plain.end(), driven.filters.begin(), with_filters.begin(), std::plus());
   if (behind.empty()) return with_filters;
-  with_filters = downstream(behind, driven.walked, std::move(with_filters));
-  if (is_downstream(behind, driven.model, driven.walked)) return with_filters;
+  with_filters = downstream(behind, driven.simulated, std::move(with_filters));
+  if (is_downstream(behind, driven.model, driven.simulated)) return with_filters;
   // For a block that depends on the motion between samples, the motion of the model is simulated between the
   // samples. The contribution of the filter bank is assumed to be linear there.
-  const std::vector<double> without_filters_mm = downstream(behind, driven.walked, plain);
-  std::vector<double> exact = walked_with(driven, blocks);
+  const std::vector<double> without_filters_mm = downstream(behind, driven.simulated, plain);
+  std::vector<double> exact = simulated_with(driven, blocks);
   for (std::size_t i = 0; i < exact.size(); ++i) exact[i] += with_filters[i] - without_filters_mm[i];
   return exact;
 }
@@ -99,7 +99,7 @@ std::vector<double> drive_of(const Base& base, const Record& record,
 
 /// Returns the readings without the contribution of the filter bank.
 Record without_filters(const Driven& driven) {
-  Record record = driven.walked;
+  Record record = driven.simulated;
   for (std::size_t i = 0; i < record.size(); ++i)
     record.reading_mm[i] -= driven.filters(static_cast<Eigen::Index>(i));
   return record;
@@ -125,16 +125,17 @@ Driven driven_by(const Base& base, const Record& record, const std::vector<model
     driven.record.drive_kpa = drive_of(base, record, valve, fault);
     driven.record.held = false;
   }
-  const bool is_walked_whole = base.drive == Drive::command && !base.regulator && !base.model.blocks.empty();
-  const auto whole = is_walked_whole ? with_valve(base.model, valve) : std::nullopt;
+  const bool whole_is_simulated =
+      base.drive == Drive::command && !base.regulator && !base.model.blocks.empty();
+  const auto whole = whole_is_simulated ? with_valve(base.model, valve) : std::nullopt;
   if (whole) driven.model = *whole;
-  driven.walked = whole ? record : driven.record;
+  driven.simulated = whole ? record : driven.record;
   driven.filters = base.filter_weights.size() == 0
                        ? Eigen::VectorXd(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(record.size())))
                        : weighted_filters(driven.record, driven.record.drive_kpa, base.kind, base.largest_kpa,
                                           base.filter_weights);
   driven.start = start != nullptr ? *start : start_of(driven.model, without_filters(driven));
-  driven.plain = plain_prediction(driven.model, base.regulator, driven.walked, driven.start);
+  driven.plain = plain_prediction(driven.model, base.regulator, driven.simulated, driven.start);
   return driven;
 }
 

@@ -30,7 +30,7 @@ namespace softgrip::sysid {
 struct Driven {
   Record record;  ///< record whose drive is the input of the finger at each sample
   /// Record with which `model` is simulated: equal to `record`, or with the command as drive.
-  Record walked;
+  Record simulated;
   model::Model model;       ///< model of the baseline, including the valve blocks if they can be added to it
   Eigen::VectorXd filters;  ///< contribution of the filter bank at each sample
   StartState start;         ///< initial state of the model, without an offset

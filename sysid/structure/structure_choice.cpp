@@ -306,9 +306,9 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
     return judge.judge_regulated(structure, chosen);
   };
   if (options.drive == Drive::command && options.dynamics) {
-    say("a second lag");
+    say("trying a second lag");
     offer_extended(slower, options.threads, choice);
-    say("a rate limit");
+    say("trying a rate limit");
     offer_extended(limited, options.threads, choice);
   }
   if (options.drive == Drive::command) {
@@ -316,7 +316,7 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
     offer_extended(regulated, options.threads, choice);
   }
   if (options.dynamics) {
-    say("a resonance");
+    say("trying a resonance");
     // The complete fit takes as long as all other trials, so the fast fit decides whether it is needed.
     const StructureTrial still = choice.trials[choice.chosen];
     const StructureTrial screening = judge.judge_resonant(still, ResonanceFit::dynamics);

@@ -104,7 +104,7 @@ class SelectorUpon {
     std::vector<std::array<LinearFit, 2>> best(causes.size());
     std::atomic<std::size_t> tried{0};
     parallel_for(causes.size(), data_.threads, [&](std::size_t i) {
-      for (const FitPoint& start : best_starts({&scan, 1}, causes[i], scales_, fewest_looks)) {
+      for (const FitPoint& start : best_starts({&scan, 1}, causes[i], scales_, fewest_starts)) {
         LinearFit fit = linear_fit_from(data_.thinned, scan, causes[i], start);
         LinearFit& of_its_kind = best[i][has_free_form(start.model, causes[i]) ? 1 : 0];
         if (fit.mean_square_mm2 < of_its_kind.mean_square_mm2) of_its_kind = std::move(fit);

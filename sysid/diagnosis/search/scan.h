@@ -53,7 +53,7 @@ class Scan {
 };
 
 /// At least this number of start points is tested for each cause.
-inline constexpr std::size_t fewest_looks = 2;
+inline constexpr std::size_t fewest_starts = 2;
 
 /// Returns the best start points of a cause in order. The start points of its free form come last. The best
 /// start point of every form is included, because a form with more parameters always reaches a smaller mean

@@ -65,7 +65,7 @@ std::vector<StructureFit> coarse_fits(const SearchData& data, const StructureFit
   std::vector<Cause> causes = current.causes;
   causes.push_back(cause);
   std::vector<StructureFit> fits;
-  for (const FitPoint& start : best_starts(scans, cause, data.scales, fewest_looks)) {
+  for (const FitPoint& start : best_starts(scans, cause, data.scales, fewest_starts)) {
     fits.push_back(fit_structure(data.glimpsed, causes, start, coarse_fit));
   }
   sort_and_keep(fits, fits.size());
