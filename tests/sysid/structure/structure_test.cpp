@@ -96,6 +96,20 @@ TEST(StructureColumns, AreWhatTheBlocksOfTheModelDo) {
   }
 }
 
+// The pressure rises and falls at different limited rates, so that exchanged or omitted parameters change the
+// prediction.
+TEST(StructureColumns, AreWhatARateLimitOfTheModelDoes) {
+  const model::Model limited =
+      model::with_block(play_finger(), {model::block_type<model::RateLimit>(), {0.03, 0.06}});
+  const std::vector<Record> records = make_records({simulated(limited, SignalName::steps, 97, 0.03, 4)}, {});
+  const StructureGrid grid = grid_for(records);
+  const FittedStructure fit = fit_form(records, {.rate_limit = true}, grid, {});
+  EXPECT_GT(fit.numbers.venting_s_per_kpa, 1.5 * fit.numbers.filling_s_per_kpa);
+  const FitPoint point = point_of(fit, records, Drive::command);
+  const std::vector<double> left = residual(records[0], predict(point.model, records[0], point.starts[0]));
+  EXPECT_NEAR(rms(left), std::sqrt(fit.mean_square_mm2), 2e-5);
+}
+
 TEST(StructureColumns, AreBitForBitTheSameOnMoreThreads) {
   const std::vector<Record> records = make_records({simulated(play_finger(), SignalName::tp1, 50, 0.03, 3),
                                                     simulated(play_finger(), SignalName::sp2, 50, 0.03, 4)},
