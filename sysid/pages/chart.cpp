@@ -4,7 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/numbers.h"
 #include "sysid/pages/axis_words.h"
@@ -15,7 +18,8 @@
 namespace softgrip::sysid {
 namespace {
 
-constexpr double line_px = 16;  ///< height of one line of text in the title or the legend
+constexpr double line_px = 16;       ///< height of one line of text in the title or the legend
+constexpr double tick_line_px = 13;  ///< height of one line of text of a tick label
 
 /// Returns the SVG attribute of a dash pattern.
 std::string_view dashes_of(Dash dash) {
@@ -40,6 +44,20 @@ struct Range {
     highest = std::max(highest, value);
   }
 };
+
+/// Splits a text after spaces and underscores into lines of at most `most_px`. A part without a space and
+/// without an underscore is not split, so its line may be wider.
+std::vector<std::string> wrapped(std::string_view text, double most_px) {
+  std::vector<std::string> lines(1);
+  while (!text.empty()) {
+    const std::string_view part = text.substr(0, text.find_first_of(" _") + 1);
+    const std::string_view next = part.empty() ? text : part;
+    if (!lines.back().empty() && text_width(lines.back() + std::string(next)) > most_px) lines.emplace_back();
+    lines.back() += next;
+    text.remove_prefix(next.size());
+  }
+  return lines;
+}
 
 /// Draws one chart with its upper left corner at (edge, top).
 class Painter {
@@ -94,7 +112,15 @@ class Painter {
   void lay_out() {
     right_ = edge_ + chart_.width - 14;
     upper_ = top_ + 10 + line_px * head_lines();
-    lower_ = top_ + chart_.height - (chart_.x.label.empty() ? 22 : 40);
+    std::size_t most_lines = 1;
+    for (const std::string& name : chart_.x.categories)
+      most_lines = std::max(most_lines, wrapped(name, name_px()).size());
+    lower_ = top_ + chart_.height - (chart_.x.label.empty() ? 22 : 40) -
+             tick_line_px * static_cast<double>(most_lines - 1);
+  }
+  /// Returns the width that is available for the name of a category [px].
+  [[nodiscard]] double name_px() const {
+    return (right_ - left_) / static_cast<double>(chart_.x.categories.size()) - 4;
   }
   /// Returns the number of text lines that the title and the legend need. If title and legend fit on one
   /// line, they share this line.
@@ -119,9 +145,16 @@ class Painter {
       canvas_.words({left_ - 6, y.px(tick.at) + 4}, Anchor::end, tick.text);
     }
     for (const Tick& tick : x.ticks(most_x)) {
-      if (chart_.x.categories.empty())
+      if (chart_.x.categories.empty()) {
         canvas_.line({x.px(tick.at), upper_}, {x.px(tick.at), lower_}, Colour::grid);
-      canvas_.words({x.px(tick.at), lower_ + 15}, Anchor::middle, tick.text);
+        canvas_.words({x.px(tick.at), lower_ + 15}, Anchor::middle, tick.text);
+        continue;
+      }
+      double at = lower_ + 15;
+      for (const std::string& line : wrapped(tick.text, name_px())) {
+        canvas_.words({x.px(tick.at), at}, Anchor::middle, line);
+        at += tick_line_px;
+      }
     }
     canvas_.line({left_, lower_}, {right_, lower_}, Colour::axis);
     if (y.lower() < 0 && y.upper() > 0 && !chart_.y.logarithmic)

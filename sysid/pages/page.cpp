@@ -29,6 +29,7 @@ a{color:var(--model)}
 .verdict{font-size:19px;line-height:1.4;padding:14px 18px;border-left:6px solid;margin:0 0 18px;max-width:none}
 .good{border-color:var(--good);background:var(--good-paper)}.doubtful{border-color:var(--warn);background:var(--warn-paper)}.bad{border-color:var(--bad);background:var(--bad-paper)}
 dl{display:grid;grid-template-columns:max-content 1fr;gap:2px 16px;font-size:13px;color:var(--muted);margin:0}
+@media screen and (max-width:560px){dl{grid-template-columns:fit-content(45%) minmax(0,1fr)}}
 dt{font-weight:600}dd{margin:0;overflow-wrap:anywhere}
 nav{font-size:13.5px;margin:14px 0;columns:2}nav a{display:block;text-decoration:none}
 table{border-collapse:collapse;font-size:13.5px;margin:12px 0;font-variant-numeric:tabular-nums}

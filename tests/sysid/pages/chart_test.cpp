@@ -4,10 +4,15 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <regex>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "sysid/pages/axis_words.h"
+#include "sysid/pages/canvas.h"
 #include "sysid/pages/chart_path.h"
 #include "sysid/pages/chart_scale.h"
 #include "sysid/pages/figure.h"
@@ -68,6 +73,34 @@ TEST(Scale, OneValueAndNoValueStillMakeAnAxis) {
   EXPECT_LT(Scale(axis, 5, 5, 0, 500, true).lower(), 5);
   const Scale nothing(axis, 1e300, -1e300, 0, 500, true);
   EXPECT_LT(nothing.lower(), nothing.upper());
+}
+
+/// Returns the texts of a chart with their horizontal positions [px].
+std::vector<std::pair<double, std::string>> texts_of(const std::string& markup) {
+  std::vector<std::pair<double, std::string>> texts;
+  const std::regex pattern(R"re(<text x="([-0-9.]+)"[^>]*>([^<]*)</text>)re");
+  for (std::sregex_iterator i(markup.begin(), markup.end(), pattern), end; i != end; ++i)
+    texts.emplace_back(std::stod((*i)[1]), (*i)[2]);
+  return texts;
+}
+
+TEST(Chart, LongNamesOfCategoriesAreWrappedAndDoNotOverlap) {
+  const std::vector<std::string> names = {"asymmetric_hysteresis", "rate_dependent_hysteresis",
+                                          "pressure_saturation",   "sensor_nonlinearity",
+                                          "stress_softening",      "ageing",
+                                          "sensor_drift",          "slow_creep"};
+  Chart chart = chart_over(names);
+  chart.series = {points_over_names("error", Colour::model, std::vector<double>(names.size(), 1.0))};
+  const std::string markup = markup_of({{chart}});
+  const double slot_px = static_cast<double>(chart.width) / static_cast<double>(names.size());
+  std::size_t parts = 0;
+  for (const auto& [x, text] : texts_of(markup)) {
+    if (text.size() < 5 || text == "error") continue;
+    ++parts;
+    EXPECT_LT(text_width(text), slot_px) << text;
+  }
+  EXPECT_GE(parts, 12U) << markup;
+  EXPECT_EQ(markup.find("asymmetric_hysteresis"), std::string::npos);
 }
 
 TEST(Thinning, KeepsEveryExtreme) {
