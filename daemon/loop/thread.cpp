@@ -64,4 +64,15 @@ void Thread::join() noexcept {
   started_ = false;
 }
 
+void StopFlag::set() {
+  const std::scoped_lock lock(mutex_);
+  set_ = true;
+  changed_.notify_all();
+}
+
+bool StopFlag::wait(std::chrono::duration<double> timeout) {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, timeout, [this] { return set_; });
+}
+
 }  // namespace softgrip::daemon

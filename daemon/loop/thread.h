@@ -1,10 +1,14 @@
 #pragma once
-// A thread with a name and a stack of known size. Exceptions in the thread are reported.
+// A thread with a name and a stack of known size, whose exceptions are reported; and a flag that wakes a
+// sleeping thread.
 
 #include <pthread.h>
 
+#include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <functional>
+#include <mutex>
 #include <string>
 
 namespace softgrip::daemon {
@@ -35,6 +39,20 @@ class Thread {
  private:
   pthread_t handle_{};
   bool started_ = false;
+};
+
+/// A flag that another thread can set to wake a sleeping thread.
+class StopFlag {
+ public:
+  void set();
+  /// Waits until the flag is set, but at most for `timeout`. Returns true if the flag is set.
+  bool wait(std::chrono::duration<double> timeout);
+  bool is_set() { return wait(std::chrono::duration<double>(0)); }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool set_ = false;
 };
 
 }  // namespace softgrip::daemon

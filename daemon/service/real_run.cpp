@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdlib>
 #include <exception>
 #include <functional>
@@ -46,27 +45,6 @@ constexpr Nanoseconds longest_end = 3 * ns_per_s;
 constexpr Nanoseconds service_pause = ns_per_s / 50;
 /// Time from the start of the threads to the first tick [ns].
 constexpr Nanoseconds lead_time = ns_per_s / 100;
-
-/// A flag that another thread can set to wake a sleeping thread.
-class Stop {
- public:
-  void set() {
-    const std::scoped_lock lock(mutex_);
-    set_ = true;
-    changed_.notify_all();
-  }
-  /// Waits until the flag is set, but at most for `timeout`. Returns true if the flag is set.
-  bool wait(std::chrono::duration<double> timeout) {
-    std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, timeout, [this] { return set_; });
-  }
-  bool is_set() { return wait(std::chrono::duration<double>(0)); }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool set_ = false;
-};
 
 class RealRun {
  public:
@@ -117,8 +95,8 @@ class RealRun {
   Nanoseconds start_ = 0;
 
   std::optional<SocketServer> server_;
-  Stop stop_recorder_;
-  Stop stop_service_;
+  StopFlag stop_recorder_;
+  StopFlag stop_service_;
   std::atomic<bool> loop_done_{false};
   std::atomic<bool> bus_done_{false};
   std::atomic<bool> service_done_{false};

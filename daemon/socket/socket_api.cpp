@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <future>
 #include <thread>
 #include <utility>
@@ -27,9 +26,6 @@ constexpr Nanoseconds longest_answer = ns_per_s;
 /// for the loop's reply.
 constexpr Nanoseconds longest_pause = ns_per_s / 50;
 constexpr Nanoseconds pause_while_asked = ns_per_s / 1000;
-/// Largest number of events that one subscriber gets per turn, so that the other subscribers do not wait too
-/// long.
-constexpr std::size_t most_fed = 50;
 
 }  // namespace
 
@@ -39,7 +35,7 @@ SocketApi::SocketApi(StatusSources sources, rig::SocketSettings settings,
       settings_(std::move(settings)),
       started_at_(utc_text(wall_time(sources.origin), 3)),
       loader_(std::move(loader)),
-      events_(events),
+      events_(events, sources.origin, started_at_),
       send_(std::move(send)) {}
 
 SocketApi::~SocketApi() {
@@ -61,10 +57,10 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
       greet(client, *request);
       break;
     case Command::subscribe:
-      subscribe(client, *request);
+      ok(client, request->id, events_.subscribe(client, *request));
       break;
     case Command::unsubscribe:
-      subscriptions_.erase(client);
+      events_.unsubscribe(client);
       ok(client, request->id, Json::object());
       break;
     case Command::status:
@@ -95,10 +91,10 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
       ask(client, request->id, Kind::acknowledge, nullptr, now);
       break;
     case Command::events:
-      tell_events(client, *request, now);
+      ok(client, request->id, events_.list(*request, now));
       break;
     case Command::statistics:
-      ok(client, request->id, statistics_json(sources_, events_.counts(), request->histograms));
+      ok(client, request->id, statistics_json(sources_, events_.log().counts(), request->histograms));
       break;
     case Command::sequences:
       list_sequences(client, request->id);
@@ -143,7 +139,7 @@ ClientId SocketApi::owner_client() const {
 }
 
 bool SocketApi::keeps_place(ClientId client) const {
-  if (subscriptions_.contains(client)) return true;
+  if (events_.has(client)) return true;
   if (planned_ && planned_->client == client && !planned_->abandoned) return true;
   return owner_client() == client;
 }
@@ -176,7 +172,7 @@ void SocketApi::on_opened(ClientId client, Role role) {
 
 void SocketApi::on_closed(ClientId client) {
   clients_.erase(client);
-  subscriptions_.erase(client);
+  events_.unsubscribe(client);
   watches_.erase(client);
   std::erase_if(asked_, [this, client](const auto& entry) {
     if (entry.second.client != client) return false;
@@ -203,7 +199,7 @@ Nanoseconds SocketApi::on_time(Nanoseconds now) {
     if (said.kind == Service::Answer::Kind::pending) sources_.service.forget(request);
     entry = asked_.erase(entry, end);
   }
-  feed(now);
+  events_.feed(now, send_);
   Nanoseconds next = now + (asked_.empty() ? longest_pause : pause_while_asked);
   for (auto& [client, watch] : watches_) {
     if (now >= watch.due) {
@@ -383,54 +379,6 @@ void SocketApi::watch(ClientId client, const ClientRequest& request, Nanoseconds
   const auto period = static_cast<Nanoseconds>(static_cast<double>(ns_per_s) / request.rate_hz);
   watches_[client] = {request.id, period, now};
   ok(client, request.id, {{"rate_hz", request.rate_hz}});
-}
-
-Json SocketApi::dated(const EventEntry& event, Nanoseconds now) {
-  Json json = event_json(event);
-  json["at"] = utc_text(wall_origin(now) + nanoseconds(event.time_s), 3);
-  return json;
-}
-
-/// Returns the wall-clock time at time 0 of the event log. The result changes only if the wall clock was set.
-/// Therefore, an event that is sent twice has the same time in both messages.
-Nanoseconds SocketApi::wall_origin(Nanoseconds now) {
-  constexpr Nanoseconds was_set = ns_per_s / 2;
-  const Nanoseconds origin = wall_time_now() - (now - sources_.origin);
-  if (!wall_origin_ || std::abs(origin - *wall_origin_) > was_set) wall_origin_ = origin;
-  return *wall_origin_;
-}
-
-void SocketApi::tell_events(ClientId client, const ClientRequest& request, Nanoseconds now) {
-  Json list = Json::array();
-  for (const EventEntry& event : events_.since(request.since.value_or(0), request.limit)) {
-    list.push_back(dated(event, now));
-  }
-  ok(client, request.id, {{"events", std::move(list)}, {"newest", events_.newest()}});
-}
-
-/// Subscribes a client to events. If `started_at` is the start time of an earlier run of the daemon, the
-/// client's event ids are not valid. In this case, the client gets all stored events.
-void SocketApi::subscribe(ClientId client, const ClientRequest& request) {
-  const std::uint64_t newest = events_.newest();
-  const bool of_another = !request.started_at.empty() && request.started_at != started_at_;
-  const std::uint64_t since = of_another ? 0 : std::min(request.since.value_or(newest), newest);
-  subscriptions_[client] = {request.id, since};
-  ok(client, request.id,
-     {{"since", since}, {"oldest", events_.oldest()}, {"newest", newest}, {"started_at", started_at_}});
-}
-
-/// Sends new events to the subscribers. A client that does not read gets the events later, as long as they
-/// are stored. No thread waits for such a client.
-void SocketApi::feed(Nanoseconds now) {
-  const std::uint64_t newest = events_.newest();
-  for (auto& [client, subscription] : subscriptions_) {
-    if (subscription.last == newest) continue;
-    for (const EventEntry& event : events_.since(subscription.last, most_fed)) {
-      const Json line{{"id", id_json(subscription.id)}, {"event", dated(event, now)}};
-      if (!send_(client, line_of(line), true)) break;
-      subscription.last = event.id;
-    }
-  }
 }
 
 void SocketApi::ok(ClientId client, std::optional<std::uint64_t> id, const Json& result) {

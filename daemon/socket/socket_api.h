@@ -2,7 +2,6 @@
 // Executes the requests of the socket API. This class does not use sockets itself.
 
 #include <cstdint>
-#include <functional>
 #include <future>
 #include <map>
 #include <memory>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "daemon/socket/client_request.h"
+#include "daemon/socket/event_feed.h"
 #include "daemon/socket/role.h"
 #include "daemon/socket/sequence_loader.h"
 #include "daemon/socket/service.h"
@@ -23,15 +23,10 @@
 
 namespace softgrip::daemon {
 
-/// Id of a connection. Each connection has an id that no other connection ever gets.
-using ClientId = std::uint64_t;
-
 /// All functions must be called from one thread: the thread that calls Service.
 class SocketApi {
  public:
-  /// Sends a line with its line break to a client. If `skippable` is true and the client has not read the
-  /// last lines yet, the line is not sent and the result is false.
-  using Send = std::function<bool(ClientId client, std::string_view line, bool skippable)>;
+  using Send = SendLine;
 
   SocketApi(StatusSources sources, rig::SocketSettings settings, std::shared_ptr<const SequenceLoader> loader,
             const EventLog& events, Send send);
@@ -69,10 +64,6 @@ class SocketApi {
     document::Problems remarks;                     ///< warnings about the sequence of the request
     std::shared_ptr<const LoadedSequence> checked;  ///< for a dry run: the sequence that was checked
   };
-  struct Subscription {
-    std::optional<std::uint64_t> id;
-    std::uint64_t last = 0;  ///< id of the newest event that was sent
-  };
   struct Watch {
     std::optional<std::uint64_t> id;
     Nanoseconds period = 0;
@@ -99,10 +90,6 @@ class SocketApi {
   [[nodiscard]] ClientId owner_client() const;
   [[nodiscard]] nlohmann::ordered_json status() const;
   void greet(ClientId client, const ClientRequest& request);
-  void subscribe(ClientId client, const ClientRequest& request);
-  void feed(Nanoseconds now);
-  [[nodiscard]] nlohmann::ordered_json dated(const EventEntry& event, Nanoseconds now);
-  [[nodiscard]] Nanoseconds wall_origin(Nanoseconds now);
   void start(ClientId client, const ClientRequest& request, Nanoseconds now);
   [[nodiscard]] nlohmann::ordered_json refusal_of_id(const std::string& start_id) const;
   void stop(ClientId client, const ClientRequest& request, Nanoseconds now);
@@ -121,7 +108,6 @@ class SocketApi {
   void watch(ClientId client, const ClientRequest& request, Nanoseconds now);
   void list_sequences(ClientId client, std::optional<std::uint64_t> id);
   void take_listing();
-  void tell_events(ClientId client, const ClientRequest& request, Nanoseconds now);
   void ok(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& result);
   void fail(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& error);
 
@@ -129,16 +115,14 @@ class SocketApi {
   rig::SocketSettings settings_;
   std::string started_at_;
   std::shared_ptr<const SequenceLoader> loader_;
-  const EventLog& events_;
+  EventFeed events_;
   Send send_;
   std::multimap<std::uint32_t, Asked> asked_;  // by the number of the request in the loop
   std::map<ClientId, Client> clients_;
-  std::map<ClientId, Subscription> subscriptions_;
   std::map<ClientId, Watch> watches_;
   std::optional<Planned> planned_;
   StartLedger starts_;
   std::optional<Listing> listing_;
-  std::optional<Nanoseconds> wall_origin_;  ///< wall-clock time at the time sources_.origin
 };
 
 }  // namespace softgrip::daemon
