@@ -83,7 +83,7 @@ std::size_t terminal_rows() {
   return std::max<std::size_t>(window().ws_row, 1);
 }
 
-Descriptor take_signals(std::initializer_list<int> signals) {
+Descriptor take_signals(const std::vector<int>& signals) {
   sigset_t set;
   sigemptyset(&set);
   for (const int signal : signals) sigaddset(&set, signal);

@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <cstddef>
-#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -26,7 +25,7 @@ namespace softgrip::tools {
 
 /// Blocks the signals for the whole process, so that they have no default action. Returns a descriptor that
 /// reports them.
-[[nodiscard]] Descriptor take_signals(std::initializer_list<int> signals);
+[[nodiscard]] Descriptor take_signals(const std::vector<int>& signals);
 /// Takes SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP and SIGWINCH.
 [[nodiscard]] Descriptor take_ending_signals();
 

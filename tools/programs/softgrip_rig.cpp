@@ -7,26 +7,21 @@
 #include <cmath>
 #include <csignal>
 #include <cstddef>
-#include <cstdio>
-#include <exception>
 #include <optional>
 #include <string>
 
 #include "base/net/listener.h"
-#include "base/version.h"
 #include "simulation/emulator/server.h"
 #include "simulation/emulator/truth_log.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/option_check.h"
-#include "tools/command_line/terminal.h"
-#include "tools/command_line/usage.h"
+#include "tools/command_line/server_program.h"
 #include "tools/programs/softgrip_rig_options.h"
 
 namespace softgrip::tools {
 namespace {
 
 void add_options(CLI::App& program, Options& options) {
-  program.set_version_flag("--version", std::string{"softgrip-rig "}.append(software_version()));
   program
       .add_option("--model", options.models,
                   "Model of the fingers: one file for all channels, or one file for each channel")
@@ -139,9 +134,7 @@ ExitCode serve(const Options& options, const Setup& setup, simulation::Emulator&
   simulation::ServerSockets sockets;
   std::string told;
   if (const ExitCode code = listen(setup, sockets, told); code != ExitCode::done) return code;
-  sockets.signals = take_signals({SIGINT, SIGTERM, SIGHUP, SIGUSR1});
-  // Ignore SIGPIPE, because a failed write already shows that a client has disconnected.
-  std::signal(SIGPIPE, SIG_IGN);
+  sockets.signals = take_server_signals({SIGUSR1});
   sockets.standard_input = options.control == "-";
   const bool control_socket = !options.control.empty() && !sockets.standard_input;
   if (control_socket) {
@@ -151,8 +144,7 @@ ExitCode serve(const Options& options, const Setup& setup, simulation::Emulator&
   }
   simulation::Server server(emulator, std::move(sockets));
   ask_for_real_time();
-  std::fputs(told.c_str(), stdout);
-  std::fflush(stdout);
+  say_ready(told);
   server.run([&] {
     if (truth != nullptr) truth->flush();
   });
@@ -186,22 +178,11 @@ ExitCode run(const Options& options) {
 }  // namespace softgrip::tools
 
 int main(int argc, char** argv) {
-  using namespace softgrip;
   using namespace softgrip::tools;
-  try {
-    CLI::App program{
-        "Emulate a rig in real time behind a Modbus board: valves, fingers, object, watchdog, faults.",
-        "softgrip-rig"};
-    Options options;
-    add_options(program, options);
-    try {
-      program.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return end_of(program, error, argc, argv);
-    }
-    return static_cast<int>(run(options));
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "softgrip-rig: %s\n", error.what());
-  }
-  return static_cast<int>(ExitCode::failed);
+  Options options;
+  return run_server_program(
+      {"softgrip-rig",
+       "Emulate a rig in real time behind a Modbus board: valves, fingers, object, watchdog, faults.",
+       [&](CLI::App& program) { add_options(program, options); }, [&] { return run(options); }},
+      argc, argv);
 }
