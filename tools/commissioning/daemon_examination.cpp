@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/json_member.h"
 #include "tools/commissioning/bus_advice.h"
 
 namespace softgrip::tools::doctor {
@@ -11,98 +12,73 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text_in(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_string() ? found->get<std::string>() : std::string{};
-}
-
-double number_in(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_number() ? found->get<double>() : 0;
-}
-
-bool is_set(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_boolean() && found->get<bool>();
-}
-
-Json part(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_object() ? *found : Json::object();
-}
-
-Json list_in(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_array() ? *found : Json::array();
-}
-
 void judge_state(const Json& status, const std::string& rig, Findings& findings) {
-  if (!rig.empty() && text_in(status, "rig") != rig) {
+  if (!rig.empty() && json_text(status, "rig") != rig) {
     findings.warn("daemon",
                   fmt::format("softgripd runs the rig `{}`, but the rig file describes `{}`",
-                              text_in(status, "rig"), rig),
+                              json_text(status, "rig"), rig),
                   "give the rig file with which softgripd was started");
   } else {
     findings.ok("daemon",
-                fmt::format("softgripd {}, {}", text_in(status, "version"), text_in(status, "state")));
+                fmt::format("softgripd {}, {}", json_text(status, "version"), json_text(status, "state")));
   }
 }
 
 /// Returns the name of the finding that explains the latched fault, or "" if the cause of the fault is no
 /// longer present.
 std::string judged_elsewhere(const Json& status, const Json& fault) {
-  const Json present = part(fault, "present");
-  const std::string code = text_in(present, "code");
-  const std::string channel = text_in(present, "channel");
+  const Json& present = json_member(fault, "present");
+  const std::string code = json_text(present, "code");
+  const std::string channel = json_text(present, "channel");
   const bool of_bus = code.starts_with("F1") || code.starts_with("F3");
-  if (of_bus && channel.empty() && !is_set(part(status, "bus"), "connected")) return "board";
-  for (const Json& one : list_in(status, "channels")) {
-    const bool invalid = text_in(one, "validity") != "valid";
-    if (code.starts_with("F20") && invalid && text_in(one, "name") == channel) return "sensor " + channel;
+  if (of_bus && channel.empty() && !json_flag(json_member(status, "bus"), "connected")) return "board";
+  for (const Json& one : json_list(status, "channels")) {
+    const bool invalid = json_text(one, "validity") != "valid";
+    if (code.starts_with("F20") && invalid && json_text(one, "name") == channel) return "sensor " + channel;
   }
   return {};
 }
 
 void judge_fault(const Json& status, Findings& findings) {
-  const Json fault = part(status, "fault");
+  const Json& fault = json_member(status, "fault");
   if (fault.empty()) return;
-  const std::string channel = text_in(fault, "channel");
+  const std::string channel = json_text(fault, "channel");
   const std::string title =
-      text_in(fault, "code") + " " + text_in(fault, "name") + (channel.empty() ? "" : " of " + channel);
+      json_text(fault, "code") + " " + json_text(fault, "name") + (channel.empty() ? "" : " of " + channel);
   if (const std::string where = judged_elsewhere(status, fault); !where.empty()) {
     findings.not_judged("fault", title + " is latched, see `" + where + "`");
     return;
   }
-  findings.fail("fault", title + ": " + text_in(fault, "meaning"),
-                fmt::format("usually {}. {} {}", text_in(fault, "cause"), text_in(fault, "remedy"),
-                            text_in(fault, "next")));
+  findings.fail("fault", title + ": " + json_text(fault, "meaning"),
+                fmt::format("usually {}. {} {}", json_text(fault, "cause"), json_text(fault, "remedy"),
+                            json_text(fault, "next")));
 }
 
 void judge_real_time(const Json& status, Findings& findings) {
-  const Json real_time = part(status, "real_time");
-  for (const Json& step : list_in(real_time, "steps")) {
-    const std::string name = text_in(step, "name");
-    const std::string detail = text_in(step, "detail");
+  const Json& real_time = json_member(status, "real_time");
+  for (const Json& step : json_list(real_time, "steps")) {
+    const std::string name = json_text(step, "name");
+    const std::string detail = json_text(step, "detail");
     const bool slow_kernel = name == "kernel" && detail.find("no PREEMPT_RT") != std::string::npos;
-    if (text_in(step, "outcome") == "failed") {
-      findings.warn(name, detail, "grant this real-time setting, or accept that " + text_in(step, "cost"));
+    if (json_text(step, "outcome") == "failed") {
+      findings.warn(name, detail, "grant this real-time setting, or accept that " + json_text(step, "cost"));
     } else if (slow_kernel) {
       findings.warn(name, detail, "install linux-image-rt-amd64 (Debian) and boot this kernel");
     } else {
-      findings.ok(name, detail.empty() ? text_in(step, "outcome") : detail);
+      findings.ok(name, detail.empty() ? json_text(step, "outcome") : detail);
     }
   }
 }
 
 void judge_loop(const Json& status, const Json& statistics, Findings& findings) {
-  const Json loop = part(statistics, "loop");
-  const double ticks = number_in(loop, "ticks");
-  const double overruns = number_in(loop, "slips_woken_late") + number_in(loop, "slips_took_long");
-  const double period_us = 1e6 / std::max(number_in(status, "rate_hz"), 1e-3);
-  const double p99_us = number_in(part(loop, "wake_up"), "p99_us");
+  const Json& loop = json_member(statistics, "loop");
+  const double ticks = json_number(loop, "ticks", 0);
+  const double overruns = json_number(loop, "slips_woken_late", 0) + json_number(loop, "slips_took_long", 0);
+  const double period_us = 1e6 / std::max(json_number(status, "rate_hz", 0), 1e-3);
+  const double p99_us = json_number(json_member(loop, "wake_up"), "p99_us", 0);
   const std::string text =
       fmt::format("{:.0f} ticks, {:.0f} overruns, wake-up latency p99 {:.0f} us, max {:.0f} us", ticks,
-                  overruns, p99_us, number_in(part(loop, "wake_up"), "max_us"));
+                  overruns, p99_us, json_number(json_member(loop, "wake_up"), "max_us", 0));
   if (overruns > 1e-2 * ticks) {
     findings.fail("loop", text,
                   "cycles are missed: see the finding `scheduling`, lower rate_hz, or reduce the load of the "
@@ -115,20 +91,20 @@ void judge_loop(const Json& status, const Json& statistics, Findings& findings) 
 }
 
 void judge_bus(const Json& status, const Json& statistics, Findings& findings) {
-  const Json bus = part(status, "bus");
-  const Json counts = part(statistics, "bus");
-  const double exchanges = number_in(counts, "exchanges");
-  const double failures = number_in(counts, "failures");
+  const Json& bus = json_member(status, "bus");
+  const Json& counts = json_member(statistics, "bus");
+  const double exchanges = json_number(counts, "exchanges", 0);
+  const double failures = json_number(counts, "failures", 0);
   const std::string text =
-      fmt::format("{}: {:.0f} exchanges, {:.0f} failed, p99 {:.3g} ms", text_in(bus, "board"), exchanges,
-                  failures, number_in(part(counts, "exchange"), "p99_us") * 1e-3);
-  if (!is_set(bus, "connected")) {
-    const std::string failure = text_in(bus, "failure");
+      fmt::format("{}: {:.0f} exchanges, {:.0f} failed, p99 {:.3g} ms", json_text(bus, "board"), exchanges,
+                  failures, json_number(json_member(counts, "exchange"), "p99_us", 0) * 1e-3);
+  if (!json_flag(bus, "connected")) {
+    const std::string failure = json_text(bus, "failure");
     findings.fail("board",
                   fmt::format("{}; not connected, tried {:.0f} times, every {:.2g} s{}", text,
-                              number_in(bus, "attempts"), number_in(bus, "retry_s"),
+                              json_number(bus, "attempts", 0), json_number(bus, "retry_s", 0),
                               failure.empty() ? "" : ". " + failure),
-                  std::string(bus_advice(text_in(bus, "failure_kind"))) + "; softgripd reconnects");
+                  std::string(bus_advice(json_text(bus, "failure_kind"))) + "; softgripd reconnects");
   } else if (failures > 1e-3 * exchanges) {
     findings.warn("board", text,
                   "some exchanges fail. Check the cable, the termination, other Modbus clients and rate_hz");
@@ -138,15 +114,15 @@ void judge_bus(const Json& status, const Json& statistics, Findings& findings) {
 }
 
 void judge_channel(const Json& channel, bool connected, bool has_run, Findings& findings) {
-  const std::string name = text_in(channel, "name");
-  const std::string validity = text_in(channel, "validity");
+  const std::string name = json_text(channel, "name");
+  const std::string validity = json_text(channel, "validity");
   if (!connected) {
     findings.not_judged("sensor " + name, "see `board`");
     findings.not_judged("model " + name, "see `board`");
     return;
   }
-  const std::string text = fmt::format("{:.3f} mm at {:.2f} kPa", number_in(channel, "displacement_mm"),
-                                       number_in(channel, "command_kpa"));
+  const std::string text = fmt::format("{:.3f} mm at {:.2f} kPa", json_number(channel, "displacement_mm", 0),
+                                       json_number(channel, "command_kpa", 0));
   if (validity == "valid") {
     findings.ok("sensor " + name, text);
   } else {
@@ -155,9 +131,9 @@ void judge_channel(const Json& channel, bool connected, bool has_run, Findings& 
     findings.not_judged("model " + name, "see `sensor " + name + "`");
     return;
   }
-  const std::string health = text_in(channel, "health");
+  const std::string health = json_text(channel, "health");
   const std::string residual =
-      fmt::format("{}, residual {:.2f} mm RMS", health, number_in(channel, "health_rms_mm"));
+      fmt::format("{}, residual {:.2f} mm RMS", health, json_number(channel, "health_rms_mm", 0));
   if (health == "unfit" && !has_run) {
     findings.warn("model " + name, residual,
                   "no sequence has run since softgripd started, and the finger was probably not at rest at "
@@ -175,25 +151,25 @@ void judge_channel(const Json& channel, bool connected, bool has_run, Findings& 
 }
 
 void judge_rest(const Json& status, Findings& findings) {
-  const Json recording = part(status, "recording");
-  if (const std::string error = text_in(recording, "error"); !error.empty()) {
+  const Json& recording = json_member(status, "recording");
+  if (const std::string error = json_text(recording, "error"); !error.empty()) {
     findings.fail("recording", error, "free disk space, or check the permissions of the folder");
-  } else if (number_in(recording, "dropped_rows") > 0) {
+  } else if (json_number(recording, "dropped_rows", 0) > 0) {
     findings.warn(
-        "recording", fmt::format("{:.0f} rows were lost", number_in(recording, "dropped_rows")),
+        "recording", fmt::format("{:.0f} rows were lost", json_number(recording, "dropped_rows", 0)),
         "the disk is too slow: use a faster disk, or raise `decimation` under `recorder` in the rig file");
   }
-  const Json gpio = part(status, "gpio");
+  const Json& gpio = json_member(status, "gpio");
   if (gpio.empty()) return;
-  if (is_set(gpio, "lost")) {
+  if (json_flag(gpio, "lost")) {
     findings.fail("gpio", "the digital lines cannot be read",
                   "connect the GPIO chip again and restart softgripd");
-  } else if (is_set(gpio, "emergency_stop")) {
+  } else if (json_flag(gpio, "emergency_stop")) {
     findings.warn("gpio", "the emergency stop is pressed, or has not been released since the start",
                   "release the emergency stop, then run `softgrip acknowledge`");
   } else {
     findings.ok("gpio",
-                fmt::format("emergency stop released, enable {}", is_set(gpio, "enable") ? "on" : "off"));
+                fmt::format("emergency stop released, enable {}", json_flag(gpio, "enable") ? "on" : "off"));
   }
 }
 
@@ -205,9 +181,9 @@ void examine_daemon(const Json& status, const Json& statistics, const std::strin
   judge_real_time(status, findings);
   judge_loop(status, statistics, findings);
   judge_bus(status, statistics, findings);
-  const bool has_run = !part(status, "sequence").empty();
-  for (const Json& channel : list_in(status, "channels")) {
-    judge_channel(channel, is_set(part(status, "bus"), "connected"), has_run, findings);
+  const bool has_run = !json_member(status, "sequence").empty();
+  for (const Json& channel : json_list(status, "channels")) {
+    judge_channel(channel, json_flag(json_member(status, "bus"), "connected"), has_run, findings);
   }
   judge_rest(status, findings);
 }

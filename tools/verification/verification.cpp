@@ -15,6 +15,7 @@
 #include <set>
 
 #include "base/files.h"
+#include "base/json_member.h"
 #include "base/json_text.h"
 #include "base/scratch_folder.h"
 #include "base/sha256.h"
@@ -55,20 +56,6 @@ int called(const std::string& program, std::vector<std::string> words) {
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-/// Returns the member at a key of an object. Returns an empty array if the member is missing or `json` is not
-/// an object.
-const Json& member(const Json& json, const char* key) {
-  static const Json none = Json::array();
-  const auto found = json.is_object() ? json.find(key) : json.end();
-  return found != json.end() ? *found : none;
-}
-
-/// Returns the text at a key, or "" if the key is missing.
-std::string text_in(const Json& json, const char* key) {
-  const Json& value = member(json, key);
-  return value.is_string() ? value.get<std::string>() : std::string();
 }
 
 std::string model_hash_of(const std::string& path) {
@@ -112,8 +99,8 @@ class Verifier {
     if (!text) return missing(text.error());
     json_ = parse_json<Json>(*text);
     if (!json_.is_object()) return missing(path + " cannot be read as JSON");
-    result_.reported_by = text_in(json_, "software");
-    const Json& call = member(json_, "call");
+    result_.reported_by = json_text(json_, "software");
+    const Json& call = json_member(json_, "call");
     for (const Json& word : call) {
       if (!word.is_string()) return missing(path + ": the value of the key `call` is not a list of texts");
       call_.push_back(word.get<std::string>());
@@ -133,15 +120,16 @@ class Verifier {
   /// Returns the hash of a file that the report states. `option` is the command-line option whose value is
   /// this file.
   [[nodiscard]] std::string hash_of(const std::string& option, const std::string& path) const {
-    for (const Json* logs : {&member(json_, "logs"), &member(member(json_, "validation"), "logs")}) {
+    for (const Json* logs :
+         {&json_member(json_, "logs"), &json_member(json_member(json_, "validation"), "logs")}) {
       for (const Json& log : *logs) {
-        if (text_in(log, "path") == path) return text_in(log, "sha256");
+        if (json_text(log, "path") == path) return json_text(log, "sha256");
       }
     }
-    if (option == "--gauge") return text_in(member(json_, "gauge"), "sha256");
-    if (option == "--start") return text_in(member(json_, "start"), "hash");
+    if (option == "--gauge") return json_text(json_member(json_, "gauge"), "sha256");
+    if (option == "--start") return json_text(json_member(json_, "start"), "hash");
     if (option == "--model")
-      return text_in(member(json_, json_.contains("given") ? "given" : "model"), "hash");
+      return json_text(json_member(json_, json_.contains("given") ? "given" : "model"), "hash");
     return {};
   }
 
@@ -193,7 +181,7 @@ class Verifier {
       missing("softgrip " + std::string(kind_->command) + " failed: exit code " + std::to_string(code));
       return;
     }
-    result_.recomputed_by = text_in(json, "software");
+    result_.recomputed_by = json_text(json, "software");
     compare_json(kind_->json, json_, json, result_.comparison);
     compare_series(again);
     compare_model(again);

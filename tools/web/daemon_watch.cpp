@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "tools/web/metrics/json_member.h"
+#include "base/json_member.h"
 
 namespace softgrip::web {
 
@@ -59,16 +59,16 @@ void DaemonWatch::take(Json line, Nanoseconds now) {
     heard_at_ = now;
     state_.take_status(std::move(line["watch"]));
   } else if (line.contains("event")) {
-    last_event_ = static_cast<std::uint64_t>(number(line["event"], "id"));
+    last_event_ = static_cast<std::uint64_t>(json_number(line["event"], "id"));
     state_.take_event(std::move(line["event"]));
-  } else if (line.value("ok", false) && member(line, "id").is_number_unsigned()) {
+  } else if (line.value("ok", false) && json_member(line, "id").is_number_unsigned()) {
     take_result(line["id"].get<std::uint64_t>(), std::move(line["result"]));
   }
 }
 
 void DaemonWatch::take_result(std::uint64_t id, Json result) {
   if (id == Asked::subscribe) {
-    started_at_ = text(result, "started_at");
+    started_at_ = json_text(result, "started_at");
   } else if (id == Asked::statistics) {
     state_.take_statistics(std::move(result));
   } else if (id == Asked::sequences) {

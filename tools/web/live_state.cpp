@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "tools/web/metrics/json_member.h"
+#include "base/json_member.h"
 
 namespace softgrip::web {
 
@@ -30,18 +30,18 @@ std::string message_of(std::string_view kind, const Json& data) {
 
 void LiveState::take_status(Json status) {
   // If the time is smaller than before, the daemon has restarted, so its trend begins again.
-  if (number(status, "time_s") < number(status_, "time_s")) trend_.clear();
+  if (json_number(status, "time_s") < json_number(status_, "time_s")) trend_.clear();
   status_ = std::move(status);
   note_trend();
   if (news_.size() < longest_news) news_ += message_of("state", status_);
 }
 
 void LiveState::note_trend() {
-  const double now_s = number(status_, "time_s");
+  const double now_s = json_number(status_, "time_s");
   Json sample = Json::array({now_s});
-  for (const Json& channel : member(status_, "channels")) {
-    sample.push_back({member(channel, "command_kpa"), member(channel, "pressure_kpa"),
-                      member(channel, "displacement_mm"), member(channel, "reference_mm")});
+  for (const Json& channel : json_member(status_, "channels")) {
+    sample.push_back({json_member(channel, "command_kpa"), json_member(channel, "pressure_kpa"),
+                      json_member(channel, "displacement_mm"), json_member(channel, "reference_mm")});
   }
   trend_.push_back(std::move(sample));
   while (trend_.front()[0].is_number() && trend_.front()[0].get<double>() < now_s - trend_s)

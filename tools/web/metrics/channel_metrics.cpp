@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tools/web/metrics/json_member.h"
+#include "base/json_member.h"
 
 namespace softgrip::web {
 
@@ -40,16 +40,16 @@ constexpr Quantity quantities[] = {
 
 void tell_each(const Json& channels, MetricText& metrics, const auto& value_of) {
   for (const Json& channel : channels)
-    metrics.sample({{"channel", text(channel, "name")}}, value_of(channel));
+    metrics.sample({{"channel", json_text(channel, "name")}}, value_of(channel));
 }
 
 /// Returns the commanded pressure as a share of the range between the rest pressure and the limit on the same
 /// side of rest.
 double pressure_use(const Json& channel) {
-  const Json& limits = member(channel, "limits");
-  const double rest_kpa = number(limits, "rest_kpa");
-  const double away_kpa = number(channel, "command_kpa") - rest_kpa;
-  const double end_kpa = number(limits, away_kpa < 0 ? "pressure_min_kpa" : "pressure_max_kpa");
+  const Json& limits = json_member(channel, "limits");
+  const double rest_kpa = json_number(limits, "rest_kpa");
+  const double away_kpa = json_number(channel, "command_kpa") - rest_kpa;
+  const double end_kpa = json_number(limits, away_kpa < 0 ? "pressure_min_kpa" : "pressure_max_kpa");
   return away_kpa == 0 ? 0 : away_kpa / (end_kpa - rest_kpa);
 }
 
@@ -57,7 +57,8 @@ void tell_one_of(const Json& channels, MetricText& metrics, const char* key,
                  std::initializer_list<const char*> names) {
   for (const Json& channel : channels) {
     for (const char* name : names)
-      metrics.sample({{"channel", text(channel, "name")}, {key, name}}, text(channel, key) == name ? 1 : 0);
+      metrics.sample({{"channel", json_text(channel, "name")}, {key, name}},
+                     json_text(channel, key) == name ? 1 : 0);
   }
 }
 
@@ -68,7 +69,7 @@ void tell_channels(const Json& channels, MetricText& metrics) {
   for (const Quantity& quantity : quantities) {
     metrics.family(quantity.name, gauge, quantity.help);
     tell_each(channels, metrics, [&](const Json& channel) {
-      return number(channel, quantity.key) / quantity.units_per_base_unit;
+      return json_number(channel, quantity.key) / quantity.units_per_base_unit;
     });
   }
   metrics.family("softgrip_pressure_use_ratio", gauge,
@@ -77,11 +78,11 @@ void tell_channels(const Json& channels, MetricText& metrics) {
   tell_each(channels, metrics, pressure_use);
   metrics.family("softgrip_reading_valid", gauge, "1 while the displacement reading is valid.");
   tell_each(channels, metrics,
-            [](const Json& channel) { return text(channel, "validity") == "valid" ? 1.0 : 0.0; });
+            [](const Json& channel) { return json_text(channel, "validity") == "valid" ? 1.0 : 0.0; });
   metrics.family("softgrip_pressure_limited", gauge,
                  "1 while a limit of the rig or of the step restricts the pressure.");
   tell_each(channels, metrics,
-            [](const Json& channel) { return member(channel, "limit").is_string() ? 1.0 : 0.0; });
+            [](const Json& channel) { return json_member(channel, "limit").is_string() ? 1.0 : 0.0; });
   metrics.family("softgrip_model_health", gauge,
                  "1 for the present health state of the model in use of the finger, 0 for the other states.");
   tell_one_of(channels, metrics, "health", {"unknown", "healthy", "suspect", "unfit"});

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tools/web/metrics/json_member.h"
+#include "base/json_member.h"
 
 namespace softgrip::web {
 
@@ -37,8 +37,9 @@ class Counts {
   [[nodiscard]] double of(std::string_view code, std::string_view channel) const {
     double count = 0;
     for (const Json& event : events_) {
-      if (text(event, "kind") == kind_ && text(event, "code") == code && text(event, "channel") == channel)
-        count += number(event, "count");
+      if (json_text(event, "kind") == kind_ && json_text(event, "code") == code &&
+          json_text(event, "channel") == channel)
+        count += json_number(event, "count");
     }
     return count;
   }
@@ -46,7 +47,7 @@ class Counts {
   [[nodiscard]] std::map<std::string, double> by_code() const {
     std::map<std::string, double> counts;
     for (const Json& event : events_) {
-      if (text(event, "kind") == kind_) counts[text(event, "code")] += number(event, "count");
+      if (json_text(event, "kind") == kind_) counts[json_text(event, "code")] += json_number(event, "count");
     }
     return counts;
   }
@@ -60,7 +61,7 @@ void tell_grips(const Json& events, const Json& channels, MetricText& metrics) {
   const Counts grips(events, "grip_result");
   metrics.family("softgrip_grip_results_total", counter, "Results of grips, by finger.");
   for (const Json& channel : channels) {
-    const std::string name = text(channel, "name");
+    const std::string name = json_text(channel, "name");
     for (const char* result : results)
       metrics.sample({{"channel", name}, {"result", label_of(result)}}, grips.of(result, name));
   }

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tools/web/metrics/json_member.h"
+#include "base/json_member.h"
 
 namespace softgrip::web {
 
@@ -17,8 +17,8 @@ void tell_health(const Json& health, MetricText& metrics) {
   if (!health.is_object()) return;
   metrics.family("softgrip_health_timestamp_seconds", gauge,
                  "Time of the last health result, in seconds since 1970-01-01 UTC.");
-  metrics.sample(number(health, "made_unix_s"));
-  const Json& shared = member(health, "shared");
+  metrics.sample(json_number(health, "made_unix_s"));
+  const Json& shared = json_member(health, "shared");
   if (shared.is_array() && !shared.empty()) {
     metrics.family("softgrip_health_shared", gauge,
                    "1 for each indicator that has changed by the same amount at all fingers of the rig.");
@@ -26,22 +26,22 @@ void tell_health(const Json& health, MetricText& metrics) {
       if (number.is_string()) metrics.sample({{"number", number.get<std::string>()}}, 1);
     }
   }
-  const Json& fingers = member(health, "fingers");
+  const Json& fingers = json_member(health, "fingers");
   if (!fingers.is_array()) return;
   metrics.family("softgrip_health_state", gauge,
                  "1 for the present health state of the finger, 0 for the other states.");
   for (const Json& finger : fingers) {
     for (const char* state : {"learning", "steady", "alarm"})
-      metrics.sample({{"channel", text(finger, "finger")}, {"state", state}},
-                     text(finger, "state") == state ? 1 : 0);
+      metrics.sample({{"channel", json_text(finger, "finger")}, {"state", state}},
+                     json_text(finger, "state") == state ? 1 : 0);
   }
   metrics.family("softgrip_health_suspect", gauge,
                  "1 for every candidate fault of a finger that has changed.");
   for (const Json& finger : fingers) {
-    const Json& suspects = member(finger, "suspects");
+    const Json& suspects = json_member(finger, "suspects");
     if (!suspects.is_array()) continue;
     for (const Json& suspect : suspects)
-      metrics.sample({{"channel", text(finger, "finger")}, {"cause", text(suspect, "id")}}, 1);
+      metrics.sample({{"channel", json_text(finger, "finger")}, {"cause", json_text(suspect, "id")}}, 1);
   }
 }
 

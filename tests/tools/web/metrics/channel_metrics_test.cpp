@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "tools/web/metrics/json_member.h"
+#include <nlohmann/json.hpp>
 
 namespace softgrip::web::channel_metrics_test {
 namespace {
@@ -25,17 +25,6 @@ TEST(ChannelMetrics, EveryFingerHasItsOwn) {
         "softgrip_reading_valid{channel=\"left\"} 1\nsoftgrip_reading_valid{channel=\"right\"} 0\n",
         "softgrip_pressure_limited{channel=\"left\"} 1\nsoftgrip_pressure_limited{channel=\"right\"} 0\n"})
     EXPECT_NE(metrics.text().find(line), std::string::npos) << line << metrics.text();
-}
-
-TEST(JsonMember, WhatIsMissingOrOfAnotherTypeIsNotKnown) {
-  const Json object = Json::parse(R"({"a": 1.5, "b": true, "c": "x", "d": null})");
-  EXPECT_EQ(number(object, "a"), 1.5);
-  EXPECT_EQ(flag(object, "b"), 1);
-  EXPECT_EQ(text(object, "c"), "x");
-  for (const char* key : {"b", "c", "d", "e"}) EXPECT_NE(number(object, key), number(object, key)) << key;
-  EXPECT_NE(flag(object, "a"), flag(object, "a"));
-  EXPECT_EQ(text(object, "a"), "");
-  EXPECT_TRUE(member(Json("no object"), "a").is_null());
 }
 
 }  // namespace
