@@ -13,15 +13,12 @@
 
 #include <tl/expected.hpp>
 
-#include "base/clock.h"
 #include "base/enumerated.h"
-#include "daemon/service/board_lock.h"
-#include "daemon/service/daemon.h"
-#include "daemon/service/signals.h"
 #include "tools/client/daemon_client.h"
 #include "tools/command_line/configuration.h"
 #include "tools/command_line/output.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/rig_to_move.h"
 #include "tools/commissioning/plausibility_warnings.h"
 #include "tools/commissioning/procedure.h"
 #include "tools/commissioning/rig_update.h"
@@ -60,16 +57,6 @@ std::string today() {
   char text[16] = "";
   std::strftime(text, sizeof text, "%Y-%m-%d", &date);
   return text;
-}
-
-std::optional<std::size_t> channel_of(const rig::RigFile& rig, const std::string& name) {
-  const auto& channels = rig.settings.channels;
-  if (name.empty() && channels.size() == 1) return 0;
-  const auto found =
-      std::find_if(channels.begin(), channels.end(),
-                   [&](const control::ChannelSettings& channel) { return channel.name == name; });
-  if (found == channels.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - channels.begin());
 }
 
 std::string names_of(const rig::RigFile& rig) {
@@ -142,14 +129,13 @@ calibrate::Expected<calibrate::Results> measure(const rig::RigFile& rig, const C
 }
 
 /// Repeats the question until the answer is yes or no.
-bool confirmed(calibrate::TerminalOperator& terminal, const Clock& clock, const StopRequest& stop,
-               const std::string& question) {
+bool confirmed(calibrate::TerminalOperator& terminal, ManualRig& manual, const std::string& question) {
   constexpr Nanoseconds look_ns = 50'000'000;
   for (;;) {
     terminal.ask(question + " [yes/no]");
     std::optional<std::string> answer;
-    while (!(answer = terminal.answer()) && !terminal.gone() && !stop()) {
-      clock.sleep_until(clock.now() + look_ns);
+    while (!(answer = terminal.answer()) && !terminal.gone() && !manual.stopped()) {
+      manual.clock().sleep_until(manual.clock().now() + look_ns);
     }
     if (!answer) return false;
     if (*answer == "yes" || *answer == "y") return true;
@@ -160,11 +146,11 @@ bool confirmed(calibrate::TerminalOperator& terminal, const Clock& clock, const 
 
 /// Prints the warnings about the results. Returns true if the results may be written to the files.
 bool accepted(const rig::RigFile& rig, const calibrate::Results& results, const CalibrateOptions& options,
-              calibrate::TerminalOperator& terminal, const Clock& clock, const StopRequest& stop) {
+              calibrate::TerminalOperator& terminal, ManualRig& manual) {
   const std::vector<std::string> warnings = calibrate::plausibility_warnings(rig, results);
   for (const std::string& sentence : warnings) std::fprintf(stderr, "doubtful: %s\n", sentence.c_str());
   if (warnings.empty() || !options.write || options.yes) return true;
-  return confirmed(terminal, clock, stop, "write the points into " + rig.path + " nevertheless?");
+  return confirmed(terminal, manual, "write the points into " + rig.path + " nevertheless?");
 }
 
 ExitCode write_into_rig(const rig::RigFile& rig, const calibrate::Results& results) {
@@ -237,15 +223,10 @@ tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, c
 /// Connects to the rig, measures, sets the channels to their rest pressures and writes the results.
 ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
                    const calibrate::Settings& settings) {
-  const auto lock = daemon::BoardLock::take(rig);
-  if (!lock) return fail(ExitCode::state_refused, lock.error());
-  const MonotonicClock clock;
-  const auto board = daemon::make_board(rig, clock);
-  daemon::Signals signals;
-  const StopRequest stop = [&signals] { return signals.first() != 0; };
-  MotionSession session(rig, *board, clock, stop);
-  if (const auto connected = session.connect(); !connected) return fail(ExitCode::io, connected.error().text);
-  std::fprintf(stderr, "%s\nchannel `%s`; Ctrl-C stops and vents\n", board->describe().c_str(),
+  const auto manual = ManualRig::open(rig);
+  if (!manual) return fail(manual.error().code, manual.error().text);
+  MotionSession& session = (*manual)->session();
+  std::fprintf(stderr, "%s\nchannel `%s`; Ctrl-C stops and vents\n", (*manual)->board().describe().c_str(),
                rig.settings.channels[settings.channel].name.c_str());
   calibrate::TerminalOperator terminal;
   const auto results = measure(rig, options, settings, session, terminal);
@@ -256,7 +237,7 @@ ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
                  "the gripper\n");
   if (!results) return fail(results.error().code, results.error().text);
   ExitCode code = write_results(rig, *results, options);
-  if (!accepted(rig, *results, options, terminal, clock, stop)) {
+  if (!accepted(rig, *results, options, terminal, **manual)) {
     return fail(
         ExitCode::not_acceptable,
         "not written: " + rig.path + " is unchanged; to write without a confirmation question, use --yes");
@@ -267,11 +248,8 @@ ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
 
 ExitCode run(CalibrateOptions options) {
   const std::string path = options.rig.empty() ? configuration_path("rig.yaml") : options.rig;
-  if (const auto code = unreadable(path)) return *code;
-  document::Problems problems;
-  const auto rig = rig::load_rig(path, problems);
-  if (!rig) return refuse(problems);
-  std::fputs(problems.format().c_str(), stderr);  // the rig file is valid, so these problems are warnings
+  const auto rig = read_rig(path);
+  if (!rig) return rig.error();
   const auto settings = prepare(options, *rig);
   if (!settings) return settings.error();
   if (const auto code = refuse_beside_daemon(options, *rig)) return *code;

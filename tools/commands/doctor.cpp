@@ -18,6 +18,7 @@
 #include "tools/command_line/configuration.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/rig_to_move.h"
 #include "tools/commissioning/bus_examination.h"
 #include "tools/commissioning/daemon_examination.h"
 #include "tools/commissioning/gateway_examination.h"
@@ -153,11 +154,8 @@ ExitCode run_unnamed(const DoctorOptions& options) {
 ExitCode run(const DoctorOptions& options) {
   if (options.rig.empty()) return run_unnamed(options);
   const std::string& path = options.rig;
-  if (const auto code = unreadable(path)) return *code;
-  document::Problems problems;
-  const auto rig = rig::load_rig(path, problems);
-  if (!rig) return refuse(problems);
-  std::fputs(problems.format().c_str(), stderr);  // the rig file is valid, so these problems are warnings
+  const auto rig = read_rig(path);
+  if (!rig) return rig.error();
 
   doctor::Findings findings;
   auto client = DaemonClient::connect(options.socket.empty() ? rig->socket.path : options.socket);

@@ -4,13 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/clock.h"
 #include "base/numbers.h"
-#include "daemon/service/board_lock.h"
-#include "daemon/service/daemon.h"
-#include "daemon/service/signals.h"
 #include "tools/client/daemon_client.h"
-#include "tools/commissioning/motion_session.h"
+#include "tools/commands/rig_to_move.h"
 #include "tools/commissioning/procedure.h"
 #include "tools/commissioning/terminal_operator.h"
 
@@ -37,13 +33,9 @@ GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
     if (!consent(what_is_done(rig, positions_mm.size())))
       return tl::unexpected(NotPlayed{true, "softgrip was not allowed to check the sensor"});
     if (daemon_runs(rig.rig.socket.path)) return failed(stop_the_daemon);
-    const auto lock = daemon::BoardLock::take(rig.rig);
-    if (!lock) return failed(lock.error());
-    const MonotonicClock clock;
-    const auto board = daemon::make_board(rig.rig, clock);
-    daemon::Signals signals;
-    MotionSession session(rig.rig, *board, clock, [&signals] { return signals.first() != 0; });
-    if (const auto connected = session.connect(); !connected) return failed(connected.error().text);
+    const auto manual = ManualRig::open(rig.rig);
+    if (!manual) return failed(manual.error().text);
+    MotionSession& session = (*manual)->session();
     calibrate::TerminalOperator terminal;
     terminal.tell(
         "Enter: the target is at this position; a number: actual position of the target [mm]; -: skip this "

@@ -6,11 +6,33 @@
 #include <iostream>
 #include <utility>
 
-#include "daemon/service/board_lock.h"
+#include "daemon/service/daemon.h"
 #include "tools/client/daemon_client.h"
-#include "tools/command_line/command.h"
+#include "tools/command_line/read_input.h"
 
 namespace softgrip::tools {
+
+tl::expected<rig::RigFile, ExitCode> read_rig(const std::string& path) {
+  return read_input(path, [](const std::string& file, document::Problems& problems) {
+    auto rig = rig::load_rig(file, problems);
+    if (rig) std::fputs(problems.format().c_str(), stderr);  // the rig is valid, so these are warnings
+    return rig;
+  });
+}
+
+ManualRig::ManualRig(const rig::RigFile& rig, daemon::BoardLock lock)
+    : lock_(std::move(lock)),
+      board_(daemon::make_board(rig, clock_)),
+      session_(rig, *board_, clock_, [this] { return stopped(); }) {}
+
+calibrate::Expected<std::unique_ptr<ManualRig>> ManualRig::open(const rig::RigFile& rig) {
+  auto lock = daemon::BoardLock::take(rig);
+  if (!lock) return tl::unexpected(calibrate::Refusal{ExitCode::state_refused, lock.error()});
+  std::unique_ptr<ManualRig> manual(new ManualRig(rig, std::move(*lock)));
+  if (const auto connected = manual->session_.connect(); !connected)
+    return tl::unexpected(calibrate::Refusal{ExitCode::io, connected.error().text});
+  return manual;
+}
 
 Consent consent_on_terminal(bool yes) {
   if (yes) return [](const std::string&) { return true; };
@@ -24,10 +46,8 @@ Consent consent_on_terminal(bool yes) {
 
 tl::expected<ExperimentRig, ExitCode> rig_to_move(const std::string& path, const std::string& channel,
                                                   bool yes) {
-  if (const auto code = unreadable(path)) return tl::unexpected(*code);
-  document::Problems problems;
-  auto file = rig::load_rig(path, problems);
-  if (!file) return tl::unexpected(refuse(problems));
+  auto file = read_input(path, rig::load_rig);
+  if (!file) return tl::unexpected(file.error());
   auto rig = experiment_rig(std::move(*file), channel);
   if (!rig) return tl::unexpected(fail(ExitCode::usage, rig.error()));
   if (rig->simulated) return std::move(*rig);

@@ -1,14 +1,48 @@
 #pragma once
-// Checks that precede any motion in a command that plays experiments on the rig of a rig file.
+// Opens the rig of a rig file for a command that moves it, and checks that the motion is allowed.
 
+#include <memory>
 #include <string>
 
 #include <tl/expected.hpp>
 
+#include "base/clock.h"
 #include "base/exit_code.h"
+#include "daemon/service/board_lock.h"
+#include "daemon/service/signals.h"
+#include "rig/rig_file.h"
+#include "tools/commissioning/motion_session.h"
+#include "tools/commissioning/procedure.h"
 #include "tools/investigation/experiment_rig.h"
 
 namespace softgrip::tools {
+
+/// Reads a rig file and prints its warnings. If the file is unreadable or invalid, prints the reason and
+/// returns the exit code.
+[[nodiscard]] tl::expected<rig::RigFile, ExitCode> read_rig(const std::string& path);
+
+/// The board of a rig in manual mode. Until the object is destroyed, no other program can use the board, and
+/// a signal stops the session.
+class ManualRig {
+ public:
+  /// Locks the board and connects to it. `rig` must outlive the result.
+  [[nodiscard]] static calibrate::Expected<std::unique_ptr<ManualRig>> open(const rig::RigFile& rig);
+
+  [[nodiscard]] MotionSession& session() { return session_; }
+  [[nodiscard]] const drivers::Board& board() const { return *board_; }
+  [[nodiscard]] const Clock& clock() const { return clock_; }
+  /// Returns true after a signal has requested the end.
+  [[nodiscard]] bool stopped() { return signals_.first() != 0; }
+
+ private:
+  ManualRig(const rig::RigFile& rig, daemon::BoardLock lock);
+
+  daemon::BoardLock lock_;
+  MonotonicClock clock_;
+  std::unique_ptr<drivers::Board> board_;
+  daemon::Signals signals_;
+  MotionSession session_;
+};
 
 /// Returns a function that requests consent on the terminal. With `yes`, the function always consents.
 [[nodiscard]] Consent consent_on_terminal(bool yes);

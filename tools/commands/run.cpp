@@ -16,6 +16,7 @@
 #include "tools/client/set_option.h"
 #include "tools/command_line/configuration.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/rig_to_move.h"
 
 namespace softgrip::tools {
 namespace {
@@ -74,10 +75,8 @@ ExitCode run(const RunOptions& options) {
   }
   const auto arguments = arguments_of(options.settings);
   if (!arguments) return arguments.error();
-  document::Problems problems;
-  auto rig = rig::load_rig(path, problems);
-  if (!rig) return refuse(problems);
-  std::fputs(problems.format().c_str(), stderr);  // the rig file is valid, so these problems are warnings
+  auto rig = read_rig(path);
+  if (!rig) return rig.error();
   if (options.seed && !rig::reseed(*rig, *options.seed))
     return fail(ExitCode::usage, "--seed needs a simulated board");
   auto sequence = daemon::SequenceLoader(rig->settings, "").load_file(options.sequence, *arguments);

@@ -40,7 +40,7 @@ std::string signal_names() {
 }
 
 /// Returns a log with the command to simulate, or an exit code.
-tl::expected<sysid::Log, ExitCode> read_input(const SimulateOptions& options) {
+tl::expected<sysid::Log, ExitCode> input_of(const SimulateOptions& options) {
   if (const auto signal = model::signal_named(options.input)) {
     return sysid::sampled_signal(*signal, options.rate_hz.value_or(default_rate_hz));
   }
@@ -95,7 +95,7 @@ ExitCode run(const SimulateOptions& options) {
   if (const auto code = refuse_overwriting({options.out}, {options.model, options.input})) return *code;
   const auto model = read_model(options.model);
   if (!model) return model.error();
-  auto log = read_input(options);
+  auto log = input_of(options);
   if (!log) return log.error();
   simulate(*model, options.settings, *log);
   if (const auto written = write_output(options.out, sysid::format_log(*log)); !written) {

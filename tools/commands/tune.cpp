@@ -12,13 +12,14 @@
 
 #include "base/numbers.h"
 #include "control/feedforward/invertibility.h"
-#include "rig/rig_file.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
 #include "tools/command_line/output.h"
+#include "tools/command_line/read_input.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 
+#include "tools/commands/rig_to_move.h"
 namespace softgrip::tools {
 namespace {
 
@@ -42,24 +43,18 @@ constexpr double ahead_of_any_mm = 1e4;
 /// Copies the settings of the channel from the rig file to the task. Returns an exit code if the file or
 /// channel is refused.
 std::optional<ExitCode> take_rig(const TuneOptions& options, control::TuneTask& task) {
-  if (const auto code = unreadable(options.rig)) return code;
-  document::Problems problems;
-  const auto rig = rig::load_rig(options.rig, problems);
-  if (!rig) return refuse(problems);
-  const auto& channels = rig->settings.channels;
-  const auto found = options.channel.empty()
-                         ? channels.begin()
-                         : std::find_if(channels.begin(), channels.end(),
-                                        [&](const auto& channel) { return channel.name == options.channel; });
-  if (found == channels.end()) {
-    return fail(ExitCode::usage, options.rig + " has no channel '" + options.channel + "'");
-  }
+  const auto rig = read_input(options.rig, rig::load_rig);
+  if (!rig) return rig.error();
+  const auto index =
+      options.channel.empty() ? std::optional<std::size_t>(0) : channel_of(*rig, options.channel);
+  if (!index) return fail(ExitCode::usage, options.rig + " has no channel '" + options.channel + "'");
+  const control::ChannelSettings& channel = rig->settings.channels[*index];
   const model::Model believed = task.channel.model;
-  task.channel = *found;
+  task.channel = channel;
   task.channel.model = believed;
   task.rate_hz = rig->settings.rate_hz;
-  task.exchange_s = std::min(found->feedforward.extra_latency_s, 0.9 / task.rate_hz);
-  if (found->health.noise_mm > 0) task.noise_mm = found->health.noise_mm;
+  task.exchange_s = std::min(channel.feedforward.extra_latency_s, 0.9 / task.rate_hz);
+  if (channel.health.noise_mm > 0) task.noise_mm = channel.health.noise_mm;
   return std::nullopt;
 }
 

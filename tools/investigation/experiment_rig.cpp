@@ -110,19 +110,23 @@ ExperimentRig ExperimentRig::at(std::uint64_t occasion) const {
   return other;
 }
 
+std::optional<std::size_t> channel_of(const rig::RigFile& rig, const std::string& name) {
+  const auto& channels = rig.settings.channels;
+  if (name.empty() && channels.size() == 1) return 0;
+  const auto found = std::ranges::find(channels, name, &control::ChannelSettings::name);
+  if (found == channels.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - channels.begin());
+}
+
 tl::expected<ExperimentRig, std::string> experiment_rig(rig::RigFile rig, const std::string& channel) {
-  ExperimentRig result{std::move(rig), 0, false};
-  const auto& channels = result.rig.settings.channels;
-  if (channel.empty() && channels.size() > 1)
+  const auto& channels = rig.settings.channels;
+  const auto at = channel_of(rig, channel);
+  if (!at && channel.empty())
     return tl::unexpected("the rig has " + std::to_string(channels.size()) +
                           " channels: select one with --channel");
-  if (!channel.empty()) {
-    const auto at = std::find_if(channels.begin(), channels.end(),
-                                 [&](const control::ChannelSettings& c) { return c.name == channel; });
-    if (at == channels.end()) return tl::unexpected("the rig has no channel '" + channel + "'");
-    result.channel = static_cast<std::size_t>(at - channels.begin());
-  }
-  const control::LimitSettings& limits = channels[result.channel].limits;
+  if (!at) return tl::unexpected("the rig has no channel '" + channel + "'");
+  ExperimentRig result{std::move(rig), *at, false};
+  const control::LimitSettings& limits = result.rig.settings.channels[result.channel].limits;
   if (control::resting_kpa(limits) != 0) {
     return tl::unexpected("channel '" + result.channel_name() + "' never " +
                           (limits.pressure_min_kpa > 0 ? "goes down to" : "rests at") +

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include <tl/expected.hpp>
@@ -35,6 +36,10 @@ struct ExperimentRig {
   /// range is used.
   [[nodiscard]] sysid::RigLimits limits(double gain_mm_per_kpa, double known_kpa) const;
 };
+
+/// Returns the position of the channel with this name in the rig file. An empty name selects the only
+/// channel. Returns nullopt if there is no such channel.
+[[nodiscard]] std::optional<std::size_t> channel_of(const rig::RigFile& rig, const std::string& name);
 
 /// Returns the rig with the channel of this name. An empty name selects the only channel. The error is a
 /// sentence.
