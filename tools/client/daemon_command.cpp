@@ -47,7 +47,7 @@ tl::expected<Json, ExitCode> ask_daemon(const DaemonOptions& options, const Json
 }
 
 void add_plain_request(CLI::App& program, ExitCode& outcome, const std::string& name,
-                       const std::string& meaning, std::string done) {
+                       const std::string& meaning, std::function<std::string(const Json&)> done) {
   auto options = std::make_shared<DaemonOptions>();
   CLI::App* command = program.add_subcommand(name, meaning);
   add_daemon_options(*command, *options);
@@ -58,9 +58,14 @@ void add_plain_request(CLI::App& program, ExitCode& outcome, const std::string& 
     } else if (options->json) {
       print_json(*result);
     } else {
-      std::printf("%s\n", done.c_str());
+      std::printf("%s\n", done(*result).c_str());
     }
   });
+}
+
+void add_plain_request(CLI::App& program, ExitCode& outcome, const std::string& name,
+                       const std::string& meaning, std::string done) {
+  add_plain_request(program, outcome, name, meaning, [done = std::move(done)](const Json&) { return done; });
 }
 
 namespace {

@@ -1,6 +1,7 @@
 #pragma once
 // Options, requests and output that all subcommands with a connection to the daemon share.
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -30,6 +31,10 @@ void add_daemon_options(CLI::App& command, DaemonOptions& options);
 /// JSON.
 void add_plain_request(CLI::App& program, ExitCode& outcome, const std::string& name,
                        const std::string& meaning, std::string done);
+/// Does the same, but prints the sentence that `done` returns for the result of the request.
+void add_plain_request(CLI::App& program, ExitCode& outcome, const std::string& name,
+                       const std::string& meaning,
+                       std::function<std::string(const nlohmann::ordered_json& result)> done);
 
 /// Adds a subcommand that ends motion, like add_plain_request(). When the rig is idle, the subcommand also
 /// prints the pressurised fingers and the command that vents them. With --json, the result contains them as

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -21,10 +20,10 @@
 #include "sysid/identification/validate.h"
 #include "sysid/structure/identify_structure.h"
 #include "tools/baseline/commissioning_run.h"
-#include "tools/command_line/call.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/commands/baseline_folder.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/rig_to_move.h"
@@ -292,9 +291,8 @@ void add_rig_options(CLI::App& command, BaselineOptions& options) {
 }  // namespace
 
 void add_baseline(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<BaselineOptions>();
-  CLI::App* command =
-      program.add_subcommand("baseline", "Record a healthy finger as the reference for change detection");
+  const auto [command, options] = add_command<BaselineOptions>(
+      program, outcome, "baseline", "Record a healthy finger as the reference for change detection", run);
   command->add_option("--data", options->data, "Logs of the healthy finger, in order");
   command->add_option(
       "--check", options->check,
@@ -306,13 +304,9 @@ void add_baseline(CLI::App& program, ExitCode& outcome) {
       "File with readings of the sensor at positions that a gauge measured; stored with the logs");
   command->add_option("--model", options->model, "Model file of the finger [identified from the logs]");
   command->add_option("--out", options->out, "Folder for the logs, model.yaml and baseline.json");
-  command->add_option("--seed", options->seed, "Random seed of start points and resampling")
-      ->capture_default_str();
-  command->add_option("--threads", options->threads, "Number of threads; 0: one per core")
-      ->capture_default_str();
+  add_search_options(*command, options->seed, options->threads);
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print baseline.json");
-  command->callback([options, command, &outcome] { outcome = run(*options, call_of(*command)); });
 }
 
 }  // namespace softgrip::tools

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -17,6 +16,7 @@
 #include "tools/client/daemon_client.h"
 #include "tools/command_line/configuration.h"
 #include "tools/command_line/output.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/rig_to_move.h"
 #include "tools/commissioning/plausibility_warnings.h"
@@ -246,7 +246,8 @@ ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
   return code == ExitCode::done && !safe ? ExitCode::io : code;
 }
 
-ExitCode run(CalibrateOptions options) {
+ExitCode run(const CalibrateOptions& chosen) {
+  CalibrateOptions options = chosen;
   const std::string path = options.rig.empty() ? configuration_path("rig.yaml") : options.rig;
   const auto rig = read_rig(path);
   if (!rig) return rig.error();
@@ -280,9 +281,8 @@ void add_measuring_options(CLI::App& command, CalibrateOptions& options) {
 }  // namespace
 
 void add_calibrate(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<CalibrateOptions>();
-  CLI::App* command =
-      program.add_subcommand("calibrate", "Calibrate sensor and valve against a gauge and a manometer");
+  const auto [command, options] = add_command<CalibrateOptions>(
+      program, outcome, "calibrate", "Calibrate sensor and valve against a gauge and a manometer", run);
   command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed rig file]");
   command->add_option("--channel", options->channel,
                       "Channel to calibrate; required if the rig has more than one channel");
@@ -325,7 +325,6 @@ void add_calibrate(CLI::App& program, ExitCode& outcome) {
       "Questions go to the standard error. Answers are read line by line from the standard input.\nExit "
       "codes: 0 done, 2 usage, 3 input refused, 4 the board or a file failed, 5 the daemon runs,\n6 no "
       "calibration can be computed from the measurements, or a required sensor gave no valid readings.");
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

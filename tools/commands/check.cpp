@@ -5,10 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "tools/client/set_option.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 
 namespace softgrip::tools {
@@ -87,8 +87,8 @@ ExitCode run(const CheckOptions& options) {
 }  // namespace
 
 void add_check(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<CheckOptions>();
-  CLI::App* command = program.add_subcommand("check", "Validate rig, board, model and sequence files");
+  const auto [command, options] = add_command<CheckOptions>(
+      program, outcome, "check", "Validate rig, board, model and sequence files", run);
   command
       ->add_option("FILE", options->files,
                    "Rig, board, model and sequence files, or folders that contain such files; sequences are "
@@ -96,7 +96,6 @@ void add_check(CLI::App& program, ExitCode& outcome) {
       ->required();
   add_set_option(*command, options->settings);
   command->add_flag("--json", options->json, "Print the findings as JSON");
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

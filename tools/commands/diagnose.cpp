@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,10 +17,10 @@
 #include "sysid/diagnosis/report/report.h"
 #include "sysid/diagnosis/report/report_tables.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
-#include "tools/command_line/call.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/diagnose_change.h"
@@ -196,7 +195,8 @@ std::optional<ExitCode> refuse_own_inputs(const DiagnoseOptions& options) {
   return refuse_overwriting(replaced_by_report(options.out, options.figures, diagnosis_files()), inputs);
 }
 
-ExitCode run(DiagnoseOptions options, const std::vector<std::string>& call) {
+ExitCode run(const DiagnoseOptions& chosen, const std::vector<std::string>& call) {
+  DiagnoseOptions options = chosen;
   if (!options.baseline.empty()) {
     const auto baseline = sysid::read_baseline(options.baseline);
     if (!baseline) return fail(ExitCode::input_refused, baseline.error());
@@ -252,9 +252,9 @@ ExitCode run(DiagnoseOptions options, const std::vector<std::string>& call) {
 }  // namespace
 
 void add_diagnose(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<DiagnoseOptions>();
-  CLI::App* command = program.add_subcommand(
-      "diagnose", "Find the error of a model on measured data, and the cause of this error");
+  const auto [command, options] = add_command<DiagnoseOptions>(
+      program, outcome, "diagnose", "Find the error of a model on measured data, and the cause of this error",
+      run);
   command->add_option("--model", options->model, "Model file in use [the model of the baseline]");
   command
       ->add_option("--data", options->data,
@@ -283,10 +283,7 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
                    "Number of simulated data sets without any cause, from which the p-value of the search is "
                    "computed (with 19, the smallest p-value is 0.05)")
       ->capture_default_str();
-  command->add_option("--seed", options->diagnosis.seed, "Random seed of start points and resampling")
-      ->capture_default_str();
-  command->add_option("--threads", options->diagnosis.threads, "Number of threads; 0: one per core")
-      ->capture_default_str();
+  add_search_options(*command, options->diagnosis.seed, options->diagnosis.threads);
   command->add_flag("--propose", options->consequences.experiment.always,
                     "Propose an experiment even if the verdict has no alternatives");
   command
@@ -302,7 +299,6 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
                     "Do not simulate the closed loop with the extended model");
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print diagnosis.json");
-  command->callback([options, command, &outcome] { outcome = run(*options, call_of(*command)); });
 }
 
 }  // namespace softgrip::tools

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <variant>
 
@@ -16,6 +15,7 @@
 #include "tools/client/daemon_command.h"
 #include "tools/client/last_health.h"
 #include "tools/command_line/configuration.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/rig_to_move.h"
@@ -181,10 +181,9 @@ ExitCode run(const DoctorOptions& options) {
 }  // namespace
 
 void add_doctor(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<DoctorOptions>();
-  CLI::App* command = program.add_subcommand(
-      "doctor",
-      "Check that the rig is ready: computer, board, sensors, disk. Each check is ok, warn or fail");
+  const auto [command, options] = add_command<DoctorOptions>(
+      program, outcome, "doctor",
+      "Check that the rig is ready: computer, board, sensors, disk. Each check is ok, warn or fail", run);
   command->add_option("--rig", options->rig, "Rig file [the rig file of the running daemon]");
   command->add_flag("--move", options->move,
                     "Allow softgrip to move each finger slightly, within its limits, to check that the "
@@ -197,7 +196,6 @@ void add_doctor(CLI::App& program, ExitCode& outcome) {
       "fit to run, 2 no "
       "rig is named and no daemon runs, 3 the rig file is refused, 4 the rig file cannot be read, 5 --move "
       "was given while the daemon runs.");
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

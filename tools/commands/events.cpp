@@ -10,6 +10,7 @@
 #include "tools/client/daemon_command.h"
 #include "tools/client/event_query.h"
 #include "tools/client/event_text.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 
 namespace softgrip::tools {
@@ -34,7 +35,8 @@ void print(const Json& event, bool json) {
   std::fflush(stdout);
 }
 
-ExitCode run(EventsOptions options) {
+ExitCode run(const EventsOptions& chosen) {
+  EventsOptions options = chosen;
   constexpr std::chrono::milliseconds pause{200};
   if (!options.since.empty()) {
     const auto since = parse_since(options.since, wall_time_now());
@@ -60,8 +62,8 @@ ExitCode run(EventsOptions options) {
 }  // namespace
 
 void add_events(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<EventsOptions>();
-  CLI::App* command = program.add_subcommand("events", "Show the events of the daemon, newest last");
+  const auto [command, options] = add_command<EventsOptions>(
+      program, outcome, "events", "Show the events of the daemon, newest last", run);
   add_daemon_options(*command, options->daemon);
   command
       ->add_option("-n,--lines,--limit", options->query.lines,
@@ -75,7 +77,6 @@ void add_events(CLI::App& program, ExitCode& outcome) {
       ->capture_default_str()
       ->check(CLI::IsMember({"information", "warning", "error"}));
   command->add_flag("-f,--follow", options->follow, "Continue with new events until interrupted");
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

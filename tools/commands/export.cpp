@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -15,6 +14,7 @@
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
 #include "tools/command_line/output.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 #include "tools/exporting/c_source.h"
 #include "tools/exporting/mat_file.h"
@@ -145,9 +145,9 @@ ExitCode run(const ExportOptions& options) {
 }  // namespace
 
 void add_export(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = program.add_subcommand(
-      "export", "Export a recording, log or series (wide CSV, MATLAB, MCAP) or a model (C)");
+  const auto [command, options] = add_command<ExportOptions>(
+      program, outcome, "export", "Export a recording, log or series (wide CSV, MATLAB, MCAP) or a model (C)",
+      run);
   command
       ->add_option("INPUT", options->input,
                    "A recording's folder, a log, or a series.csv; for C a model file")
@@ -165,7 +165,6 @@ void add_export(CLI::App& program, ExitCode& outcome) {
       ->check(number_between(0.1, 10000))
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print a summary as JSON");
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include "sysid/health/recorded_health.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/output.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 
 namespace softgrip::tools {
@@ -90,7 +90,8 @@ tl::expected<void, std::string> write_results(const std::string& out, const heal
   return write(health::health_file, json + "\n");
 }
 
-ExitCode run(HealthOptions options) {
+ExitCode run(const HealthOptions& chosen) {
+  HealthOptions options = chosen;
   std::vector<std::string> inputs = options.runs;
   inputs.insert(inputs.end(), {options.notes, options.baseline + "/baseline.json"});
   if (const auto code = refuse_overwriting(
@@ -130,9 +131,9 @@ ExitCode run(HealthOptions options) {
 }  // namespace
 
 void add_health(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<HealthOptions>();
-  CLI::App* command = program.add_subcommand(
-      "health", "Report from the recordings of normal operation which fingers have changed, and since when");
+  const auto [command, options] = add_command<HealthOptions>(
+      program, outcome, "health",
+      "Report from the recordings of normal operation which fingers have changed, and since when", run);
   command->add_option("runs", options->runs, "Recordings, or folders of recordings")->required();
   command
       ->add_option("--baseline", options->baseline,
@@ -159,7 +160,6 @@ void add_health(CLI::App& program, ExitCode& outcome) {
       "Exit codes: 0 nothing has changed, 6 an alarm is active, 3 notes, baseline or recordings are "
       "refused,\n"
       "4 a file cannot be read or written.");
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,11 +17,11 @@
 #include "sysid/instrument/identified_logs.h"
 #include "sysid/pages/page.h"
 #include "sysid/structure/structure.h"
-#include "tools/command_line/call.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
 #include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/series_output.h"
 #include "tools/figures/figure_files.h"
@@ -135,7 +134,8 @@ void print_summary(const sysid::IdentifyReport& report, const std::string& out) 
               (std::filesystem::path(out) / "report.html").c_str());
 }
 
-ExitCode run(IdentifyOptions options, const std::vector<std::string>& call) {
+ExitCode run(const IdentifyOptions& chosen, const std::vector<std::string>& call) {
+  IdentifyOptions options = chosen;
   std::vector<std::string> inputs = options.data;
   inputs.insert(inputs.end(), options.validate.begin(), options.validate.end());
   inputs.push_back(options.start);
@@ -234,9 +234,8 @@ void add_structure_option(CLI::App& command, IdentifyOptions& options) {
 }  // namespace
 
 void add_identify(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<IdentifyOptions>();
-  CLI::App* command =
-      program.add_subcommand("identify", "Estimate model parameters from logs, with 95 % intervals");
+  const auto [command, options] = add_command<IdentifyOptions>(
+      program, outcome, "identify", "Estimate model parameters from logs, with 95 % intervals", run);
   command->add_option("--data", options->data, "Logs to fit (CSV, or a recording's folder)")->required();
   command->add_option("--validate", options->validate, "Logs to predict");
   command->add_option("--start", options->start, "Model file with the start values [the base structure]");
@@ -252,7 +251,6 @@ void add_identify(CLI::App& program, ExitCode& outcome) {
   add_structure_option(*command, *options);
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print identify.json");
-  command->callback([options, command, &outcome] { outcome = run(*options, call_of(*command)); });
 }
 
 }  // namespace softgrip::tools

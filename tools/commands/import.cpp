@@ -1,19 +1,20 @@
 // softgrip import: converts external files to logs.
 
 #include <CLI/CLI.hpp>
-#include <memory>
 
 #include "tools/command_line/option_check.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 #include "tools/importing/import_run.h"
 
 namespace softgrip::tools {
 
 void add_import(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<ImportOptions>();
-  CLI::App* command = program.add_subcommand("import",
-                                             "Convert external files to logs: CSV in any dialect (.gz "
-                                             "too), XLSX, LabVIEW, MATLAB, HDF5, recordings");
+  const auto [command, options] =
+      add_command<ImportOptions>(program, outcome, "import",
+                                 "Convert external files to logs: CSV in any dialect (.gz "
+                                 "too), XLSX, LabVIEW, MATLAB, HDF5, recordings",
+                                 run_import);
   command->add_option("FILE", options->files, "Files, or recordings' folders")->required();
   command
       ->add_option("--out", options->out,
@@ -70,7 +71,6 @@ void add_import(CLI::App& program, ExitCode& outcome) {
   command->add_flag("--yes", options->yes,
                     "Accept the proposed column assignment without a confirmation question");
   command->add_flag("--json", options->json, "Print a summary as JSON");
-  command->callback([options, &outcome] { outcome = run_import(*options); });
 }
 
 }  // namespace softgrip::tools

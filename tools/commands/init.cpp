@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "base/files.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/configuration.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 #include "tools/commissioning/draft_facts.h"
 #include "tools/commissioning/terminal_operator.h"
@@ -116,9 +116,8 @@ ExitCode run(const InitOptions& options) {
 }  // namespace
 
 void add_init(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<InitOptions>();
-  CLI::App* command =
-      program.add_subcommand("init", "Create a commented rig file, interactively or from options");
+  const auto [command, options] = add_command<InitOptions>(
+      program, outcome, "init", "Create a commented rig file, interactively or from options", run);
   command->add_option("FILE", options->file, "Rig file to create; an existing file is never overwritten")
       ->capture_default_str();
   command->add_option("--name", options->name, "Name of the rig [the name of the file]");
@@ -139,7 +138,6 @@ void add_init(CLI::App& program, ExitCode& outcome) {
       "On a terminal, init asks a question for each missing option. Without a terminal, init uses the "
       "defaults,\nand options without a default are required. Exit codes: 0 written, 1 stopped, 2 usage,\n3 "
       "the resulting rig file is refused, 4 the file cannot be written, 5 the file already exists.");
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

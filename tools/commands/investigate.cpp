@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -19,6 +18,7 @@
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/gauge_by_hand.h"
@@ -255,9 +255,9 @@ ExitCode run(const InvestigateOptions& options) {
 }  // namespace
 
 void add_investigate(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<InvestigateOptions>();
-  CLI::App* command = program.add_subcommand(
-      "investigate", "Run the experiments that separate ambiguous causes, until one cause remains");
+  const auto [command, options] = add_command<InvestigateOptions>(
+      program, outcome, "investigate",
+      "Run the experiments that separate ambiguous causes, until one cause remains", run);
   command->add_option("--model", options->model, "Model file in use")->required();
   command->add_option("--data", options->data, "Logs of one measurement campaign, in order")->required();
   command->add_option("--rig", options->rig, "Rig file of the rig that is moved");
@@ -287,13 +287,9 @@ void add_investigate(CLI::App& program, ExitCode& outcome) {
   command->add_flag(
       "--no-closed-loop", options->no_closed_loop,
       "Do not retune the controller with the extended model, and do not measure the closed loop");
-  command->add_option("--seed", options->diagnosis.seed, "Random seed of start points and resampling")
-      ->capture_default_str();
-  command->add_option("--threads", options->diagnosis.threads, "Number of threads; 0: one per core")
-      ->capture_default_str();
+  add_search_options(*command, options->diagnosis.seed, options->diagnosis.threads);
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print investigation.json");
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <limits>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -11,6 +10,7 @@
 
 #include "sysid/recordings/recording.h"
 #include "tools/command_line/output.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 #include "tools/figures/picture_format.h"
 #include "tools/log_input/log_input.h"
@@ -101,9 +101,8 @@ ExitCode run(const PlotOptions& options) {
 }  // namespace
 
 void add_plot(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<PlotOptions>();
-  CLI::App* command =
-      program.add_subcommand("plot", "Plot a recording: pressure, displacement, error, states");
+  const auto [command, options] = add_command<PlotOptions>(
+      program, outcome, "plot", "Plot a recording: pressure, displacement, error, states", run);
   command
       ->add_option(
           "RECORDING", options->recordings,
@@ -120,7 +119,6 @@ void add_plot(CLI::App& program, ExitCode& outcome) {
   command->add_flag("--beside", options->beside,
                     "Draw two recordings side by side instead of over each other");
   command->add_flag("--json", options->json, "Print a summary as JSON");
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

@@ -2,12 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "tools/command_line/command.h"
 #include "tools/command_line/option_check.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 #include "tools/verification/verification.h"
 
@@ -61,9 +61,8 @@ ExitCode run(const ReportOptions& options) {
 }  // namespace
 
 void add_report(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<ReportOptions>();
-  CLI::App* command =
-      program.add_subcommand("report", "Recompute a report from its logs and compare the numbers");
+  const auto [command, options] = add_command<ReportOptions>(
+      program, outcome, "report", "Recompute a report from its logs and compare the numbers", run);
   command
       ->add_option("--verify", options->folder,
                    "Folder that identify, validate or diagnose wrote; the command is run again and the "
@@ -75,7 +74,6 @@ void add_report(CLI::App& program, ExitCode& outcome) {
       ->check(number_between(0.0, 1.0))
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print the differences as JSON");
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -15,6 +14,7 @@
 #include "tools/client/event_text.h"
 #include "tools/client/set_option.h"
 #include "tools/command_line/configuration.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/rig_to_move.h"
 
@@ -114,9 +114,8 @@ ExitCode run(const RunOptions& options) {
 }  // namespace
 
 void add_run(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<RunOptions>();
-  CLI::App* command =
-      program.add_subcommand("run", "Run one sequence on a rig in the foreground, without a daemon");
+  const auto [command, options] = add_command<RunOptions>(
+      program, outcome, "run", "Run one sequence on a rig in the foreground, without a daemon", run);
   command->add_option("SEQUENCE", options->sequence, "Sequence file")->required();
   add_set_option(*command, options->settings);
   command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed rig file]");
@@ -132,7 +131,6 @@ void add_run(CLI::App& program, ExitCode& outcome) {
   command->footer(
       "After Ctrl-C or another ending signal, the command writes the safe outputs and then ends by the same "
       "signal,\nso that a loop of a shell does not start the next sequence.");
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

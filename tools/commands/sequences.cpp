@@ -2,12 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "tools/client/daemon_command.h"
 #include "tools/client/sequence_view.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 
 namespace softgrip::tools {
@@ -35,12 +35,11 @@ ExitCode run(const SequencesOptions& options) {
 }  // namespace
 
 void add_sequences(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<SequencesOptions>();
-  CLI::App* command = program.add_subcommand(
-      "sequences", "List the sequences that the daemon can start, with their parameters");
+  const auto [command, options] = add_command<SequencesOptions>(
+      program, outcome, "sequences", "List the sequences that the daemon can start, with their parameters",
+      run);
   add_daemon_options(*command, options->daemon);
   command->add_flag("--names", options->names, "Print only the names");
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -12,6 +11,7 @@
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
 #include "tools/command_line/output.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 #include "tools/log_input/log_input.h"
 
@@ -108,9 +108,8 @@ ExitCode run(const SimulateOptions& options) {
 }  // namespace
 
 void add_simulate(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<SimulateOptions>();
-  CLI::App* command =
-      program.add_subcommand("simulate", "Simulate a model with a test signal or the command of a log");
+  const auto [command, options] = add_command<SimulateOptions>(
+      program, outcome, "simulate", "Simulate a model with a test signal or the command of a log", run);
   command->add_option("--model", options->model, "Model file")->required();
   command
       ->add_option("--input", options->input,
@@ -127,7 +126,6 @@ void add_simulate(CLI::App& program, ExitCode& outcome) {
       ->check(number_between(0.1, 100000));
   command->add_option("--channel", options->channel, "Channel to use from a log with several channels");
   command->add_flag("--json", options->json, "Print a summary as JSON");
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

@@ -19,6 +19,7 @@
 #include "tools/client/event_text.h"
 #include "tools/client/own_start.h"
 #include "tools/client/set_option.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 
@@ -207,8 +208,8 @@ ExitCode run(const StartOptions& options) {
 }  // namespace
 
 void add_start(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<StartOptions>();
-  CLI::App* command = program.add_subcommand("start", "Start a sequence of the daemon");
+  const auto [command, options] =
+      add_command<StartOptions>(program, outcome, "start", "Start a sequence of the daemon", run);
   command
       ->add_option("SEQUENCE", options->sequence,
                    "Sequence: a file, or a name in the sequence directory of the daemon")
@@ -218,7 +219,6 @@ void add_start(CLI::App& program, ExitCode& outcome) {
   command->add_flag("--wait", options->wait,
                     "Wait for the end of the sequence, and stop the sequence if this command is interrupted. "
                     "The exit code is 6 if a grip did not succeed");
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

@@ -10,6 +10,7 @@
 #include "tools/client/daemon_command.h"
 #include "tools/client/last_health.h"
 #include "tools/client/status_view.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 
@@ -50,10 +51,9 @@ ExitCode run(const DaemonOptions& options) {
 }  // namespace
 
 void add_status(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<DaemonOptions>();
-  CLI::App* command = program.add_subcommand("status", "Show the state of the daemon");
+  const auto [command, options] =
+      add_command<DaemonOptions>(program, outcome, "status", "Show the state of the daemon", run);
   add_daemon_options(*command, *options);
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

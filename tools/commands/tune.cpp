@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -16,10 +15,11 @@
 #include "tools/command_line/option_check.h"
 #include "tools/command_line/output.h"
 #include "tools/command_line/read_input.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
-
 #include "tools/commands/rig_to_move.h"
+
 namespace softgrip::tools {
 namespace {
 
@@ -113,7 +113,8 @@ std::string json_of(const TuneOptions& options, const control::TuneTask& task, c
   return json.dump() + "\n";
 }
 
-ExitCode run(TuneOptions& options) {
+ExitCode run(const TuneOptions& chosen) {
+  TuneOptions options = chosen;
   if (const auto code = refuse_overwriting({options.out}, {options.model, options.rig})) return *code;
   const auto model = read_rig_model(options.model);
   if (!model) return model.error();
@@ -162,8 +163,8 @@ ExitCode run(TuneOptions& options) {
 }  // namespace
 
 void add_tune(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<TuneOptions>();
-  CLI::App* command = program.add_subcommand("tune", "Tune PID gains that tolerate model errors");
+  const auto [command, options] =
+      add_command<TuneOptions>(program, outcome, "tune", "Tune PID gains that tolerate model errors", run);
   command->add_option("--model", options->model, "Model file")->required();
   command->add_option("--rig", options->rig, "Rig file: rate, limits, feedforward and latency of a channel");
   command->add_option("--channel", options->channel, "Channel of the rig [the first channel]");
@@ -199,7 +200,6 @@ void add_tune(CLI::App& program, ExitCode& outcome) {
   command->add_option("--seed", options->task.seed, "Seed of fingers and noise")->capture_default_str();
   command->add_option("--out", options->out, "Snippet for the rig file ('-': standard output)")->required();
   command->add_flag("--json", options->json, "Print the numbers as JSON");
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools

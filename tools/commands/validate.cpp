@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,10 +14,10 @@
 #include "sysid/identification/validate.h"
 #include "sysid/instrument/identified_logs.h"
 #include "tools/client/styled_line.h"
-#include "tools/command_line/call.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
 #include "tools/command_line/output.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/series_output.h"
@@ -113,8 +112,8 @@ ExitCode run(const ValidateOptions& options, const std::vector<std::string>& cal
 }  // namespace
 
 void add_validate(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<ValidateOptions>();
-  CLI::App* command = program.add_subcommand("validate", "Report the prediction error of a model on logs");
+  const auto [command, options] = add_command<ValidateOptions>(
+      program, outcome, "validate", "Report the prediction error of a model on logs", run);
   command->add_option("--model", options->model, "Model file")->required();
   command->add_option("--data", options->data, "Logs to predict (CSV, or a recording's folder)")->required();
   command->add_option("--out", options->out, "Folder for validate.json, report.html, and series.csv per log");
@@ -125,7 +124,6 @@ void add_validate(CLI::App& program, ExitCode& outcome) {
       ->check(number_between(0.0, 100.0));
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print validate.json");
-  command->callback([options, command, &outcome] { outcome = run(*options, call_of(*command)); });
 }
 
 }  // namespace softgrip::tools

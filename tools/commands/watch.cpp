@@ -22,6 +22,7 @@
 #include "tools/client/live_view.h"
 #include "tools/client/status_view.h"
 #include "tools/command_line/option_check.h"
+#include "tools/command_line/subcommand.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 
@@ -295,18 +296,17 @@ ExitCode run(const WatchOptions& options) {
 }  // namespace
 
 void add_watch(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<WatchOptions>();
-  CLI::App* command = program.add_subcommand(
-      "watch",
+  const auto [command, options] = add_command<WatchOptions>(
+      program, outcome, "watch",
       "Show the live state of the daemon with trends, events, and keys that stop, vent, release, acknowledge "
-      "and start. Without a terminal, this command prints one line for each update");
+      "and start. Without a terminal, this command prints one line for each update",
+      run);
   add_daemon_options(*command, options->daemon);
   command->add_option("--rate-hz", options->rate_hz, "Updates per second")
       ->capture_default_str()
       ->check(number_between(0.1, 50));
   command->add_option("--count", options->count, "Number of updates; 0: until interrupted")
       ->capture_default_str();
-  command->callback([options, &outcome] { outcome = run(*options); });
 }
 
 }  // namespace softgrip::tools
