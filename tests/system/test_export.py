@@ -292,6 +292,12 @@ def wave_kpa(t):
     return 0.0 if t > 55 else 30.0
 
 
+def with_valve(*blocks):
+    """Returns the model EVERYTHING with other blocks of the valve."""
+    head, actuator = EVERYTHING[:EVERYTHING.index("  - transport_delay")], EVERYTHING[EVERYTHING.index("actuator:"):]
+    return head + "".join(f"  - {block}\n" for block in blocks) + actuator
+
+
 class ExportedC(bench.BenchTest):
     """Compiles and runs exported models, and gets the result of `softgrip simulate` for the same commands."""
 
@@ -335,8 +341,8 @@ class ExportedC(bench.BenchTest):
 
 class CModel(ExportedC):
 
-    def compare(self, model):
-        commands = self.commands()
+    def compare(self, model, commands=None):
+        commands = commands or self.commands()
         told = self.compiled(DRIVER, model)
         ours = self.simulated(model, commands)
         self.assert_equal_motions(ours, [row[0] for row in self.run_driver(commands)])
@@ -356,6 +362,22 @@ class CModel(ExportedC):
 
     def test_every_block_that_has_c(self):
         self.compare(self.write("every.yaml", EVERYTHING))
+
+    def test_a_lag_in_one_direction_follows_at_once_in_the_other(self):
+        for filling_s, venting_s in ((0, 0.06), (0.03, 0)):
+            for block in ("asymmetric_valve_lag", "chamber_lag"):
+                lag = f"{block}: {{filling_time_constant_s: {filling_s}, venting_time_constant_s: {venting_s}}}"
+                limit = f"rate_limit: {{filling_s_per_kpa: {filling_s / 10}, venting_s_per_kpa: {venting_s / 10}}}"
+                self.compare(self.write("one_way.yaml", with_valve(limit, lag)))
+
+    def test_a_delay_has_room_for_all_that_four_lags_divide(self):
+        model = self.write("late.yaml", with_valve(
+            "rate_limit: {filling_s_per_kpa: 0.0004, venting_s_per_kpa: 0.0003}", "valve_lag: {time_constant_s: 0.004}",
+            "asymmetric_valve_lag: {filling_time_constant_s: 0.003, venting_time_constant_s: 0.005}",
+            "chamber_lag: {filling_time_constant_s: 0.004, venting_time_constant_s: 0.003}",
+            "transport_delay: {delay_s: 0.25}"))
+        # At each sample, the command turns round, and each lag divides the segments of the lag before it.
+        self.compare(model, [20.0 + 15 * (i % 2) for i in range(4 * RATE_HZ)] + [50.0] * RATE_HZ)
 
     def test_the_inverse_undoes_the_body_exactly(self):
         for text in ((self.folder / MODEL).read_text(), EVERYTHING):

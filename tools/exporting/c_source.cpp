@@ -200,13 +200,19 @@ class Generator {
     }
   }
 
-  /// Returns the size of the delay buffer [segments], a power of two. A sampling interval needs two segments,
-  /// or more if a lag before the delay divides segments.
+  /// Returns the size of the delay buffer [segments], a power of two. A sampling interval begins as one
+  /// segment, and each block before the delay divides a segment into two at most. The remaining segments are
+  /// a margin for the segments at both ends of the delay.
   [[nodiscard]] std::size_t delay_pieces() const {
     std::size_t needed = 16;
+    std::size_t per_tick = 1;
     for (const std::size_t i : valve_) {
-      if (model::is<model::TransportDelay>(model_.blocks[i]))
-        needed = std::max(needed, 16 + static_cast<std::size_t>(4 * model_.blocks[i].values[0] / tick_s_));
+      if (model::is<model::TransportDelay>(model_.blocks[i])) {
+        const double ticks = model_.blocks[i].values[0] / tick_s_;
+        const auto buffered = static_cast<double>(std::max(per_tick, least_per_tick)) * ticks;
+        needed = std::max(needed, 16 + static_cast<std::size_t>(buffered));
+      }
+      per_tick *= 2;
     }
     std::size_t pieces = 64;
     while (pieces < needed) pieces *= 2;
@@ -308,6 +314,9 @@ class Generator {
     }
     text_ += "  return led;\n}\n";
   }
+
+  /// Smallest number of segments per sampling interval for which the delay buffer has room.
+  static constexpr std::size_t least_per_tick = 4;
 
   const model::Model& model_;
   double tick_s_;
