@@ -153,7 +153,6 @@ static double play_step(play *o, double reach, segment in) {
   side = upwards ? -reach : reach;
   start = begin - side;
   share = (start - in.begin) / (in.end - in.begin);
-  if (in.duration_s <= 0.0) return (begin + end) * 0.5;
   if (went_on || !(share > 1e-12 && share < 1.0)) return in.mean + side;
   moving = part_beyond(in, fraction_at(in, start));
   return (begin * (in.duration_s - moving.duration_s) + (moving.mean + side) * moving.duration_s) / in.duration_s;
@@ -223,7 +222,7 @@ static segment kelvin_voigt_step(double *x, const double *v, int branches, segme
     mean += response_mean(&r, x[i + 1], in);
     end += x[i + 1] = response_end(&r, x[i + 1], in);
   }
-  return bent(in.duration_s, begin, end, in.duration_s > 0.0 ? mean : (begin + end) * 0.5);
+  return bent(in.duration_s, begin, end, mean);
 }
 )";
 

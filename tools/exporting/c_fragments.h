@@ -1,6 +1,8 @@
 #pragma once
 // C99 source text of the parts of an exported model. The C code computes the same values as the classes in
 // model/, but for one fixed sampling interval and without templates.
+// During a sampling interval, the command is a straight line. Therefore no segment is a jump, and the C code
+// omits the rules for jumps.
 
 #include <string_view>
 

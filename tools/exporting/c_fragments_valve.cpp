@@ -80,7 +80,6 @@ static void valve_lag_step(double *output, double tau, segment in, void *chain, 
     next(chain, in);
     return;
   }
-  if (in.duration_s <= 0.0) return;
   r = response_of(in.duration_s, 1.0 / tau, 1.0 / tau);
   end = response_end(&r, begin, in);
   *output = end;
@@ -130,7 +129,6 @@ static void two_way_lag_step(double *output, double filling, double venting, seg
     next(chain, in);
     return;
   }
-  if (in.duration_s <= 0.0) return;
   slope = (in.end - in.begin) / in.duration_s;
   if (gap * slope < 0.0) {
     turn_s = now <= 0.0 ? 0.0 : now * log1p(-gap / (slope * now));
@@ -172,13 +170,6 @@ static void rate_limit_step(double *output, double filling, double venting, segm
   const double s_per_kpa = gap > 0.0 ? filling : -venting;
   const double least_s = 1e-6 * in.duration_s;
   double meeting_s = in.duration_s;
-  if (in.duration_s <= 0.0) {
-    const double begin = *output;
-    if ((in.end > begin ? filling : venting) > 0.0) return;
-    *output = in.end;
-    next(chain, straight(in.duration_s, begin, in.end));
-    return;
-  }
   if (gap == 0.0 || s_per_kpa == 0.0) {
     meeting_s = 0.0;
   } else {
