@@ -1,15 +1,19 @@
 #pragma once
-// A thread with a name and a stack of known size, whose exceptions are reported; and a flag that wakes a
-// sleeping thread.
-
-#include <pthread.h>
+// Threads with a name and a stack of known size, whose exceptions are reported; a flag that wakes a sleeping
+// thread; and a check that threads are still running.
 
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <string>
+#include <vector>
+
+#include <pthread.h>
+
+#include "model/reading.h"
 
 namespace softgrip::daemon {
 
@@ -53,6 +57,28 @@ class StopFlag {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool set_ = false;
+};
+
+/// Checks counters that the threads increase. Each counter has its own time-out. Opening a connection may
+/// block the bus thread for a long time, but nothing may block the loop.
+class Heartbeat {
+ public:
+  /// `patience` contains the time-out of each counter [ns]. The time-outs start with the first call of
+  /// beats().
+  explicit Heartbeat(const std::vector<Nanoseconds>& patience);
+
+  /// Returns false if a counter has not changed for longer than its time-out. `counts` contains the counters
+  /// in the order of their time-outs.
+  [[nodiscard]] bool beats(Nanoseconds now, const std::vector<std::uint64_t>& counts);
+
+ private:
+  struct Counter {
+    Nanoseconds patience = 0;
+    Nanoseconds grew_at = 0;
+    std::uint64_t count = 0;
+  };
+  std::vector<Counter> counters_;
+  bool begun_ = false;
 };
 
 }  // namespace softgrip::daemon

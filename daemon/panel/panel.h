@@ -1,6 +1,6 @@
 #pragma once
 // Handles the panel with buttons and lamps: reads the digital inputs for the loop, and sets the digital
-// outputs according to the state of the loop.
+// outputs according to the state of the loop, also if the process crashes.
 
 #include <array>
 #include <atomic>
@@ -81,6 +81,19 @@ class Panel {
   std::array<std::optional<bool>, drivers::gpio_role_count> written_{};
   std::atomic<bool> stopped_{false};
   std::atomic<bool> dropped_{false};
+};
+
+/// While this object exists, the signals of a crash (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS,
+/// SIGQUIT, SIGXCPU) switch the panel's enable output off before they end the process. A program cannot
+/// handle SIGKILL. Only one object may exist at a time.
+class PanelGuard {
+ public:
+  explicit PanelGuard(Panel& panel) noexcept;
+  PanelGuard(const PanelGuard&) = delete;
+  PanelGuard& operator=(const PanelGuard&) = delete;
+  PanelGuard(PanelGuard&&) = delete;
+  PanelGuard& operator=(PanelGuard&&) = delete;
+  ~PanelGuard();
 };
 
 }  // namespace softgrip::daemon

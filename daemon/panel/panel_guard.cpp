@@ -1,11 +1,9 @@
-#include "daemon/panel/panel_guard.h"
+#include "daemon/panel/panel.h"
 
 #include <array>
 #include <atomic>
 #include <csignal>
 #include <cstddef>
-
-#include "daemon/panel/panel.h"
 
 namespace softgrip::daemon {
 

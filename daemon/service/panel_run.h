@@ -8,7 +8,6 @@
 #include "daemon/loop/real_time.h"
 #include "daemon/loop/thread.h"
 #include "daemon/panel/panel.h"
-#include "daemon/panel/panel_guard.h"
 #include "daemon/service/daemon.h"
 
 namespace softgrip::daemon {

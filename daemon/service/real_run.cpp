@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include "base/exit_code.h"
-#include "daemon/loop/heartbeat.h"
 #include "daemon/loop/real_time.h"
 #include "daemon/loop/thread.h"
 #include "daemon/service/board_lock.h"

@@ -47,4 +47,10 @@ struct StatusSources {
 /// Returns the JSON as one line. Bytes that are not valid UTF-8 are replaced.
 [[nodiscard]] std::string line_of(const nlohmann::ordered_json& json);
 
+/// Returns null if no finger is pressurised. Otherwise returns an object with `channels` (a list of `name`
+/// and `command_kpa`), `command` (the shell command that vents these channels) and `text` (one or two
+/// sentences with both).
+[[nodiscard]] nlohmann::ordered_json under_pressure_json(
+    const std::vector<control::ChannelSettings>& channels, const Snapshot& snapshot);
+
 }  // namespace softgrip::daemon

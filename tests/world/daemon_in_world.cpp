@@ -4,7 +4,7 @@
 #include <csignal>
 #include <utility>
 
-#include "daemon/loop/heartbeat.h"
+#include "daemon/loop/thread.h"
 #include "daemon/service/daemon_parts.h"
 
 namespace softgrip::world {

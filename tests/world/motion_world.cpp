@@ -11,8 +11,8 @@
 #include "base/random.h"
 #include "tests/world/guest.h"
 #include "tests/world/surroundings.h"
+#include "tools/commissioning/examinations.h"
 #include "tools/commissioning/procedure.h"
-#include "tools/commissioning/rig_examination.h"
 
 namespace softgrip::world {
 namespace {

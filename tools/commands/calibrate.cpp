@@ -14,9 +14,9 @@
 
 #include "base/enumerated.h"
 #include "tools/client/daemon_client.h"
-#include "tools/command_line/configuration.h"
+#include "tools/command_line/input_files.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/output.h"
-#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/rig_to_move.h"
 #include "tools/commissioning/plausibility_warnings.h"

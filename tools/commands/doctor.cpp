@@ -14,16 +14,12 @@
 #include "tools/client/daemon_client.h"
 #include "tools/client/daemon_command.h"
 #include "tools/client/last_health.h"
-#include "tools/command_line/configuration.h"
-#include "tools/command_line/subcommand.h"
+#include "tools/command_line/input_files.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/rig_to_move.h"
-#include "tools/commissioning/bus_examination.h"
-#include "tools/commissioning/daemon_examination.h"
-#include "tools/commissioning/gateway_examination.h"
-#include "tools/commissioning/machine.h"
-#include "tools/commissioning/rig_examination.h"
+#include "tools/commissioning/examinations.h"
 
 namespace softgrip::tools {
 namespace {

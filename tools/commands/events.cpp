@@ -10,7 +10,7 @@
 #include "tools/client/daemon_command.h"
 #include "tools/client/event_query.h"
 #include "tools/client/event_text.h"
-#include "tools/command_line/subcommand.h"
+#include "tools/command_line/options.h"
 #include "tools/commands/commands.h"
 
 namespace softgrip::tools {

@@ -11,14 +11,11 @@
 
 #include "base/numbers.h"
 #include "base/version.h"
-#include "tools/command_line/model_input.h"
-#include "tools/command_line/option_check.h"
+#include "tools/command_line/input_files.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/output.h"
-#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 #include "tools/exporting/c_source.h"
-#include "tools/exporting/mat_file.h"
-#include "tools/exporting/mcap_file.h"
 #include "tools/exporting/signals.h"
 
 namespace softgrip::tools {

@@ -11,8 +11,8 @@
 #include "sysid/health/health_json.h"
 #include "sysid/health/recorded_health.h"
 #include "tools/command_line/command.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/output.h"
-#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 
 namespace softgrip::tools {

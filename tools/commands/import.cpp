@@ -2,8 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "tools/command_line/option_check.h"
-#include "tools/command_line/subcommand.h"
+#include "tools/command_line/options.h"
 #include "tools/commands/commands.h"
 #include "tools/importing/import_run.h"
 

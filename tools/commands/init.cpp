@@ -13,8 +13,8 @@
 
 #include "base/files.h"
 #include "tools/command_line/command.h"
-#include "tools/command_line/configuration.h"
-#include "tools/command_line/subcommand.h"
+#include "tools/command_line/input_files.h"
+#include "tools/command_line/options.h"
 #include "tools/commands/commands.h"
 #include "tools/commissioning/draft_facts.h"
 #include "tools/commissioning/terminal_operator.h"

@@ -15,10 +15,10 @@
 
 #include "base/files.h"
 #include "base/numbers.h"
-#include "tools/command_line/model_input.h"
+#include "tools/command_line/input_files.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
-#include "tools/command_line/subcommand.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/gauge_by_hand.h"

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "sysid/recordings/recording.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/output.h"
-#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
-#include "tools/figures/picture_format.h"
+#include "tools/figures/figure_files.h"
 #include "tools/log_input/log_input.h"
 #include "tools/recordings/recording_picture.h"
 #include "tools/recordings/recording_tracking.h"

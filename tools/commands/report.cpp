@@ -6,8 +6,7 @@
 #include <string>
 
 #include "tools/command_line/command.h"
-#include "tools/command_line/option_check.h"
-#include "tools/command_line/subcommand.h"
+#include "tools/command_line/options.h"
 #include "tools/commands/commands.h"
 #include "tools/verification/verification.h"
 

@@ -8,7 +8,7 @@
 
 #include "daemon/service/daemon.h"
 #include "tools/client/daemon_client.h"
-#include "tools/command_line/read_input.h"
+#include "tools/command_line/input_files.h"
 
 namespace softgrip::tools {
 

@@ -13,8 +13,8 @@
 #include "tools/client/daemon_command.h"
 #include "tools/client/event_text.h"
 #include "tools/client/set_option.h"
-#include "tools/command_line/configuration.h"
-#include "tools/command_line/subcommand.h"
+#include "tools/command_line/input_files.h"
+#include "tools/command_line/options.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/rig_to_move.h"
 

@@ -7,7 +7,7 @@
 
 #include "tools/client/daemon_command.h"
 #include "tools/client/sequence_view.h"
-#include "tools/command_line/subcommand.h"
+#include "tools/command_line/options.h"
 #include "tools/commands/commands.h"
 
 namespace softgrip::tools {

@@ -8,10 +8,9 @@
 
 #include "base/numbers.h"
 #include "sysid/logs/simulated_log.h"
-#include "tools/command_line/model_input.h"
-#include "tools/command_line/option_check.h"
+#include "tools/command_line/input_files.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/output.h"
-#include "tools/command_line/subcommand.h"
 #include "tools/commands/commands.h"
 #include "tools/log_input/log_input.h"
 

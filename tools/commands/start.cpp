@@ -19,7 +19,7 @@
 #include "tools/client/event_text.h"
 #include "tools/client/own_start.h"
 #include "tools/client/set_option.h"
-#include "tools/command_line/subcommand.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 

@@ -10,7 +10,7 @@
 #include "tools/client/daemon_command.h"
 #include "tools/client/last_health.h"
 #include "tools/client/status_view.h"
-#include "tools/command_line/subcommand.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 

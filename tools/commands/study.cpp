@@ -11,7 +11,7 @@
 #include "base/files.h"
 #include "bench/studies/control_study.h"
 #include "bench/studies/published.h"
-#include "tools/command_line/option_check.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
 #include "tools/command_line/terminal.h"

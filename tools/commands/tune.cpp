@@ -11,11 +11,9 @@
 
 #include "base/numbers.h"
 #include "control/feedforward/invertibility.h"
-#include "tools/command_line/model_input.h"
-#include "tools/command_line/option_check.h"
+#include "tools/command_line/input_files.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/output.h"
-#include "tools/command_line/read_input.h"
-#include "tools/command_line/subcommand.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/rig_to_move.h"

@@ -21,8 +21,7 @@
 #include "tools/client/key_dialogue.h"
 #include "tools/client/live_view.h"
 #include "tools/client/status_view.h"
-#include "tools/command_line/option_check.h"
-#include "tools/command_line/subcommand.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 

@@ -1,4 +1,4 @@
-#include "tools/commissioning/bus_advice.h"
+#include "tools/commissioning/examinations.h"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,10 @@
-#include "tools/commissioning/daemon_examination.h"
+#include "tools/commissioning/examinations.h"
 
 #include <nlohmann/json.hpp>
 
 #include <fmt/format.h>
 
 #include "base/json_member.h"
-#include "tools/commissioning/bus_advice.h"
 
 namespace softgrip::tools::doctor {
 namespace {

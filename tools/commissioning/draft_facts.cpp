@@ -17,7 +17,7 @@
 #include "drivers/modbus/serial_device.h"
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"
-#include "tools/command_line/configuration.h"
+#include "tools/command_line/input_files.h"
 #include "tools/commissioning/procedure.h"
 
 namespace softgrip::tools {

@@ -1,4 +1,4 @@
-#include "tools/commissioning/machine.h"
+#include "tools/commissioning/examinations.h"
 
 #include <pwd.h>
 #include <sys/statvfs.h>

@@ -1,7 +1,7 @@
 #pragma once
 // Checks the valve, the line, the sensor and the model of a finger by a small motion.
 
-#include "tools/commissioning/rig_examination.h"
+#include "tools/commissioning/examinations.h"
 
 namespace softgrip::tools::doctor {
 

@@ -1,4 +1,4 @@
-#include "tools/commissioning/rig_examination.h"
+#include "tools/commissioning/examinations.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,6 @@
 #include "base/numbers.h"
 #include "daemon/recording/csv_row.h"
 #include "rig/rig_file.h"
-#include "tools/commissioning/bus_advice.h"
 #include "tools/commissioning/crossing.h"
 #include "tools/commissioning/motion.h"
 

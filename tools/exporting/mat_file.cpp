@@ -1,4 +1,4 @@
-#include "tools/exporting/mat_file.h"
+#include "tools/exporting/signals.h"
 
 #include <matio.h>
 #include <sys/mman.h>

@@ -1,4 +1,4 @@
-#include "tools/exporting/mcap_file.h"
+#include "tools/exporting/signals.h"
 
 #include <zlib.h>
 

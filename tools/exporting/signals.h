@@ -1,5 +1,5 @@
 #pragma once
-// Reads recordings, logs and series as signals over time, for the export.
+// Reads recordings, logs and series as signals over time, and writes them as CSV, MATLAB or MCAP files.
 
 #include <string>
 #include <vector>
@@ -35,5 +35,25 @@ struct SignalGroup {
 
 /// Returns the CSV text of a group: time_s and its signals. Missing values are empty cells.
 [[nodiscard]] std::string wide_csv(const SignalGroup& group);
+
+/// The bytes of a .mat file, and the names of the omitted signals, whose values are texts.
+struct MatBytes {
+  std::string bytes;
+  std::vector<std::string> left_out;
+};
+
+/// Returns a compressed file of version 5 with time_s and one column vector per numeric signal. The bytes are
+/// read back and compared with the signals. Equal signals give equal bytes. The error is a sentence.
+[[nodiscard]] tl::expected<MatBytes, std::string> mat_bytes(const SignalGroup& group);
+
+/// Returns `name` as a name that MATLAB accepts: at most 63 letters, digits and underscores. The first
+/// character is a letter.
+[[nodiscard]] std::string matlab_name(const std::string& name);
+
+/// Returns the bytes of a file with one topic per group and one JSON object per sample. The topic is "/left"
+/// for the group "left" and "/signals" for a group without a name. The keys of an object are the names of the
+/// signals and time_s, which is 0 at the start of the recording. A missing value has no key. The file is
+/// uncompressed, indexed by chunks of at most 4 MiB, and has checksums.
+[[nodiscard]] std::string mcap_bytes(const std::vector<SignalGroup>& groups, const std::string& library);
 
 }  // namespace softgrip::tools

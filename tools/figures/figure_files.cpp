@@ -1,13 +1,60 @@
 #include "tools/figures/figure_files.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cstddef>
 #include <filesystem>
+#include <utility>
 
 #include "base/files.h"
 #include "sysid/pages/page.h"
-#include "tools/figures/picture_format.h"
 
 namespace softgrip::tools {
+namespace {
+
+std::string html_of(const sysid::Figure& figure) {
+  sysid::Page page(figure.name, figure.caption, sysid::Tone::good);
+  page.provenance({{"software", sysid::software_and_version()}});
+  page.figure(figure);
+  return page.to_html();
+}
+
+}  // namespace
+
+std::optional<PictureFormat> picture_format_of(std::string_view path) {
+  constexpr std::array<std::pair<std::string_view, PictureFormat>, 4> endings{{
+      {".svg", PictureFormat::svg},
+      {".pdf", PictureFormat::pdf},
+      {".png", PictureFormat::png},
+      {".html", PictureFormat::html},
+  }};
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const auto& [name, format] : endings) {
+    if (ending == name) return format;
+  }
+  return std::nullopt;
+}
+
+std::string_view picture_formats() {
+  return "svg, pdf, png or html";
+}
+
+tl::expected<std::string, std::string> bytes_of(const sysid::Figure& figure, PictureFormat format) {
+  switch (format) {
+    case PictureFormat::svg:
+      return sysid::svg_file_of(figure);
+    case PictureFormat::pdf:
+      return pdf_of(sysid::svg_file_of(figure));
+    case PictureFormat::png:
+      return png_of(sysid::svg_file_of(figure));
+    case PictureFormat::html:
+      return html_of(figure);
+  }
+  return tl::unexpected(std::string("no such format"));
+}
 
 tl::expected<void, std::string> write_figures(const std::string& folder,
                                               const std::vector<sysid::Figure>& figures) {

@@ -1,4 +1,4 @@
-#include "tools/figures/svg_rendering.h"
+#include "tools/figures/figure_files.h"
 
 #include <cmath>
 #include <memory>

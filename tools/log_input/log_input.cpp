@@ -7,7 +7,7 @@
 #include "document/problem.h"
 #include "sysid/logs/command_before.h"
 #include "tools/command_line/command.h"
-#include "tools/command_line/read_input.h"
+#include "tools/command_line/input_files.h"
 #include "tools/log_input/import_hint.h"
 
 namespace softgrip::tools {

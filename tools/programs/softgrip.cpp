@@ -10,7 +10,7 @@
 #include "base/exit_code.h"
 #include "base/standard_output.h"
 #include "base/version.h"
-#include "tools/command_line/usage.h"
+#include "tools/command_line/program.h"
 #include "tools/commands/commands.h"
 
 namespace {

@@ -7,8 +7,8 @@
 
 #include "base/net/listener.h"
 #include "tools/command_line/command.h"
-#include "tools/command_line/read_input.h"
-#include "tools/command_line/server_program.h"
+#include "tools/command_line/input_files.h"
+#include "tools/command_line/program.h"
 #include "tools/plc/server.h"
 
 namespace softgrip::plc {

@@ -14,8 +14,8 @@
 #include "simulation/emulator/server.h"
 #include "simulation/emulator/truth_log.h"
 #include "tools/command_line/command.h"
-#include "tools/command_line/option_check.h"
-#include "tools/command_line/server_program.h"
+#include "tools/command_line/options.h"
+#include "tools/command_line/program.h"
 #include "tools/programs/softgrip_rig_options.h"
 
 namespace softgrip::tools {

@@ -12,7 +12,7 @@
 #include "simulation/emulator/control.h"
 #include "simulation/emulator/wiring.h"
 #include "tools/command_line/command.h"
-#include "tools/command_line/configuration.h"
+#include "tools/command_line/input_files.h"
 #include "tools/command_line/output.h"
 
 namespace softgrip::tools {

@@ -11,8 +11,8 @@
 #include "base/files.h"
 #include "base/net/listener.h"
 #include "tools/command_line/command.h"
-#include "tools/command_line/read_input.h"
-#include "tools/command_line/server_program.h"
+#include "tools/command_line/input_files.h"
+#include "tools/command_line/program.h"
 #include "tools/web/places.h"
 #include "tools/web/server.h"
 

@@ -8,8 +8,7 @@
 
 #include "tools/web/access/origin.h"
 #include "tools/web/commander.h"
-#include "tools/web/metrics/daemon_metrics.h"
-#include "tools/web/metrics/health_metrics.h"
+#include "tools/web/metrics/metrics.h"
 #include "tools/web/page/page_files.h"
 
 namespace softgrip::web {

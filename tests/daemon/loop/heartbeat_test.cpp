@@ -1,4 +1,4 @@
-#include "daemon/loop/heartbeat.h"
+#include "daemon/loop/thread.h"
 
 #include <gtest/gtest.h>
 

@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "base/clock.h"
-#include "daemon/panel/panel_guard.h"
 #include "daemon/service/daemon.h"
 #include "tests/daemon/rig_under_test.h"
 #include "tests/daemon/scripted_lines.h"

@@ -1,4 +1,4 @@
-#include "daemon/socket/under_pressure.h"
+#include "daemon/socket/status_json.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 #include "tools/client/own_start.h"
 #include "tools/client/sequence_view.h"
 #include "tools/client/status_view.h"
-#include "tools/commissioning/daemon_examination.h"
+#include "tools/commissioning/examinations.h"
 
 namespace softgrip::tools::reply_check_test {
 namespace {

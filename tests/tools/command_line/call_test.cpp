@@ -1,4 +1,4 @@
-#include "tools/command_line/call.h"
+#include "tools/command_line/options.h"
 
 #include <gtest/gtest.h>
 

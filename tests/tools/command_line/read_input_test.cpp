@@ -1,4 +1,4 @@
-#include "tools/command_line/read_input.h"
+#include "tools/command_line/input_files.h"
 
 #include <gtest/gtest.h>
 

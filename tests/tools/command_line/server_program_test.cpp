@@ -1,4 +1,4 @@
-#include "tools/command_line/server_program.h"
+#include "tools/command_line/program.h"
 
 #include <gtest/gtest.h>
 

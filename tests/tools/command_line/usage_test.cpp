@@ -1,4 +1,4 @@
-#include "tools/command_line/usage.h"
+#include "tools/command_line/program.h"
 
 #include <gtest/gtest.h>
 

@@ -16,12 +16,8 @@
 #include "tests/daemon/temporary_folder.h"
 #include "tests/tools/passing_board.h"
 #include "tests/tools/virtual_time.h"
-#include "tools/commissioning/bus_advice.h"
-#include "tools/commissioning/bus_examination.h"
-#include "tools/commissioning/daemon_examination.h"
-#include "tools/commissioning/machine.h"
+#include "tools/commissioning/examinations.h"
 #include "tools/commissioning/motion.h"
-#include "tools/commissioning/rig_examination.h"
 
 namespace softgrip::tools::doctor::doctor_test {
 namespace {

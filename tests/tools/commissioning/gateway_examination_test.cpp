@@ -1,4 +1,4 @@
-#include "tools/commissioning/gateway_examination.h"
+#include "tools/commissioning/examinations.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

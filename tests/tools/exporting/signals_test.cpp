@@ -4,9 +4,6 @@
 
 #include <cmath>
 
-#include "tools/exporting/mat_file.h"
-#include "tools/exporting/mcap_file.h"
-
 // This file checks the signals. tests/system/test_export.py checks the exported files with the programs that
 // read them.
 namespace softgrip::tools::signals_test {

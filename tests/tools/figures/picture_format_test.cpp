@@ -1,8 +1,6 @@
-#include "tools/figures/picture_format.h"
+#include "tools/figures/figure_files.h"
 
 #include <gtest/gtest.h>
-
-#include "tools/figures/svg_rendering.h"
 
 namespace softgrip::tools::picture_format_test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "tests/tools/daemon_lines.h"
 #include "tools/client/reply_check.h"
-#include "tools/web/metrics/daemon_metrics.h"
+#include "tools/web/metrics/metrics.h"
 
 namespace softgrip::web::live_state_test {
 namespace {

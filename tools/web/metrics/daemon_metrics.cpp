@@ -1,4 +1,4 @@
-#include "tools/web/metrics/daemon_metrics.h"
+#include "tools/web/metrics/metrics.h"
 
 #include <array>
 #include <limits>
@@ -8,8 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/json_member.h"
-#include "tools/web/metrics/channel_metrics.h"
-#include "tools/web/metrics/event_metrics.h"
 
 namespace softgrip::web {
 

@@ -1,4 +1,4 @@
-#include "tools/web/metrics/metric_text.h"
+#include "tools/web/metrics/metrics.h"
 
 #include <array>
 #include <cmath>

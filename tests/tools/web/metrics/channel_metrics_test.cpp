@@ -1,4 +1,4 @@
-#include "tools/web/metrics/channel_metrics.h"
+#include "tools/web/metrics/metrics.h"
 
 #include <gtest/gtest.h>
 

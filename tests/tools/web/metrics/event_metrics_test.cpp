@@ -1,4 +1,4 @@
-#include "tools/web/metrics/event_metrics.h"
+#include "tools/web/metrics/metrics.h"
 
 #include <gtest/gtest.h>
 

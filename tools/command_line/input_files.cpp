@@ -1,9 +1,10 @@
-#include "tools/command_line/configuration.h"
+#include "tools/command_line/input_files.h"
 
 #include <algorithm>
 #include <system_error>
 
 #include "base/files.h"
+#include "model/file/model_file.h"
 
 namespace softgrip::tools {
 
@@ -25,6 +26,14 @@ std::vector<std::string> document_names(const std::filesystem::path& folder) {
   }
   std::sort(names.begin(), names.end());
   return names;
+}
+
+tl::expected<model::Model, ExitCode> read_model(const std::string& path) {
+  return read_input(path, model::load_model);
+}
+
+tl::expected<model::Model, ExitCode> read_rig_model(const std::string& path) {
+  return read_input(path, model::load_rig_model);
 }
 
 }  // namespace softgrip::tools

@@ -1,6 +1,6 @@
 #pragma once
-// The common frame of the programs that serve until a signal ends them: softgrip-web, softgrip-plc and
-// softgrip-rig.
+// The common frame of the programs: parsing of the command line, its messages, and the options and signals of
+// the programs that serve until a signal ends them (softgrip-web, softgrip-plc and softgrip-rig).
 
 #include <cstdint>
 #include <functional>
@@ -13,9 +13,15 @@
 
 namespace CLI {
 class App;
+class ParseError;
 }  // namespace CLI
 
 namespace softgrip::tools {
+
+/// Prints help or version if the user requested it. Otherwise prints the error and the existing command or
+/// option with the most similar name. Returns the exit code of the program: 0, 2, or the code of a
+/// CLI::RuntimeError.
+[[nodiscard]] int end_of(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv);
 
 /// Name, purpose and functions of a program.
 struct ServerProgram {

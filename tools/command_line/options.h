@@ -1,15 +1,22 @@
 #pragma once
-// The frame of a subcommand: its options, the function that runs it, and options that several commands share.
+// Subcommands and their options: the frame of a subcommand, options that several commands share, checks that
+// CLI11 does not provide, and the call of a command.
 
-#include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
 #include "base/exit_code.h"
-#include "tools/command_line/call.h"
+#include "base/numbers.h"
 
 namespace softgrip::tools {
+
+/// Returns the command's name and arguments for its JSON result, without the arguments that select the output
+/// (--out, --json, --figures). `softgrip report --verify` repeats this call.
+[[nodiscard]] std::vector<std::string> call_of(const CLI::App& command);
 
 /// A subcommand and its options. The subcommand owns the options.
 template <class Options>
@@ -29,7 +36,7 @@ Subcommand<Options> add_command(CLI::App& program, ExitCode& outcome, const std:
   return {command, options.get()};
 }
 
-/// Does the same for a function that also gets the call of the command (call.h).
+/// Does the same for a function that also gets the call of the command.
 template <class Options>
 Subcommand<Options> add_command(CLI::App& program, ExitCode& outcome, const std::string& name,
                                 const std::string& about,
@@ -45,6 +52,16 @@ template <class Seed, class Threads>
 void add_search_options(CLI::App& command, Seed& seed, Threads& threads) {
   command.add_option("--seed", seed, "Random seed of start points and resampling")->capture_default_str();
   command.add_option("--threads", threads, "Number of threads; 0: one per core")->capture_default_str();
+}
+
+/// Accepts a number between `lower` and `upper`, bounds included. Unlike CLI::Range, it refuses NaN.
+[[nodiscard]] inline CLI::Validator number_between(double lower, double upper) {
+  const std::string range = "a number from " + significant(lower) + " to " + significant(upper);
+  const auto check = [=](const std::string& text) {
+    const auto value = to_number(text);
+    return value && *value >= lower && *value <= upper ? std::string() : "'" + text + "' is not " + range;
+  };
+  return CLI::Validator(check, "");
 }
 
 }  // namespace softgrip::tools

@@ -1,0 +1,45 @@
+#pragma once
+// Finds and reads the input files of commands: configuration and models.
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "base/exit_code.h"
+#include "document/problem.h"
+#include "model/model.h"
+#include "tools/command_line/command.h"
+
+namespace softgrip::tools {
+
+/// Returns the path of a file or folder of the configuration, for example "rig.yaml" or "boards". The path is
+/// in ./config if it exists there, else in the installed configuration.
+[[nodiscard]] std::string configuration_path(const std::string& name);
+/// Returns the path of the folder with the installed configuration.
+[[nodiscard]] std::string installed_configuration();
+/// Returns the sorted names of the YAML files in a folder, without their extension. Returns an empty list if
+/// the folder is unreadable.
+[[nodiscard]] std::vector<std::string> document_names(const std::filesystem::path& folder);
+
+/// Returns the result of read(path, problems). If the file cannot be opened or is refused, prints the reason
+/// and returns the exit code.
+template <class Read>
+auto read_input(const std::string& path, Read read)
+    -> tl::expected<typename decltype(read(path, std::declval<document::Problems&>()))::value_type,
+                    ExitCode> {
+  if (const auto code = unreadable(path)) return tl::unexpected(*code);
+  document::Problems problems;
+  auto result = read(path, problems);
+  if (!result) return tl::unexpected(refuse(problems));
+  return std::move(*result);
+}
+
+/// Reads a model file. If the file is refused, prints all problems and returns the exit code.
+[[nodiscard]] tl::expected<model::Model, ExitCode> read_model(const std::string& path);
+/// Reads a model file for a rig. Refuses an output unit other than mm.
+[[nodiscard]] tl::expected<model::Model, ExitCode> read_rig_model(const std::string& path);
+
+}  // namespace softgrip::tools

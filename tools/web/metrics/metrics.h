@@ -1,0 +1,54 @@
+#pragma once
+// Writes the Prometheus metrics of the daemon, its channels, its events and the health of its fingers.
+// docs/reference/metrics.md lists them. Names and units are part of the public format.
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace softgrip::web {
+
+using Labels = std::vector<std::pair<std::string_view, std::string_view>>;
+
+/// Writes metric families, each with its samples. A sample whose value is not finite is omitted, because the
+/// quantity is unknown.
+class MetricText {
+ public:
+  enum class Type : unsigned char { gauge, counter, summary };
+
+  /// Begins a metric family. The name of a counter must end with `_total`.
+  void family(std::string_view name, Type type, std::string_view help);
+  /// Adds a sample to the family that was begun last. For a summary, `suffix` is "_sum" or "_count".
+  void sample(const Labels& labels, double value, std::string_view suffix = {});
+  void sample(double value) { sample({}, value); }
+
+  [[nodiscard]] const std::string& text() const noexcept { return text_; }
+
+ private:
+  std::string text_;
+  std::string name_;
+};
+
+/// Writes the metrics of the daemon. `status` is a status of the socket API. If the daemon does not respond,
+/// it is null, and only `softgrip_up` with the value 0 is written. `statistics` is the statistics object of
+/// the socket API, or null if it has not been received.
+void tell_daemon(const nlohmann::ordered_json& status, const nlohmann::ordered_json& statistics,
+                 MetricText& metrics);
+
+/// Writes the metrics of each finger. `channels` is the list in a status of the socket API.
+void tell_channels(const nlohmann::ordered_json& channels, MetricText& metrics);
+
+/// Writes the numbers of events. `events` is a member of the statistics of the socket API, `channels` a
+/// member of its status. Every possible result of each finger has a sample even if it has not occurred,
+/// because Prometheus cannot compute an increase from the first sample of a series.
+void tell_events(const nlohmann::ordered_json& events, const nlohmann::ordered_json& channels,
+                 MetricText& metrics);
+
+/// Writes the metrics of a health result. `health` is the content of health.json. If it is null, writes
+/// nothing.
+void tell_health(const nlohmann::ordered_json& health, MetricText& metrics);
+
+}  // namespace softgrip::web
