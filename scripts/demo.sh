@@ -18,6 +18,7 @@ if [ -t 1 ]; then
 else
   build >"$build/demo.log" || { tail -n 40 "$build/demo.log" >&2; exit 1; }
 fi
+python3 tests/repository/libraries.py --build "$build" >>"$build/demo.log" || { tail -n 4 "$build/demo.log" >&2; exit 1; }
 
 rm -rf "$out" && mkdir -p "$out/runs"
 work=$(mktemp -d) runs=$out/runs

@@ -1,18 +1,25 @@
 #!/usr/bin/env python3
-"""Checks that the table in docs/explanation/libraries.md lists the libraries with which the programs are linked:
+"""Checks that the table in docs/explanation/libraries.md lists the libraries with which the programs are linked, and
+that the programs that were built load no other libraries:
 libraries.py --build BUILD_DIR
 
-With the linker option --as-needed, a program may load fewer libraries than its link command names.
+With the linker option --as-needed, a program may load fewer libraries than its link command names. scripts/demo.sh runs
+this check for the build of the demo, which uses other compiler options.
 """
 
 import argparse
 import pathlib
 import re
+import subprocess
 import sys
 
 import tree
 
 PAGE = tree.ROOT / "docs/explanation/libraries.md"
+
+
+# The libraries of the compiler: the C library, the C++ runtime and the sanitizers.
+RUNTIME = {"c", "m", "gcc_s", "stdc++", "atomic", "asan", "ubsan", "tsan"}
 
 
 def linked(program, ninja):
@@ -23,6 +30,12 @@ def linked(program, ninja):
     return names - {"pthread", "rt", "m", "dl"}
 
 
+def loaded(program):
+    """Returns the shared libraries that a program file needs. The libraries of the compiler are left out."""
+    text = subprocess.run(["readelf", "-d", program], capture_output=True, text=True, check=True).stdout
+    return set(re.findall(r"\(NEEDED\).*\[lib([^\]]+?)\.so[^\]]*\]", text)) - RUNTIME
+
+
 def stated():
     rows = re.findall(r"^\| `(softgrip[\w-]*)` \| ([^|]*) \|$", PAGE.read_text(), re.MULTILINE)
     return {program: set(re.split(r",\s*", libraries.strip())) for program, libraries in rows}
@@ -31,12 +44,17 @@ def stated():
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--build", type=pathlib.Path, required=True)
-    ninja = (parser.parse_args().build / "build.ninja").read_text()
+    build = parser.parse_args().build
+    ninja = (build / "build.ninja").read_text()
     wrong = [f"{program}: the page says {', '.join(sorted(says))}; the build links {', '.join(sorted(has))}"
              for program, says in stated().items() if says != (has := linked(program, ninja))]
+    built = {program: build / folder / program for program in stated() for folder in ("daemon", "tools")
+             if (build / folder / program).is_file()}
+    wrong += [f"{program} loads {', '.join(sorted(more))}, which the page does not list"
+              for program, file in built.items() if (more := loaded(file) - stated()[program])]
     if len(stated()) < 4:
         wrong.append("the table does not have the 4 programs")
-    print("\n".join(wrong) or f"{len(stated())} programs are linked with what {PAGE.name} says")
+    print("\n".join(wrong) or f"{len(stated())} programs are linked with what {PAGE.name} says; {len(built)} load that")
     return 1 if wrong else 0
 
 
