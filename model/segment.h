@@ -61,6 +61,18 @@ struct Segment {
   }
 };
 
+/// Passes on a jump of the input (a segment without duration) for a block whose output follows the input at
+/// once in some directions. `rises_at_once` and `falls_at_once` name these directions. In the other
+/// directions, a jump does not change the output.
+template <class T, class Next>
+void pass_jump(T& output, const Segment<T>& in, bool rises_at_once, bool falls_at_once, Next&& next) {
+  const bool rises = value_of(in.end) > value_of(output);
+  if (!(rises ? rises_at_once : falls_at_once)) return;
+  const T begin = output;
+  output = in.end;
+  next(Segment<T>::straight(in.duration_s, begin, output));
+}
+
 /// The surroundings of the rig during a sample. Each block uses only those that affect it.
 struct Surroundings {
   /// Time from the start of the measurement campaign to the end of the sample [s]. NaN: the chain uses the

@@ -37,7 +37,7 @@ class TwoWayLag {
       next(in);
       return;
     }
-    if (is_zero(in.duration_s)) return jump(in, next);
+    if (is_zero(in.duration_s)) return pass_jump(output_, in, filling_.passes(), venting_.passes(), next);
     const T gap = in.begin - output_;
     const double way = value_of(gap) != 0.0 ? value_of(gap) : value_of(in.end) - value_of(in.begin);
     Direction& now = way >= 0.0 ? filling_ : venting_;
@@ -69,15 +69,6 @@ class TwoWayLag {
       })[0];
     }
   };
-
-  template <class Next>
-  void jump(const Segment<T>& in, Next&& next) {
-    const bool fills = value_of(in.end) > value_of(output_);
-    if (!(fills ? filling_ : venting_).passes()) return;
-    const T begin = output_;
-    output_ = in.end;
-    next(Segment<T>::straight(in.duration_s, begin, output_));
-  }
 
   // Returns the time after which the output equals the input. For a straight input, the gap d = input -
   // output follows d' = slope - d / tau. The gap is zero after tau log(1 - d(0) / (slope tau)) if input and

@@ -32,7 +32,9 @@ class RateLimit {
   template <class Next>
   void step(const Segment<T>& in, const Surroundings&, Next&& next) {
     const T gap = in.begin - output_;
-    if (is_zero(in.duration_s)) return jump(in, next);
+    if (is_zero(in.duration_s))
+      return pass_jump(output_, in, value_of(filling_s_per_kpa_) <= 0.0, value_of(venting_s_per_kpa_) <= 0.0,
+                       next);
     if (value_of(gap) == 0.0) return follow(in, next);
     const T s_per_kpa = value_of(gap) > 0.0 ? filling_s_per_kpa_ : -venting_s_per_kpa_;
     const T meeting_s = meeting(in, gap, s_per_kpa);
@@ -48,16 +50,6 @@ class RateLimit {
  private:
   /// A meeting within this share of the duration from either end of a segment does not divide the segment.
   static constexpr double least_share = 1e-6;
-
-  /// Passes on a jump of the command in a direction without a limit.
-  template <class Next>
-  void jump(const Segment<T>& in, Next&& next) {
-    const bool fills = value_of(in.end) > value_of(output_);
-    if (value_of(fills ? filling_s_per_kpa_ : venting_s_per_kpa_) > 0.0) return;
-    const T begin = output_;
-    output_ = in.end;
-    next(Segment<T>::straight(in.duration_s, begin, output_));
-  }
 
   /// Returns the time from the start of the segment [s] at which the output reaches an input that is linear
   /// in time. If the output does not reach the input within the segment, returns the duration of the segment.
