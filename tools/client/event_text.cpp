@@ -1,4 +1,4 @@
-#include "tools/client/event_text.h"
+#include "tools/client/daemon_text.h"
 
 #include <algorithm>
 #include <array>

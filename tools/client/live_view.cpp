@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "tools/client/event_text.h"
+#include "tools/client/daemon_text.h"
 #include "tools/client/json_fields.h"
 #include "tools/client/key_dialogue.h"
 

@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tools/client/status_view.h"
+#include "tools/client/daemon_text.h"
 
 namespace softgrip::tools {
 

@@ -1,4 +1,4 @@
-#include "tools/client/sequence_view.h"
+#include "tools/client/daemon_text.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/client/daemon_command.h"
-#include "tools/client/event_text.h"
+#include "tools/client/daemon_text.h"
 #include "tools/commands/commands.h"
 
 namespace softgrip::tools {

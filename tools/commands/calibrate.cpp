@@ -19,10 +19,8 @@
 #include "tools/command_line/output.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/rig_to_move.h"
-#include "tools/commissioning/plausibility_warnings.h"
+#include "tools/commissioning/calibration_results.h"
 #include "tools/commissioning/procedure.h"
-#include "tools/commissioning/rig_update.h"
-#include "tools/commissioning/snippet.h"
 #include "tools/commissioning/terminal_operator.h"
 
 namespace softgrip::tools {

@@ -8,8 +8,8 @@
 
 #include "base/wall_clock.h"
 #include "tools/client/daemon_command.h"
+#include "tools/client/daemon_text.h"
 #include "tools/client/event_query.h"
-#include "tools/client/event_text.h"
 #include "tools/command_line/options.h"
 #include "tools/commands/commands.h"
 

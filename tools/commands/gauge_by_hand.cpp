@@ -1,4 +1,4 @@
-#include "tools/commands/gauge_by_hand.h"
+#include "tools/commands/rig_to_move.h"
 
 #include <cstdio>
 #include <utility>
@@ -6,7 +6,6 @@
 
 #include "base/numbers.h"
 #include "tools/client/daemon_client.h"
-#include "tools/commands/rig_to_move.h"
 #include "tools/commissioning/procedure.h"
 #include "tools/commissioning/terminal_operator.h"
 

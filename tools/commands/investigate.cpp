@@ -21,12 +21,10 @@
 #include "tools/command_line/progress_line.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
-#include "tools/commands/gauge_by_hand.h"
 #include "tools/commands/rig_to_move.h"
 #include "tools/investigation/diagnosis_folder.h"
 #include "tools/investigation/experiment_rig.h"
 #include "tools/investigation/investigation.h"
-#include "tools/investigation/investigation_report.h"
 #include "tools/investigation/rig_tracking.h"
 #include "tools/log_input/log_input.h"
 

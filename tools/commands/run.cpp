@@ -11,7 +11,7 @@
 #include "daemon/socket/sequence_loader.h"
 #include "daemon/socket/status_json.h"
 #include "tools/client/daemon_command.h"
-#include "tools/client/event_text.h"
+#include "tools/client/daemon_text.h"
 #include "tools/client/set_option.h"
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/options.h"

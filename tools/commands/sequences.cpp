@@ -6,7 +6,7 @@
 #include <string>
 
 #include "tools/client/daemon_command.h"
-#include "tools/client/sequence_view.h"
+#include "tools/client/daemon_text.h"
 #include "tools/command_line/options.h"
 #include "tools/commands/commands.h"
 

@@ -16,7 +16,7 @@
 #include "base/ending_signal.h"
 #include "base/files.h"
 #include "tools/client/daemon_command.h"
-#include "tools/client/event_text.h"
+#include "tools/client/daemon_text.h"
 #include "tools/client/own_start.h"
 #include "tools/client/set_option.h"
 #include "tools/command_line/options.h"

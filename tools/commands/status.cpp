@@ -8,8 +8,8 @@
 
 #include "rig/rig_file.h"
 #include "tools/client/daemon_command.h"
+#include "tools/client/daemon_text.h"
 #include "tools/client/last_health.h"
-#include "tools/client/status_view.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"

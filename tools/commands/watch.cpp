@@ -17,10 +17,9 @@
 
 #include "base/ending_signal.h"
 #include "tools/client/daemon_command.h"
-#include "tools/client/event_text.h"
+#include "tools/client/daemon_text.h"
 #include "tools/client/key_dialogue.h"
 #include "tools/client/live_view.h"
-#include "tools/client/status_view.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"

@@ -1,4 +1,4 @@
-#include "tools/commissioning/crossing.h"
+#include "tools/commissioning/motion.h"
 
 #include <algorithm>
 #include <cmath>

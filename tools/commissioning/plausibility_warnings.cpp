@@ -1,4 +1,4 @@
-#include "tools/commissioning/plausibility_warnings.h"
+#include "tools/commissioning/calibration_results.h"
 
 #include <algorithm>
 #include <cmath>

@@ -13,8 +13,8 @@
 #include "control/feedforward/invertibility.h"
 #include "drivers/board/channel_wiring.h"
 #include "rig/rig_file.h"
+#include "tools/commissioning/calibration_results.h"
 #include "tools/commissioning/rig_template.h"
-#include "tools/commissioning/snippet.h"
 
 namespace softgrip::tools {
 namespace {

@@ -10,7 +10,6 @@
 #include "base/numbers.h"
 #include "daemon/recording/csv_row.h"
 #include "rig/rig_file.h"
-#include "tools/commissioning/crossing.h"
 #include "tools/commissioning/motion.h"
 
 namespace softgrip::tools::doctor {

@@ -1,4 +1,4 @@
-#include "tools/commissioning/rig_update.h"
+#include "tools/commissioning/calibration_results.h"
 
 #include <cmath>
 #include <ctime>

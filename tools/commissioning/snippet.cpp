@@ -1,4 +1,4 @@
-#include "tools/commissioning/snippet.h"
+#include "tools/commissioning/calibration_results.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "tools/investigation/experiment_check.h"
+#include "tools/investigation/experiment_rig.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #pragma once
 // Plays the experiments of an investigation on a rig. This is either the rig of a rig file, controlled by the
-// daemon's own code, or a command that the user provides.
+// daemon's own code, or a command that the user provides. Checks that the rig played the requested
+// experiment.
 
 #include <cstdint>
 #include <functional>
@@ -13,6 +14,8 @@
 #include "document/problem.h"
 #include "rig/rig_file.h"
 #include "sysid/diagnosis/experiments/waveform.h"
+#include "sysid/identification/validate.h"
+#include "sysid/logs/log.h"
 #include "tools/investigation/investigation.h"
 
 namespace softgrip::tools {
@@ -80,5 +83,17 @@ using Consent = std::function<bool(const std::string& what)>;
 /// Writes the readings to `folder`/gauge.csv and reads this file as it reads the gauge file of a user.
 [[nodiscard]] tl::expected<sysid::GaugeFile, NotPlayed> gauge_file_of(
     const std::vector<sysid::GaugeReading>& readings, const std::string& folder);
+
+/// Returns a sentence if the command of the log differs from the waveform in duration, largest pressure or
+/// total travel. Returns nullopt if it does not.
+[[nodiscard]] std::optional<std::string> broken_promise(const sysid::Waveform& asked, const sysid::Log& log);
+
+/// Returns a sentence if an object blocked the finger, else nullopt. The check uses pressures up to
+/// `known_kpa`. A blocked finger moves as predicted in the lower part of its stroke, and far less than
+/// predicted in the upper part.
+/// @param predicted  prediction for the log by a model without contact
+/// @param known_kpa  largest pressure of the logs to which the model was fitted
+[[nodiscard]] std::optional<std::string> touched(const sysid::Validation& predicted, const sysid::Log& log,
+                                                 double known_kpa);
 
 }  // namespace softgrip::tools

@@ -9,7 +9,7 @@
 #include "base/numbers.h"
 #include "sysid/diagnosis/causes/contact.h"
 #include "sysid/identification/start_points.h"
-#include "tools/investigation/experiment_check.h"
+#include "tools/investigation/experiment_rig.h"
 
 namespace softgrip::tools {
 namespace {

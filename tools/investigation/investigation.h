@@ -1,6 +1,6 @@
 #pragma once
 // Repeats diagnosis and experiment until one cause remains, the time budget is spent, or no experiment
-// separates the alternatives.
+// separates the alternatives. Formats the investigation as a page.
 
 #include <functional>
 #include <optional>
@@ -111,5 +111,11 @@ struct NotInvestigated {
 
 /// Returns the JSON of investigation.json. `rig` is the rig file or command that played the experiments.
 [[nodiscard]] nlohmann::ordered_json json_of(const Investigation& investigation, const std::string& rig);
+
+/// Returns the HTML page.
+/// @param rig          path of the rig file, or the command that plays the experiments
+/// @param closed_loop  sentences about the closed loop; empty: no closed loop was simulated
+[[nodiscard]] std::string investigation_html(const Investigation& investigation, const std::string& rig,
+                                             const std::string& closed_loop);
 
 }  // namespace softgrip::tools

@@ -1,4 +1,4 @@
-#include "tools/investigation/investigation_report.h"
+#include "tools/investigation/investigation.h"
 
 #include "base/numbers.h"
 #include "model/file/model_file.h"

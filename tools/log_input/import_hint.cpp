@@ -1,4 +1,4 @@
-#include "tools/log_input/import_hint.h"
+#include "tools/log_input/log_input.h"
 
 #include <filesystem>
 

@@ -8,7 +8,6 @@
 #include "sysid/logs/command_before.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/input_files.h"
-#include "tools/log_input/import_hint.h"
 
 namespace softgrip::tools {
 sysid::RecordOptions LogInput::record_options() const {

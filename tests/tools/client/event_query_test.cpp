@@ -6,7 +6,7 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
-#include "tools/client/event_text.h"
+#include "tools/client/daemon_text.h"
 
 namespace softgrip::tools::event_query_test {
 namespace {

@@ -8,12 +8,10 @@
 
 #include "tests/tools/daemon_lines.h"
 #include "tools/client/daemon_client.h"
+#include "tools/client/daemon_text.h"
 #include "tools/client/event_query.h"
-#include "tools/client/event_text.h"
 #include "tools/client/live_view.h"
 #include "tools/client/own_start.h"
-#include "tools/client/sequence_view.h"
-#include "tools/client/status_view.h"
 #include "tools/commissioning/examinations.h"
 
 namespace softgrip::tools::reply_check_test {

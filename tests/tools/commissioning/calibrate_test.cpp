@@ -17,9 +17,9 @@
 #include "tests/daemon/temporary_folder.h"
 #include "tests/tools/passing_board.h"
 #include "tests/tools/virtual_time.h"
+#include "tools/commissioning/calibration_results.h"
 #include "tools/commissioning/line_fit.h"
 #include "tools/commissioning/procedure.h"
-#include "tools/commissioning/snippet.h"
 
 namespace softgrip::tools::calibrate::calibrate_test {
 namespace {

@@ -1,6 +1,6 @@
 // Tests that a calibration replaces its points in the rig file and leaves all other lines unchanged.
 
-#include "tools/commissioning/rig_update.h"
+#include "tools/commissioning/calibration_results.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -12,7 +12,6 @@
 
 #include "base/files.h"
 #include "rig/rig_file.h"
-#include "tools/commissioning/plausibility_warnings.h"
 
 namespace softgrip::tools::calibrate::rig_update_test {
 namespace {

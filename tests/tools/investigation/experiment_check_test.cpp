@@ -1,4 +1,4 @@
-#include "tools/investigation/experiment_check.h"
+#include "tools/investigation/experiment_rig.h"
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,6 @@
 #include "sysid/diagnosis/experiments/waveform.h"
 #include "sysid/logs/simulated_log.h"
 #include "tools/investigation/experiment_rig.h"
-#include "tools/investigation/investigation_report.h"
 
 namespace softgrip::tools::investigation_test {
 namespace {

@@ -14,8 +14,7 @@
 #include <string>
 
 #include "sysid/recordings/recording.h"
-#include "tools/client/event_text.h"
-#include "tools/client/status_view.h"
+#include "tools/client/daemon_text.h"
 
 namespace {
 

@@ -1,0 +1,55 @@
+#pragma once
+// Formats the daemon's messages as text: status, list of sequences, and events.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tools/client/styled_line.h"
+#include "tools/client/trend.h"
+
+namespace softgrip::tools {
+
+/// The parts of a status as lines, so that a screen can arrange them. A missing value is shown as "-".
+struct StatusParts {
+  std::vector<std::string> head;  ///< lines with state, sequence, pressurised fingers and fault
+  std::vector<std::vector<std::string>> channels;
+  std::vector<std::string> board;      ///< lines with the connection to the board and the attempts to restore
+                                       ///< it
+  std::vector<std::string> machinery;  ///< lines with the state of the control loop and of the recording
+};
+/// Formats the parts of a status. If `trends` contains one element per channel, trends replace the bars.
+[[nodiscard]] StatusParts parts_of(const nlohmann::ordered_json& status, const ViewStyle& style,
+                                   const std::vector<ChannelTrends>* trends = nullptr);
+
+/// Returns the lines of all parts in one list.
+[[nodiscard]] std::vector<std::string> view_of(const nlohmann::ordered_json& status, const ViewStyle& style);
+
+/// Returns the status in one line, for logs and pipes.
+[[nodiscard]] std::string line_of_status(const nlohmann::ordered_json& status);
+
+/// Returns one line per sequence, followed by one line per parameter with name, range, unit, default and
+/// description. If a sequence cannot be started, its line states the reason.
+[[nodiscard]] std::vector<std::string> view_of_sequences(const nlohmann::ordered_json& sequences);
+
+/// Returns the names of the sequences.
+[[nodiscard]] std::vector<std::string> names_of_sequences(const nlohmann::ordered_json& sequences);
+
+/// Formats an event of the socket API as "   12.340 s  warning  left: Grip result: NO PART.". If the event
+/// has a time of day, the line begins with local time: "2026-11-21 09:32:05.123  warning  ...".
+[[nodiscard]] std::string line_of_event(const nlohmann::ordered_json& event);
+
+/// Replaces the control characters in each line of a text, so that a terminal does not execute them.
+[[nodiscard]] std::string shown_lines(std::string_view text);
+
+/// Formats the response to an acknowledgement: "acknowledged F202 reading_out_of_range of left; nothing moves
+/// until the next start".
+[[nodiscard]] std::string sentence_of_acknowledged(const nlohmann::ordered_json& result);
+
+/// Formats an event for a narrow screen: "09:32:05 !  left: Grip result: NO PART.". `!` marks a warning and
+/// `!!` an error.
+[[nodiscard]] std::string brief_line_of_event(const nlohmann::ordered_json& event);
+
+}  // namespace softgrip::tools
