@@ -66,6 +66,8 @@ softgrip_room(daemon/service
   LIBRARIES spdlog::spdlog nlohmann_json::nlohmann_json PkgConfig::systemd)
 
 # System identification: from logs to a model and to the cause of its error.
+# The limits of all decisions. This room is a single header.
+softgrip_room(sysid/limits)
 softgrip_room(sysid/logs USES base document model)
 softgrip_room(sysid/recordings USES base document sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(sysid/import USES base document model sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
@@ -74,31 +76,31 @@ target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::mati
 softgrip_room(sysid/pages USES base model model/file sysid/logs)
 softgrip_room(sysid/fitting USES base model sysid/logs LIBRARIES Eigen3::Eigen Ceres::ceres)
 softgrip_room(sysid/identification
-  USES base model model/file sysid/logs sysid/pages sysid/fitting
+  USES base model model/file sysid/limits sysid/logs sysid/pages sysid/fitting
   LIBRARIES Eigen3::Eigen Ceres::ceres nlohmann_json::nlohmann_json)
 softgrip_room(sysid/structure
-  USES base model sysid/logs sysid/fitting sysid/identification
+  USES base model sysid/limits sysid/logs sysid/fitting sysid/identification
   LIBRARIES Eigen3::Eigen)
-softgrip_room(sysid/diagnosis/residual USES base sysid/logs LIBRARIES Eigen3::Eigen)
+softgrip_room(sysid/diagnosis/residual USES base sysid/limits sysid/logs LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/instrument
   USES base model sysid/logs sysid/pages sysid/fitting sysid/identification sysid/structure sysid/diagnosis/residual)
-softgrip_room(sysid/evidence USES base sysid/logs sysid/fitting)
+softgrip_room(sysid/evidence USES base sysid/limits sysid/logs sysid/fitting)
 softgrip_room(sysid/diagnosis/causes
   USES model sysid/logs sysid/fitting sysid/evidence sysid/diagnosis/residual)
 softgrip_room(sysid/diagnosis/search
-  USES base model sysid/logs sysid/fitting sysid/identification sysid/evidence sysid/diagnosis/residual
+  USES base model sysid/limits sysid/logs sysid/fitting sysid/identification sysid/evidence sysid/diagnosis/residual
        sysid/diagnosis/causes)
 softgrip_room(sysid/diagnosis/evidence
-  USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/search)
+  USES base model sysid/limits sysid/logs sysid/fitting sysid/identification sysid/diagnosis/search)
 softgrip_room(sysid/diagnosis/gauge
-  USES base document model sysid/logs sysid/fitting sysid/diagnosis/residual sysid/diagnosis/causes
+  USES base document model sysid/limits sysid/logs sysid/fitting sysid/diagnosis/residual sysid/diagnosis/causes
        sysid/diagnosis/search)
 softgrip_room(sysid/diagnosis/verdict
-  USES base model sysid/logs sysid/fitting sysid/identification sysid/structure sysid/diagnosis/residual sysid/diagnosis/causes
+  USES base model sysid/limits sysid/logs sysid/fitting sysid/identification sysid/structure sysid/diagnosis/residual sysid/diagnosis/causes
        sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge sysid/evidence
   LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/changes
-  USES base model sysid/logs sysid/pages sysid/fitting sysid/structure sysid/evidence sysid/diagnosis/residual
+  USES base model sysid/limits sysid/logs sysid/pages sysid/fitting sysid/structure sysid/evidence sysid/diagnosis/residual
        sysid/diagnosis/causes
   LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
 softgrip_room(sysid/diagnosis/experiments
@@ -110,7 +112,7 @@ softgrip_room(sysid/diagnosis/report
   LIBRARIES nlohmann_json::nlohmann_json)
 # Health analysis: recorded grips become indicators and their charts, and changed indicators become alarms.
 softgrip_room(sysid/health
-  USES base document model model/file control/elements sysid/logs sysid/recordings sysid/pages sysid/fitting sysid/diagnosis/causes
+  USES base document model model/file control/elements sysid/limits sysid/logs sysid/recordings sysid/pages sysid/fitting sysid/diagnosis/causes
        sysid/changes sysid/diagnosis/experiments
   LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
 # These files contain the innermost loops of a fit and are compiled with -O3. With -O3 and a sanitizer, GCC 12

@@ -16,16 +16,13 @@
 #include "sysid/changes/healthy_runs.h"
 #include "sysid/diagnosis/causes/ageing.h"
 #include "sysid/diagnosis/causes/thermal_gain.h"
-#include "sysid/evidence/limits.h"
 #include "sysid/evidence/veto.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
 
-/// A temperature coefficient counts as a property of the finger if it reduces the whitened mean square of the
-/// healthy logs by more than this value.
-constexpr double own_temperature_gain = 0.05;
 constexpr std::size_t most_causes = 3;
 
 double rms_of(const Binned& series) {
@@ -138,7 +135,7 @@ class Judge {
     if (effects.empty()) return;
     const LaterReadings healthy = healthy_readings(base_);
     const std::vector<ScoredEffect> ranked = ranked_effects(healthy, effects, {}, {}, options_.threads);
-    if (!(ranked.front().gain > own_temperature_gain)) return;
+    if (!(ranked.front().gain > limits::form_error_share)) return;
     FittedEffect own = ranked.front().fit.fitted;
     own.numbers.back() = 0;  // the baseline model already contains the gain at the mean temperature
     base_.left = minus(std::move(base_.left), healthy.added({own}));
@@ -201,8 +198,8 @@ class Judge {
     const FittedEffect& fitted = scored.fit.fitted;
     const std::vector<bool> required = required_rows(readings, fitted.effect.appears);
     Claim claim;
-    claim.condition_met =
-        static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) >= limits::fewest_bins;
+    claim.condition_met = static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) >=
+                          limits::fewest_occurrences;
     if (!claim.condition_met) return veto_of(claim);
     const std::vector<FittedEffect> all = with(found, fitted);
     claim.size = intervals_of(readings, all, healthy_).back().size;
@@ -309,7 +306,8 @@ class Judge {
     judged.explained_mm = readings.plain_rms(found);
     for (const Effect& effect : effects) {
       const std::vector<bool> required = required_rows(readings, effect.appears);
-      if (static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) < limits::fewest_bins)
+      if (static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) <
+          limits::fewest_occurrences)
         judged.not_tested.emplace(effect.id, recording_for(effect.appears));
     }
   }

@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/statistics.h"
-#include "sysid/evidence/limits.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {

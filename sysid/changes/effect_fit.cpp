@@ -5,12 +5,12 @@
 #include <limits>
 
 #include "sysid/fitting/descent.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
 
 constexpr int most_effect_steps = 9;
-constexpr std::size_t followed = 2;
 /// Smallest damping of a parameter, as a share of the sum of all curvatures.
 constexpr double least_curvature = 0.01;
 /// sized() is not applied to an effect with more start points than this number, because its start points are
@@ -148,7 +148,7 @@ EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
   std::sort(looks.begin(), looks.end(),
             [](const EffectFit& a, const EffectFit& b) { return a.sum_of_squares < b.sum_of_squares; });
   EffectFit best = fit.descended(looks.front());
-  for (std::size_t i = 1; i < std::min(followed, looks.size()); ++i) {
+  for (std::size_t i = 1; i < std::min(limits::followed_starts, looks.size()); ++i) {
     EffectFit other = fit.descended(looks[i]);
     if (other.sum_of_squares < best.sum_of_squares) best = std::move(other);
   }

@@ -10,8 +10,8 @@
 #include <Eigen/Cholesky>
 
 #include "base/statistics.h"
-#include "sysid/evidence/limits.h"
 #include "sysid/fitting/start_estimate.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "sysid/evidence/limits.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 

@@ -10,7 +10,7 @@
 
 #include "base/statistics.h"
 #include "sysid/evidence/f_quantile.h"
-#include "sysid/evidence/limits.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -80,7 +80,7 @@ bool is_closed_loop(const std::vector<double>& command, const std::vector<double
   // readings could reduce.
   if (!(own > 1e-12 * static_cast<double>(rows)) || !(both > 0)) return false;
   const double f = (own - both) / static_cast<double>(order) / (both / free);
-  return f > f_quantile(limits::feedback_probability, static_cast<double>(order), free);
+  return f > f_quantile(limits::strict_probability, static_cast<double>(order), free);
 }
 
 std::optional<double> phase_ratio(const std::vector<double>& command, const std::vector<double>& reading) {

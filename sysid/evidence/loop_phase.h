@@ -14,7 +14,7 @@
 namespace softgrip::sysid {
 
 /// Returns true if past readings improve the prediction of the command from its own past. This is Granger's
-/// test with three samples of each series, at limits::feedback_probability. Readings do not improve the
+/// test with three samples of each series, at limits::strict_probability. Readings do not improve the
 /// prediction of a command that was planned before the run.
 /// @param command, reading  series of equal length. Pairs with a NaN are skipped. With fewer than 50 pairs,
 /// the result is false.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sysid/evidence/limits.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "sysid/evidence/f_quantile.h"
-#include "sysid/evidence/limits.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 

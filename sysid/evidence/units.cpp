@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sysid/evidence/limits.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/division.h"
 
 namespace softgrip::sysid {

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/statistics.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid::health {
 namespace {
@@ -12,9 +13,6 @@ namespace {
 /// Smallest log likelihood ratio with which a change of the difference is attributed to a finger: odds of 20
 /// to 1.
 const double sure = std::log(20.0);
-/// A change is shared if the mean change of the peer fingers is at least this share of the finger's own
-/// change.
-constexpr double alike = 0.5;
 /// Maximum number of a finger's values that are averaged since a change, and before it. The most recent
 /// values are used.
 constexpr std::size_t points_since = 3, points_before = 10;
@@ -275,7 +273,7 @@ bool NumberWatch::is_shared(std::size_t finger) const {
   const Watched& watched = watched_[finger];
   const std::size_t from = moment_of(finger, watched.own_at[watched.own.alarm()->since]);
   const auto theirs = peers_moved(finger, from);
-  return theirs && *theirs / watched.own.alarm()->change >= alike;
+  return theirs && *theirs / watched.own.alarm()->change >= limits::majority_share;
 }
 
 void NumberWatch::decide(std::size_t moment) {

@@ -17,6 +17,7 @@
 #include "sysid/identification/estimates.h"
 #include "sysid/identification/profile.h"
 #include "sysid/identification/start_points.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/division.h"
 
 namespace softgrip::sysid {
@@ -235,8 +236,7 @@ tl::expected<Identification, std::string> identify(std::vector<Record> records, 
     if (!result) return Failure(result.error());
     if (exponent != 0) tried.emplace_back(exponent, result->rmse_mm);
     // A further exponent is accepted only if it reduces the RMSE by more than 1 %.
-    constexpr double worth = 0.99;
-    if (!best || result->rmse_mm < worth * best->rmse_mm) best = std::move(*result);
+    if (!best || result->rmse_mm < (1 - limits::negligible_share) * best->rmse_mm) best = std::move(*result);
   }
   best->exponent_rmse_mm = std::move(tried);
   best->model = put_back(start, best->fitted);

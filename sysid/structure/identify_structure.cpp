@@ -10,6 +10,7 @@
 #include "sysid/fitting/residuals.h"
 #include "sysid/identification/combinations.h"
 #include "sysid/identification/estimates.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/division.h"
 #include "sysid/logs/resampled_record.h"
 #include "sysid/structure/published_element.h"
@@ -24,9 +25,6 @@ using Failure = tl::unexpected<std::string>;
 /// A search counts as successful if its RMSE exceeds the smallest RMSE of all searches by at most this share.
 constexpr double reached_share = 1e-3;
 constexpr std::size_t fewest_readings = 100;
-/// Longest time over which readings are averaged for the choice of a structure [s]. A mean over a longer time
-/// would hide the lag of a valve.
-constexpr double longest_mean_s = 0.02;
 
 StructureEvidence evidence_of(const StructureChoice& choice, const std::vector<WithoutIngredient>& ablation) {
   StructureEvidence evidence;
@@ -167,8 +165,8 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
   if (options.progress) {
     choice_options.progress = [&](const std::string& stage) { options.progress({0, 0, 0, stage}); };
   }
-  const std::vector<Record> fewer =
-      with_simplest_start(averaged_to_count(result.records, enough_readings, longest_mean_s), choice_options);
+  const std::vector<Record> fewer = with_simplest_start(
+      averaged_to_count(result.records, enough_readings, limits::search_interval_s), choice_options);
   for (std::size_t k = 0; k < fewer.size(); ++k) result.records[k].start_unknown = fewer[k].start_unknown;
   const StructureChoice choice = choose_structure(fewer, choice_options);
   StructureTrial chosen = choice.trials[choice.chosen];

@@ -1,6 +1,8 @@
 #pragma once
 // Defines when an effect counts as significant. All sentences, tables and figures use this definition.
 
+#include "sysid/limits/limits.h"
+
 namespace softgrip::sysid {
 
 /// Returns true if an effect is significant, so that it is drawn and described. Its p-value must be below
@@ -9,8 +11,7 @@ namespace softgrip::sysid {
 /// residuals have a long correlation time, so the limit is stricter.
 [[nodiscard]] constexpr bool is_clear(double p_value, double share_percent) {
   constexpr double once_in_fifty = 0.02;
-  constexpr double a_twentieth_percent = 5;
-  return p_value < once_in_fifty && share_percent >= a_twentieth_percent;
+  return p_value < once_in_fifty && share_percent >= 100 * limits::form_error_share;
 }
 
 }  // namespace softgrip::sysid

@@ -11,6 +11,7 @@
 #include "sysid/diagnosis/evidence/clear.h"
 #include "sysid/diagnosis/evidence/spectrum.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -18,16 +19,12 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_samples = 12000;
 constexpr std::size_t most_bins = 10;
-constexpr std::size_t fewest_in_bin = 20;
 constexpr std::size_t draws = 1999;
 /// Smallest length of a block, in correlation times of the residual and in seconds, and smallest number of
 /// blocks.
 constexpr double memories_per_block = 8;
 constexpr double shortest_block_s = 4;
 constexpr std::size_t fewest_blocks = 12;
-/// If the unexplained variance is below this share of the noise variance, no share of it is computed for the
-/// conditions.
-constexpr double worth = 0.01;
 
 /// Returns the correlation time of the coloured part of the residual: the integral of the autocorrelation
 /// from the first lag on, divided by its value at the first lag.
@@ -138,7 +135,7 @@ Binning bin(const Condition& c) {
   std::vector<std::size_t> place(all.bins.size(), Binning::none_bin);
   Binning kept;
   for (std::size_t b = 0; b < all.bins.size(); ++b) {
-    if (all.bins[b].samples < fewest_in_bin) continue;
+    if (all.bins[b].samples < limits::fewest_events) continue;
     place[b] = kept.bins.size();
     kept.bins.push_back(all.bins[b]);
     kept.bins.back().value /= static_cast<double>(all.bins[b].samples);
@@ -324,7 +321,7 @@ ResidualEvidence examine_residual(const std::vector<Record>& records,
                                   const std::vector<Condition>& conditions, double noise_mm,
                                   std::uint64_t seed) {
   ResidualEvidence evidence;
-  if (samples.size() < 2 * fewest_in_bin) return evidence;
+  if (samples.size() < 2 * limits::fewest_events) return evidence;
   const std::vector<double> residual = pooled(samples, residual_mm);
   const auto n = static_cast<double>(residual.size());
   double length_s = 0;
@@ -341,7 +338,7 @@ ResidualEvidence examine_residual(const std::vector<Record>& records,
   evidence.block_s = std::min(std::max(shortest_block_s, memories_per_block * evidence.memory_s),
                               length_s / static_cast<double>(fewest_blocks));
   const std::vector<std::size_t> block = blocks_of(samples, evidence.block_s, evidence.blocks);
-  const bool present = variance > square(noise_mm) * (1 + worth);
+  const bool present = variance > square(noise_mm) * (1 + limits::negligible_share);
   const double structural =
       present ? squares_about_others(residual, block, evidence.blocks) - n * square(noise_mm) : 0;
   for (std::size_t c = 0; c < conditions.size(); ++c)

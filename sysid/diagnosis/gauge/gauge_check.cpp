@@ -12,6 +12,7 @@
 #include "sysid/diagnosis/causes/sensor_nonlinearity.h"
 #include "sysid/diagnosis/causes/sensor_saturation.h"
 #include "sysid/fitting/minimise.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -22,14 +23,6 @@ namespace {
 /// that does not.
 constexpr double beyond_share = 0.05;
 constexpr double beyond_noise = 10;
-/// Share of the difference between two hypotheses that counts as tolerance in their comparison.
-constexpr double tolerated_share = 0.2;
-/// Tolerated error as a share of the noise of the logs. No log can show a smaller error of the sensor.
-constexpr double never_matters = 0.25;
-/// The gauge readings must cover at least this share of the range of the readings in the logs.
-constexpr double least_covered_share = 0.5;
-/// Value that a standard normal variable exceeds with a probability of 1 in 1000.
-constexpr double deviate = 3.09;
 
 using Line = std::pair<double, double>;  // a straight line: its value at 0, and its slope
 
@@ -38,7 +31,7 @@ using Line = std::pair<double, double>;  // a straight line: its value at 0, and
 double chi_square_limit(double freedom) {
   if (freedom < 1) return std::numeric_limits<double>::infinity();
   const double v = 2 / (9 * freedom);
-  return freedom * std::pow(1 - v + deviate * std::sqrt(v), 3);
+  return freedom * std::pow(1 - v + limits::strict_deviate * std::sqrt(v), 3);
 }
 
 Line line_through(const std::vector<GaugeReading>& readings, const std::vector<double>& values,
@@ -220,11 +213,11 @@ class Checker {
     GaugeFit& best = fits[result_.best];
     double next = std::numeric_limits<double>::infinity();
     std::size_t out = 0;
-    best.tolerance_mm = never_matters * scales_.noise_mm;
+    best.tolerance_mm = limits::hidden_by_noise * scales_.noise_mm;
     for (std::size_t i = 0; i < fits.size(); ++i) {
       if (i == result_.best) continue;
       GaugeFit& fit = fits[i];
-      fit.tolerance_mm = tolerated_share * apart_mm(fit, best);
+      fit.tolerance_mm = limits::least_explained_share * apart_mm(fit, best);
       fit.behind = (chi_square(fit, fit.tolerance_mm) - chi_square(best, fit.tolerance_mm)) / 2;
       fit.explains = explains(fit, fit.tolerance_mm);
       fit.ruled_out = fit.behind >= gauge_log_likelihood_needed && explains(best, fit.tolerance_mm);
@@ -249,7 +242,7 @@ class Checker {
     const auto [least, most] =
         std::minmax_element(result_.straight.predicted_mm.begin(), result_.straight.predicted_mm.end());
     result_.covered_share = (*most - *least) / std::max(1e-9, scales_.highest_mm - scales_.lowest_mm);
-    if (result_.covered_share >= least_covered_share) return;
+    if (result_.covered_share >= limits::majority_share) return;
     for (GaugeFit& fit : result_.fits) fit.ruled_out = false;
     result_.outcome = GaugeOutcome::uncovered;
   }

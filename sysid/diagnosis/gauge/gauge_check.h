@@ -20,6 +20,7 @@
 
 #include "model/model.h"
 #include "sysid/diagnosis/gauge/gauge_file.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 
@@ -107,7 +108,8 @@ struct GaugeCheck {
   [[nodiscard]] Departure departure() const;
 };
 
-inline constexpr double gauge_log_likelihood_needed = 6.9;  ///< natural logarithm of 1000
+/// Smallest difference of two log likelihoods that rules out the less likely hypothesis.
+inline constexpr double gauge_log_likelihood_needed = limits::strict_log_likelihood;
 
 /// Tests the hypotheses with gauge readings at three or more positions. There must be at least one
 /// hypothesis, and the sensor shapes of the hypotheses must differ from each other.

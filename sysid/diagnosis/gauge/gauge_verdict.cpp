@@ -10,13 +10,10 @@
 #include "model/catalogue.h"
 #include "sysid/diagnosis/causes/indistinguishable.h"
 #include "sysid/diagnosis/residual/unexplained_limit.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
-
-/// Smallest nonlinearity of the sensor that gives a warning, as a share of the noise of the logs. No log can
-/// show a smaller nonlinearity.
-constexpr double worth_telling = 0.5;
 
 /// A possible cause at one position of the selection. Each position is one named cause.
 struct Standing {
@@ -319,7 +316,7 @@ class Weighing {
       return;
     }
     const GaugeCheck::Departure departure = check.departure();
-    const bool bent = departure.clear && departure.rms_mm > worth_telling * question_.noise_mm;
+    const bool bent = departure.clear && departure.rms_mm > limits::tolerated_noise * question_.noise_mm;
     const auto left = std::count_if(check.fits.begin(), check.fits.end(),
                                     [](const GaugeFit& fit) { return !fit.ruled_out; });
     const bool settled = left == 1 && check.fits.size() > 1;

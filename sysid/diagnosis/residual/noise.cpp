@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "base/statistics.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -84,10 +85,10 @@ UnexplainedError unexplained_error_of(const std::vector<std::vector<double>>& re
   // correlation below 1 % of the variance is not reported, even if it is significant. A mean square above
   // that of the noise also counts as unexplained error if their difference exceeds the uncertainty of the
   // noise.
-  const double worth = 0.01;
   const double known_to = 4 * std::sqrt(6.0 / static_cast<double>(count));
-  structure.present = structure.slow_correlation > worth + 4 / std::sqrt(lags * static_cast<double>(count)) ||
-                      mean_square > noise_mm * noise_mm * (1 + worth + known_to);
+  structure.present = structure.slow_correlation >
+                          limits::negligible_share + 4 / std::sqrt(lags * static_cast<double>(count)) ||
+                      mean_square > noise_mm * noise_mm * (1 + limits::negligible_share + known_to);
   return structure;
 }
 

@@ -11,10 +11,6 @@ namespace softgrip::sysid {
 /// differences. Smooth motion and single wrong samples do not contribute to the result; quantisation does.
 [[nodiscard]] double measured_noise_mm(const std::vector<Record>& records);
 
-/// Wrong readings are not reported if they increase the error by less than this share of the noise. Such
-/// readings may be corners of a motion.
-inline constexpr double distorting_share = 0.25;
-
 /// The part of a residual that exceeds the measurement noise.
 struct UnexplainedError {
   /// Square root of (mean square of the residual - noise squared); 0 if this difference is negative.

@@ -7,6 +7,7 @@
 
 #include "base/statistics.h"
 #include "sysid/diagnosis/residual/noise.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/sensor_codes.h"
 
 namespace softgrip::sysid {
@@ -16,8 +17,6 @@ namespace {
 /// noise. For a normal reading, this distance has a standard deviation of about 1.15. It exceeds the limit
 /// less than once in 10 million readings.
 constexpr double beyond = 6.0;
-/// Smallest number of outliers that is reported, because fewer outliers are not significant.
-constexpr std::size_t fewest = 5;
 
 double neighbours_median(const std::vector<double>& y, std::size_t i) {
   std::array<double, 4> near{y[i - 2], y[i - 1], y[i + 1], y[i + 2]};
@@ -110,8 +109,8 @@ void weigh(OutlierEvidence& evidence, double noise_mm) {
   evidence.size_low_mm = std::sqrt(std::max(0.0, square / count - z * deviation));
   evidence.size_high_mm = std::sqrt(square / count + z * deviation);
   // Noise alone does not exceed the limit `beyond`, but a knock on the table can cause a few outliers.
-  evidence.distorts = evidence.excess_mm > distorting_share * noise_mm;
-  evidence.present = evidence.count >= fewest && evidence.distorts;
+  evidence.distorts = evidence.excess_mm > limits::hidden_by_noise * noise_mm;
+  evidence.present = evidence.count >= limits::fewest_occurrences && evidence.distorts;
 }
 
 void hide(Record& record, std::size_t i, double size_mm, OutlierEvidence& evidence) {

@@ -5,13 +5,11 @@
 
 #include "base/statistics.h"
 #include "sysid/diagnosis/residual/noise.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest number of intervals of equal readings from which the sampling rate of the sensor is computed.
-/// With fewer intervals, the result is uncertain.
-constexpr std::size_t fewest_stretches = 20;
 /// If a sensor has a fine resolution, its smallest changes are below this share of its typical change.
 constexpr double fine_share = 0.25;
 /// The reading counts as frozen in an interval under two conditions. The interval is at least `frozen_ratio`
@@ -68,7 +66,8 @@ bool is_fine(const Record& record, const Stretches& readings) {
 /// Returns the number of samples per new reading; 1 means that each sample is a new reading.
 std::size_t samples_per_reading(const Record& record, const Stretches& readings) {
   const std::vector<double> lengths = whole_lengths(readings);
-  if (lengths.size() < fewest_stretches || quantile(lengths, 0.1) < 2 || !is_fine(record, readings)) return 1;
+  if (lengths.size() < limits::fewest_events || quantile(lengths, 0.1) < 2 || !is_fine(record, readings))
+    return 1;
   return static_cast<std::size_t>(quantile(lengths, 0.5));
 }
 
@@ -115,7 +114,7 @@ SamplingEvidence hide_repeated(std::vector<Record>& records) {
     Record& record = fresh[r];
     const Stretches readings = stretches_of(records[r]);
     evidence.readings += readings.samples.size();
-    if (readings.stretches.size() < fewest_stretches) continue;
+    if (readings.stretches.size() < limits::fewest_events) continue;
     const std::size_t period = samples_per_reading(record, readings);
     if (period > 1) intervals_s.push_back(static_cast<double>(period) * record.mean_interval_s());
     const double usual_length = quantile(whole_lengths(readings), 0.95);
@@ -135,7 +134,7 @@ SamplingEvidence hide_repeated(std::vector<Record>& records) {
   if (evidence.hidden == 0) return evidence;
   if (!intervals_s.empty()) evidence.interval_s = quantile(intervals_s, 0.5);
   evidence.excess_mm = std::sqrt(squares / static_cast<double>(evidence.readings));
-  evidence.present = evidence.excess_mm > distorting_share * measured_noise_mm(fresh);
+  evidence.present = evidence.excess_mm > limits::hidden_by_noise * measured_noise_mm(fresh);
   if (evidence.present) records = std::move(fresh);
   return evidence;
 }

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "sysid/limits/limits.h"
+
 namespace softgrip::sysid {
 namespace {
 
@@ -15,7 +17,8 @@ struct UnexplainedLimit {
   double noises;  ///< the limit applies if the error exceeds this multiple of the noise
   double share;   ///< largest permitted ratio of the mean squares, used in place of may_be_left
 };
-constexpr std::array unexplained_limits{UnexplainedLimit{3, 0.05}, UnexplainedLimit{5, 0.02}};
+constexpr std::array unexplained_limits{UnexplainedLimit{3, limits::form_error_share},
+                                        UnexplainedLimit{5, 0.02}};
 
 }  // namespace
 

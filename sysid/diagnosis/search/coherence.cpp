@@ -10,13 +10,12 @@
 #include "model/model.h"
 #include "model/named.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
 
 constexpr FitEffort alone{.most_iterations = 40, .tolerance = 1e-6};
-constexpr double least_explained_share = 0.2;
-constexpr double apart_share = 0.1;
 
 /// Returns the share of the variance of the readings that the fit explains. The share is negative if the mean
 /// of the readings fits better than the model.
@@ -88,7 +87,7 @@ std::optional<std::string> inconsistent_among(const std::vector<Record>& records
                                               const StructureFit& recalibrated, double together_mm2) {
   if (records.size() < 2) return std::nullopt;
   const double apart_mm = rmse_apart_mm(records, recalibrated);
-  if (!(apart_mm * apart_mm < apart_share * together_mm2)) return std::nullopt;
+  if (!(apart_mm * apart_mm < limits::equal_error_share * together_mm2)) return std::nullopt;
   const std::string unit(model::name_of(records.front().output_unit));
   return "after recalibration on each log separately, the error of the model is " + significant(apart_mm, 2) +
          " " + unit + ", but after recalibration on all logs together " +
@@ -99,7 +98,7 @@ std::optional<std::string> inconsistent_among(const std::vector<Record>& records
 std::optional<std::string> why_not_about(const std::vector<Record>& records,
                                          const StructureFit& recalibrated) {
   const double share = explained_share(records, recalibrated);
-  if (share >= least_explained_share) return std::nullopt;
+  if (share >= limits::least_explained_share) return std::nullopt;
   if (auto inconsistent = inconsistent_among(records, recalibrated, recalibrated.mean_square_mm2))
     return inconsistent;
   return "the readings do not follow the command: the fitted model explains only " +

@@ -16,15 +16,13 @@
 #include "sysid/diagnosis/search/scan.h"
 #include "sysid/diagnosis/search/scored.h"
 #include "sysid/diagnosis/search/slack.h"
-#include "sysid/evidence/limits.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
 
-/// Largest number of candidates that are tested on held-out blocks, and largest ratio of their mean square
-/// after the medium fit to the smallest one. The refit of a base structure can absorb half of the effect of a
-/// cause, but never nearly all of it.
-constexpr std::size_t most_finalists = 5;
+/// Largest ratio of the mean square of a candidate after the medium fit to the smallest one. The refit of a
+/// base structure can absorb half of the effect of a cause, but never nearly all of it.
 constexpr double hopeless_ratio = 4;
 /// Number of rounds of alternating fits. Each round fits the base structure with the cause fixed, and then
 /// the cause with the base structure fixed.
@@ -32,9 +30,6 @@ constexpr int turns = 2;
 /// Shares of the base structure's linear response to a cause that are tried. The fit starts at the best
 /// share. For a strongly nonlinear base structure, the full response is too large.
 constexpr std::array answers{1.0, 0.5, 0.2, 0.0};
-/// One cause rules out another cause if the mean logarithm of the ratio of their block losses exceeds this
-/// value. For a contact and a sensor saturation, this logarithm is 0.01 in every block (textbook test cases).
-constexpr double clearly_ahead = 0.05;
 /// The losses of most blocks count as reduced if the mean logarithm of the ratio of the block losses exceeds
 /// this value (see LeastTaken).
 constexpr double in_most_blocks = 0.15;
@@ -104,7 +99,7 @@ class SelectorUpon {
     std::vector<std::array<LinearFit, 2>> best(causes.size());
     std::atomic<std::size_t> tried{0};
     parallel_for(causes.size(), data_.threads, [&](std::size_t i) {
-      for (const FitPoint& start : best_starts({&scan, 1}, causes[i], scales_, fewest_starts)) {
+      for (const FitPoint& start : best_starts({&scan, 1}, causes[i], scales_, limits::followed_starts)) {
         LinearFit fit = linear_fit_from(data_.thinned, scan, causes[i], start);
         LinearFit& of_its_kind = best[i][has_free_form(start.model, causes[i]) ? 1 : 0];
         if (fit.mean_square_mm2 < of_its_kind.mean_square_mm2) of_its_kind = std::move(fit);
@@ -170,7 +165,7 @@ class SelectorUpon {
       return one.second.mean_square_mm2 > hopeless_ratio * found.front().second.mean_square_mm2;
     });
     std::vector<ScoredCandidate> followed(
-        std::min(most_finalists, static_cast<std::size_t>(worse - found.begin())));
+        std::min(limits::finalists, static_cast<std::size_t>(worse - found.begin())));
     parallel_for(followed.size(), data_.threads, [&](std::size_t i) {
       const auto& [cause, fit] = found[i];
       std::vector<Cause> causes = result_.extended.causes;
@@ -306,7 +301,7 @@ class SelectorUpon {
     return result_.chosen.empty() ? 0 : further_share_mm2(result_.extended_losses);
   }
   [[nodiscard]] double further_share_mm2(const BlockLosses& before) const {
-    return std::max(one_more_share * std::pow(result_.base_unexplained.excess_mm, 2),
+    return std::max(limits::form_error_share * std::pow(result_.base_unexplained.excess_mm, 2),
                     most_of_the_rest * beyond_noise_mm2(before));
   }
 
@@ -327,7 +322,7 @@ class SelectorUpon {
     const ScoredCandidate& best = scored.front();
     const auto beats = [&](const BlockLosses& losses) {
       return winning_share(best.losses, losses, options_.seed) >= limits::probability ||
-             mean_log_ratio(losses, best.losses, options_.seed).lower > clearly_ahead;
+             mean_log_ratio(losses, best.losses, options_.seed).lower > limits::form_error_share;
     };
     if (!beats(result_.extended_losses)) return false;
     std::size_t undecided = 0;

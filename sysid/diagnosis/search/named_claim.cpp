@@ -8,11 +8,11 @@
 
 #include "model/catalogue.h"
 #include "sysid/evidence/comparison.h"
-#include "sysid/evidence/limits.h"
 #include "sysid/evidence/signature.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/uncertainty.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -109,8 +109,8 @@ Veto veto_of(const std::vector<Record>& records, const Cause& cause, const Struc
              const StructureFit& without, const LeftOutLosses& left_out, std::uint64_t seed) {
   Claim claim;
   const std::vector<bool> required = required_readings(records, cause.appears, without);
-  claim.condition_met =
-      static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) >= limits::fewest_bins;
+  claim.condition_met = static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) >=
+                        limits::fewest_occurrences;
   if (!claim.condition_met) return veto_of(claim);
   claim_size(claim, records, cause, with);
   claim.error_without = std::sqrt(without.mean_square_mm2);

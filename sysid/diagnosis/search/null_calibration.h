@@ -9,14 +9,12 @@
 #include "sysid/diagnosis/search/fit.h"
 #include "sysid/diagnosis/search/holdout.h"
 #include "sysid/diagnosis/search/search.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 
-/// Significance level. An error reduction is significant if its probability in data without a cause is at
-/// most this value.
-inline constexpr double null_level = 0.05;
-/// With fewer campaigns than this number, the p-value cannot be as small as `null_level`.
-inline constexpr std::size_t enough_nulls = 19;
+/// With fewer campaigns than this number, the p-value cannot be as small as 1 - limits::probability.
+inline constexpr std::size_t enough_nulls = limits::fewest_events - 1;
 
 /// Result of the search on simulated campaigns without a cause. The refitted model generates these campaigns.
 struct NullCalibration {
@@ -29,7 +27,9 @@ struct NullCalibration {
 
   /// Returns true if the measured error reduction is not significant, because the search often reaches it in
   /// data without a cause.
-  [[nodiscard]] bool reach_the_gain() const { return campaigns >= enough_nulls && p_value > null_level; }
+  [[nodiscard]] bool reach_the_gain() const {
+    return campaigns >= enough_nulls && p_value > 1 - limits::probability;
+  }
 };
 
 struct NullOptions {

@@ -52,9 +52,6 @@ class Scan {
   Eigen::VectorXd left_;      ///< part of `residual_` that the parameters of the structure cannot absorb
 };
 
-/// At least this number of start points is tested for each cause.
-inline constexpr std::size_t fewest_starts = 2;
-
 /// Returns the best start points of a cause in order. The start points of its free form come last. The best
 /// start point of every form is included, because a form with more parameters always reaches a smaller mean
 /// square in the scan. The best start point of every scan is included too. A base structure that has absorbed

@@ -6,17 +6,10 @@
 
 #include "base/statistics.h"
 #include "sysid/diagnosis/causes/indistinguishable.h"
-#include "sysid/evidence/limits.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
-namespace {
-
-/// A candidate is an alternative only if its mean square error is close to the mean square error of the best
-/// candidate. The difference may be at most this share of the reduction by the best candidate. This also
-/// applies if the blocks show no significant difference.
-constexpr double alternative_share = 0.05;
-
-}  // namespace
+namespace {}  // namespace
 
 bool is_free_form(const ScoredCandidate& scored) {
   return has_free_form(scored.candidate.fit->point.model, scored.candidate.cause);
@@ -51,7 +44,7 @@ ChosenCause weigh(const Cause& cause, const ChosenBetween& between,
     const bool stops = s.candidate.cause.is_stop && cause.is_stop;
     const double negligible = (stops ? 0.02 : 0.002) * between.noise_mm * between.noise_mm;
     if (behind.value <= std::max(behind.standard_error, negligible) &&
-        behind.value <= std::max(alternative_share * gained, negligible)) {
+        behind.value <= std::max(limits::form_error_share * gained, negligible)) {
       chosen.alternatives.push_back(s.candidate.cause);
     }
   }

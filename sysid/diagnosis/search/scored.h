@@ -10,12 +10,6 @@
 
 namespace softgrip::sysid {
 
-/// Smallest share of the excess mean square that a further cause must remove. The excess mean square is that
-/// of the model without causes. A smaller reduction can be due to the inexact form of the first cause. If a
-/// finger softens, ages or bends by a law that is not in the catalogue, the first cause leaves up to a few
-/// percent. Any second block can absorb part of this error.
-inline constexpr double one_more_share = 0.05;
-
 struct ScoredCandidate {
   Candidate candidate;
   BlockLosses losses;  ///< losses on held-out blocks; empty: the fit was much worse than the best fit

@@ -9,17 +9,12 @@
 #include "base/parallel.h"
 #include "model/catalogue.h"
 #include "sysid/diagnosis/search/scan.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/resampled_record.h"
 
 namespace softgrip::sysid {
 namespace {
 
-/// Sample interval of the records for all fits except the final fit [s]. A valve lag must be longer than this
-/// interval. A resonance above half the sampling rate remains visible, because prediction and readings are
-/// thinned in the same way.
-constexpr double look_interval_s = 0.02;
-/// Sample interval of the records from which causes are preselected [s].
-constexpr double glance_interval_s = 0.04;
 /// Effort of the coarse fits, which start at every start point. A medium fit continues a coarse fit that may
 /// become the best candidate or an alternative.
 constexpr FitEffort coarse_fit{.most_iterations = 8, .tolerance = 1e-5};
@@ -29,14 +24,10 @@ constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
 constexpr std::size_t always_looked_at = 7;
 constexpr double worth_a_look = 1.5;
 constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
-/// Number of medium fits per cause that are continued by a full fit.
-constexpr std::size_t followed = 2;
 /// A form with more parameters is preferred if it reduces the mean square by at least this share.
 constexpr double more_numbers_gain = 0.02;
-/// Numbers of candidates that always get a full fit: always_followed on thinned records, always_finished on
-/// all samples. Each further candidate gets a full fit if its mean square is below near_enough or
-/// next_to_best times the smallest one.
-constexpr std::size_t always_followed = 5;
+/// Number of candidates that always get a full fit on all samples. Each further candidate gets a full fit if
+/// its mean square is below near_enough or next_to_best times the smallest one.
 constexpr double near_enough = 1.4;
 constexpr std::size_t always_finished = 4;
 constexpr double next_to_best = 1.05;
@@ -65,7 +56,7 @@ std::vector<StructureFit> coarse_fits(const SearchData& data, const StructureFit
   std::vector<Cause> causes = current.causes;
   causes.push_back(cause);
   std::vector<StructureFit> fits;
-  for (const FitPoint& start : best_starts(scans, cause, data.scales, fewest_starts)) {
+  for (const FitPoint& start : best_starts(scans, cause, data.scales, limits::followed_starts)) {
     fits.push_back(fit_structure(data.glimpsed, causes, start, coarse_fit));
   }
   sort_and_keep(fits, fits.size());
@@ -78,7 +69,7 @@ std::vector<StructureFit> looks(const SearchData& data, const std::vector<Struct
   fits.reserve(from.size());
   for (const StructureFit& fit : from)
     fits.push_back(fit_structure(data.thinned, fit.causes, fit.point, look));
-  sort_and_keep(fits, followed);
+  sort_and_keep(fits, limits::followed_starts);
   return fits;
 }
 
@@ -172,7 +163,7 @@ class CandidateFitter {
     const double best = best_of(order.front());
     parallel_for(order.size(), data_.threads, [&](std::size_t rank) {
       const std::size_t i = order[rank];
-      if (i != leader_ && (rank < always_followed || best_of(i) < near_enough * best))
+      if (i != leader_ && (rank < limits::finalists || best_of(i) < near_enough * best))
         fits_[i] = {follow(data_, fits_[i])};
     });
   }
@@ -220,8 +211,8 @@ SearchData make_search_data(std::vector<Record> records, const model::Model& giv
   data.given = {given, rest_starts(given, data.records)};
   data.scales = scales_of(data.records);
   for (const Record& record : data.records) {
-    data.thinned.push_back(thinned_to(record, look_interval_s));
-    data.glimpsed.push_back(thinned_to(record, glance_interval_s));
+    data.thinned.push_back(thinned_to(record, limits::search_interval_s));
+    data.glimpsed.push_back(thinned_to(record, 2 * limits::search_interval_s));
   }
   return data;
 }

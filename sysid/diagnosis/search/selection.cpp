@@ -10,20 +10,13 @@
 #include "base/statistics.h"
 #include "sysid/diagnosis/search/named_claim.h"
 #include "sysid/diagnosis/search/scored.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
 
 /// Number of candidates whose held-out losses are computed by refits.
 constexpr std::size_t finalists = 4;
-/// Limits for a further cause with a small effect. It must remove at least `small_share` of the excess mean
-/// square of the base structure. It must leave at most `left_by_a_small_one` of the unexplained mean square
-/// before. A cause that only compensates for the inexact form of another cause leaves more than this.
-constexpr double small_share = 0.01;
-constexpr double left_by_a_small_one = 0.1;
-/// Largest ratio of two mean squares: that of the best further cause, and that of another explanation. Above
-/// this ratio, the other candidates for a further cause are not fitted.
-constexpr double near_the_other = 1.25;
 /// A mean square below this multiple of the squared noise counts as explained.
 constexpr double near_the_noise = 2;
 
@@ -86,7 +79,7 @@ class Selector {
       if (!scored[i].candidate.fit) return;
       scored[i].losses = held_out_losses(data_.records, division_, *scored[i].candidate.fit);
     });
-    const double handicap = one_more_share * mean_square_excess(current);
+    const double handicap = limits::form_error_share * mean_square_excess(current);
     const auto held_out = [&](const Scored& s) {
       if (s.losses.empty()) return std::numeric_limits<double>::infinity();
       return square(rmse_mm(s.losses)) + (is_free_form(s) ? handicap : 0);
@@ -101,22 +94,25 @@ class Selector {
   bool is_far_behind(double best_mm2) {
     if (best_mm2 <= near_the_noise * square(noise_)) return false;
     if (!to_beat_mm2_) to_beat_mm2_ = options_.to_beat_mm2();
-    return best_mm2 > near_the_other * *to_beat_mm2_;
+    return best_mm2 > limits::comparable_ratio * *to_beat_mm2_;
   }
 
-  /// Returns true if the reduction of the losses from `before` to `after` is significant and large enough.
+  /// Returns true if the reduction of the losses from `before` to `after` is significant and large enough. A
+  /// further cause with a small effect must leave little of the unexplained mean square before it. A cause
+  /// that only compensates for the inexact form of another cause leaves more.
   /// @param without, with  structures to which `before` and `after` belong.
   [[nodiscard]] bool is_gain(const BlockLosses& before, const BlockLosses& after, const StructureFit& without,
                              const StructureFit& with) const {
     const Spread difference = mean_difference(before, after, options_.seed);
-    double worth = 0.01 * noise_ * noise_;
+    double worth = limits::negligible_share * square(noise_);
     if (!without.causes.empty()) {
       const double was = mean_square_excess(without), left = mean_square_excess(with);
-      const double share = left > left_by_a_small_one * was ? one_more_share : small_share;
+      const double share =
+          left > limits::equal_error_share * was ? limits::form_error_share : limits::negligible_share;
       worth = std::max(worth, share * square(result_.base_unexplained.excess_mm));
     }
     return difference.lower > 0 && difference.value > worth &&
-           difference.value > 0.02 * rmse_mm(before) * rmse_mm(before) * 0.5;
+           difference.value > limits::negligible_share * square(rmse_mm(before));
   }
 
   [[nodiscard]] double mean_square_excess(const StructureFit& fit) const {
@@ -219,7 +215,9 @@ class Selector {
   bool add_confounded() {
     result_.undecided = fit_confounded(data_, result_.extended, division_);
     for (Confounded& one : result_.undecided) {
-      if (!is_missed(result_.extended_losses, one.losses, 0.01 * square(noise_), options_.seed)) continue;
+      if (!is_missed(result_.extended_losses, one.losses, limits::negligible_share * square(noise_),
+                     options_.seed))
+        continue;
       stand(std::move(one.fit), std::move(one.losses));
       return true;
     }

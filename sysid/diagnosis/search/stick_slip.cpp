@@ -12,6 +12,7 @@
 #include "sysid/diagnosis/causes/cause.h"
 #include "sysid/diagnosis/search/jump_tracking.h"
 #include "sysid/identification/uncertainty.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -92,7 +93,7 @@ double mean(std::span<const double> values) {
 /// jump that is detected one sample late has a wrong distance.
 void measure_band(std::span<const double> distances, StickSlip& found) {
   found.jumps = distances.size();
-  if (distances.size() < fewest_jumps) return;
+  if (distances.size() < limits::fewest_events) return;
   const std::size_t cut = distances.size() / 20;
   const auto kept = distances.subspan(cut, distances.size() - 2 * cut);
   found.band_kpa = mean(kept);
@@ -120,7 +121,8 @@ std::optional<StickSlip> stick_slip_from(const std::vector<Record>& records, con
     const ValvePaths paths = track_all(records, found.fit.point, found.band_kpa, resolution_kpa, threads);
     distances = distances_of(paths);
     measure_band(distances, found);
-    if (found.jumps < fewest_jumps || (round >= rounds_of_chance && found.scatter > scatter_of_chance))
+    if (found.jumps < limits::fewest_events ||
+        (round >= rounds_of_chance && found.scatter > scatter_of_chance))
       return std::nullopt;
     found.records = driven(records, paths);
     found.fit = fit_structure(found.records, behind.causes, found.fit.point);

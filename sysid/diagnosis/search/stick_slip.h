@@ -28,8 +28,6 @@ struct StickSlip {
   StructureFit fit;             ///< model behind the valve, fitted to `records`
 };
 
-/// Smallest number of jumps from whose distances a band can be determined.
-inline constexpr std::size_t fewest_jumps = 20;
 /// Largest scatter of the jump distances of a real band: the part that the resolution of the readings does
 /// not explain, and the total scatter.
 inline constexpr double most_scatter = 0.1, most_scatter_in_all = 0.13;
@@ -42,9 +40,9 @@ struct Band {
   Interval ci95_kpa;
 };
 
-/// Returns the dead band of a valve from sorted jump distances, at least fewest_jumps. Wrongly detected jumps
-/// are more often too short than too long, so the band is the mean of the middle half of the distances. The
-/// interval is that of a trimmed mean, from the Winsorised variance (Tukey and McLaughlin, Sankhya A 25,
+/// Returns the dead band of a valve from sorted jump distances, at least fewest_events. Wrongly detected
+/// jumps are more often too short than too long, so the band is the mean of the middle half of the distances.
+/// The interval is that of a trimmed mean, from the Winsorised variance (Tukey and McLaughlin, Sankhya A 25,
 /// 1963).
 [[nodiscard]] Band band_of_jumps(std::span<const double> distances_kpa);
 

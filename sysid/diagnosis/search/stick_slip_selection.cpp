@@ -9,12 +9,10 @@
 #include "sysid/diagnosis/residual/unexplained_limit.h"
 #include "sysid/diagnosis/search/scored.h"
 #include "sysid/diagnosis/search/stick_slip.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
-
-/// Largest unexplained error that a few wrong jumps in a path can cause, as a multiple of the noise.
-constexpr double a_jump_off = 0.5;
 
 /// Returns the cause "dead band" with its smooth form only. This form is the mean of all possible stick-slip
 /// motions.
@@ -75,8 +73,8 @@ class BestStickSlip {
   }
   /// Returns true if the remaining error is so small that at most a few jumps in the path can be wrong.
   [[nodiscard]] bool meets_all() const {
-    return best_ &&
-           unexplained_error_of(best_->fit.residual_mm, noise_mm_).excess_mm < a_jump_off * noise_mm_;
+    return best_ && unexplained_error_of(best_->fit.residual_mm, noise_mm_).excess_mm <
+                        limits::tolerated_noise * noise_mm_;
   }
   [[nodiscard]] const std::optional<StickSlip>& best() const { return best_; }
 

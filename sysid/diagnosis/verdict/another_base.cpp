@@ -11,6 +11,7 @@
 #include "sysid/diagnosis/residual/unexplained_limit.h"
 #include "sysid/diagnosis/search/coherence.h"
 #include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -19,13 +20,6 @@ namespace {
 /// inexact. Softening leaves 0.009 in the test cases of tests/blind. A cause that only imitates a hysteresis
 /// loop of another shape leaves 0.1 (textbook test cases).
 constexpr double left_by_its_own_cause = 0.03;
-/// If another base structure leaves more than this multiple of the noise, a small effect may be missing. If
-/// no effect is missing, the inexact form of a finger model leaves 0.5 to 1 (textbook test cases).
-constexpr double worth_asking = 0.5;
-
-/// Largest ratio of two held-out RMSEs: that of a rejected base structure, and that of the selection on the
-/// given base structure.
-constexpr double about_as_well = 1.1;
 
 }  // namespace
 
@@ -37,7 +31,7 @@ bool may_lack_a_base(const Selection& one_cause, double noise_mm) {
 }
 
 bool another_shape_will_do(const BaseFindings& base, const BlockLosses& selected) {
-  return rmse_mm(base.losses) < about_as_well * rmse_mm(selected) &&
+  return rmse_mm(base.losses) < (1 + limits::equal_error_share) * rmse_mm(selected) &&
          is_among(base.named, *find_cause(causes::HysteresisShape::id)) &&
          !is_among(base.named, *find_cause(causes::AsymmetricHysteresis::id));
 }
@@ -70,7 +64,7 @@ void AnotherBase::go_on(const Selection& selection) {
   const UnexplainedError left = unexplained_error_of(found_->fit.residual_mm, question_.noise_mm);
   if (leaves_too_much(left, selection.base_unexplained, question_.noise_mm)) {
     find_causes_upon(*found_, search, upon_much_left);
-  } else if (left.present && left.excess_mm > worth_asking * question_.noise_mm) {
+  } else if (left.present && left.excess_mm > limits::tolerated_noise * question_.noise_mm) {
     const bool measured = question_.drive == Drive::measured;
     find_causes_upon(*found_, search, measured ? upon_little_left_measured : upon_little_left);
   }

@@ -14,6 +14,7 @@
 #include "sysid/fitting/held_out.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/combinations.h"
+#include "sysid/limits/limits.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_choice.h"
 #include "sysid/structure/structure_fit.h"
@@ -21,9 +22,6 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Largest ratio of two held-out RMSEs: that of a richer base structure, and that of the selection on the
-/// given base structure.
-constexpr double worth_having = 0.9;
 /// Upper limit of the ridge regularisation when causes are added to a richer base structure. As long as a
 /// cause is missing, the choice of the ridge and of the simplest structure is unreliable.
 constexpr double most_ridge = 1e-5;
@@ -31,9 +29,6 @@ constexpr double most_ridge = 1e-5;
 /// squared noise. The increase is 1.9 to 100 for causes that are present with an effect of 2 or 8 times the
 /// noise. It is 0.001 to 0.5 for causes that are not present (60 textbook test cases).
 constexpr double least_missed = 1;
-/// Largest ratio of two held-out RMSEs: that of another base structure with some of the causes, and that of
-/// the given base structure with all of them.
-constexpr double as_good_with_fewer = 1.25;
 /// Number of start points for this fit of the published element. A full search has already fitted the
 /// element, and this fit only checks that its error is not much larger.
 constexpr std::size_t published_starts = 6;
@@ -49,7 +44,7 @@ bool foretells_better(const std::vector<Record>& records, const StructureTrial& 
       records, halves, [&](const std::vector<Record>& rest) { return fit_structure(rest, {}, given).point; });
   const BlockLosses with = held_out_losses(
       records, halves, [&](const std::vector<Record>& rest) { return fit_again(chosen, rest, drive); });
-  return rmse_mm(with) < worth_having * rmse_mm(before);
+  return rmse_mm(with) < (1 - limits::equal_error_share) * rmse_mm(before);
 }
 
 double slowest_branch_s(const model::Model& model) {
@@ -100,7 +95,8 @@ void take_back_confounded(BaseFindings& found, const SearchData& data, const Bas
     rest.model = model::without_block(std::move(rest.model), finding.block_type);
     StructureFit fit = fit_structure(data.records, found.fit.causes, rest, finishing_effort);
     BlockLosses losses = linear_held_out_losses(data.records, question.division, fit);
-    if (is_missed(losses, found.losses, 0.01 * square(question.noise_mm), question.seed)) return false;
+    if (is_missed(losses, found.losses, limits::negligible_share * square(question.noise_mm), question.seed))
+      return false;
     found.fit = std::move(fit);
     found.losses = std::move(losses);
     return true;
@@ -218,7 +214,7 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
   options.seed = question.seed;
   options.threads = question.threads;
   options.progress = question.progress;
-  options.published_yields_below = worth_having;
+  options.published_yields_below = 1 - limits::equal_error_share;
   options.starts = published_starts;
   // An effect that no structure contains may increase the errors of all structures. Therefore the search is
   // repeated with modified readings: the causes found so far, or a drift, are subtracted.
@@ -257,7 +253,9 @@ bool has_lower_loss(const BaseFindings& found, const Selection& plain, double no
   // only slightly lower gives more information, because its components are named.
   const bool says_more = !plain_explains && !plain.extended.causes.empty() && !found.named.empty();
   const bool needs_fewer = plain.left.excess_mm > noise_mm && has_some_of(found, plain);
-  const double at_most = needs_fewer ? as_good_with_fewer : says_more ? 1 : worth_having;
+  const double at_most = needs_fewer ? limits::comparable_ratio
+                         : says_more ? 1
+                                     : 1 - limits::equal_error_share;
   if (rmse_mm(found.losses) < at_most * rmse_mm(plain.extended_losses)) return true;
   return beta_over_gain(plain.extended.point.model) > 1 &&
          found.fit.mean_square_mm2 < plain.extended.mean_square_mm2;

@@ -23,8 +23,8 @@ struct BaseFindings {
   bool off_grid = false;  ///< true: `fit` was fitted to the original readings with free time constants
   std::string description;
   BlockLosses losses;                ///< losses of `fit` on the held-out blocks of the diagnosis
-  std::vector<NamedCause> named;     ///< causes whose inclusion frequency is at least full_inclusion
-  std::vector<NamedCause> possible;  ///< causes whose inclusion frequency is below full_inclusion
+  std::vector<NamedCause> named;     ///< causes whose inclusion frequency is at least limits::probability
+  std::vector<NamedCause> possible;  ///< causes whose inclusion frequency is below limits::probability
 };
 
 struct BaseQuestion {

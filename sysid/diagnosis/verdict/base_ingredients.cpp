@@ -28,14 +28,12 @@
 #include "sysid/diagnosis/causes/valve_lag.h"
 #include "sysid/diagnosis/search/slack.h"
 #include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/limits/limits.h"
 #include "sysid/structure/published_element.h"
 
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest error reduction by a component, as a share of the mean square above the noise that the refitted
-/// given model leaves.
-constexpr double least_share = 0.01;
 /// A held-out fold counts as diverged if its RMSE exceeds this multiple of the RMSE of the fit.
 constexpr double ran_off_above = 3;
 
@@ -166,7 +164,7 @@ std::vector<Ingredient> named_ingredients() {
 
 void name_ingredients(BaseFindings& found, const std::vector<WithoutIngredient>& ablation,
                       const BaseSearch& search) {
-  const double least_mm2 = least_share * left_by_the_given_mm2(search);
+  const double least_mm2 = limits::negligible_share * left_by_the_given_mm2(search);
   const Labeller labeller(search.data, found.chosen, found.fit.point, search.question);
   for (const FindingName& finding : names) {
     const StructureTrial* const without = trial_without(ablation, finding.ingredient);
@@ -174,10 +172,10 @@ void name_ingredients(BaseFindings& found, const std::vector<WithoutIngredient>&
     NamedCause named = labeller.name(finding, *without);
     if (named.gain_mm2.value < least_mm2) continue;
     if (is_among(found.named, named.cause) || is_among(found.possible, named.cause)) continue;
-    (named.inclusion >= full_inclusion ? found.named : found.possible).push_back(std::move(named));
+    (named.inclusion >= limits::probability ? found.named : found.possible).push_back(std::move(named));
   }
   auto latency = latency_of(ablation, labeller, found);
-  if (!latency || latency->gain_mm2.value < least_mm2 || latency->inclusion < full_inclusion) return;
+  if (!latency || latency->gain_mm2.value < least_mm2 || latency->inclusion < limits::probability) return;
   std::erase_if(found.possible, [&](const NamedCause& one) {
     return one.cause == latency->cause ||
            std::find(latency->alternatives.begin(), latency->alternatives.end(), one.cause) !=

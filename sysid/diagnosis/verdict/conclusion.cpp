@@ -17,6 +17,7 @@
 #include "sysid/diagnosis/verdict/mixed_intervals.h"
 #include "sysid/diagnosis/verdict/naming.h"
 #include "sysid/diagnosis/verdict/run_errors.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -182,7 +183,8 @@ void Conclusion::conclude(const Selection& selection) {
     d_.verdict = any_alternatives(d_.causes) ? Verdict::ambiguous : Verdict::cause_found;
     return;
   }
-  const bool better = recalibration_gain_.lower > 0 && recalibration_gain_.value > 0.01 * square(d_.noise_mm);
+  const bool better = recalibration_gain_.lower > 0 &&
+                      recalibration_gain_.value > limits::negligible_share * square(d_.noise_mm);
   d_.verdict = better ? Verdict::recalibrate : Verdict::adequate;
 }
 

@@ -19,6 +19,7 @@
 #include "sysid/diagnosis/verdict/untested_causes.h"
 #include "sysid/fitting/start_estimate.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -197,7 +198,7 @@ class Diagnostician {
     StructureFit from_given = fitted_from(data_.given.model);
     if (from_given.mean_square_mm2 < fit.mean_square_mm2) fit = std::move(from_given);
     if (!is_missed(selection.extended_losses, held_out_losses(open, division, fit),
-                   0.01 * square(d_.noise_mm), options_.seed))
+                   limits::negligible_share * square(d_.noise_mm), options_.seed))
       return false;
     // Creep that never settles can compensate for any difference between the logs of two rigs.
     if (inconsistent_among(data_.records, selection.base, fit.mean_square_mm2)) return false;
@@ -215,7 +216,9 @@ class Diagnostician {
     std::optional<LeadFit> shifted = fit_lead(data_, selection, d_.noise_mm);
     if (!shifted) return false;
     const BlockLosses losses = held_out_losses(shifted->records, division, shifted->fit);
-    if (!is_missed(selection.base_losses, losses, 0.01 * square(d_.noise_mm), options_.seed)) return false;
+    if (!is_missed(selection.base_losses, losses, limits::negligible_share * square(d_.noise_mm),
+                   options_.seed))
+      return false;
     conclusion_.drive_is_shifted({d_.as_given_rmse_mm, selection.base_losses, losses});
     use(std::move(shifted->records));
     d_.recalibrated = std::move(shifted->fit);

@@ -4,17 +4,10 @@
 #include <cmath>
 
 #include "model/line_loss.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
-
-/// A leak must reduce the error at least by this share of the reduction by a sensor gain. The share is at
-/// least 0.99 if the cause is a leak or a wrong scale. It is 0.84 if the pressure saturates at 90 % of the
-/// range.
-constexpr double taken_by_a_leak = 0.95;
-/// A leak must explain at least this share of the error that remains without leak and gain. Otherwise most of
-/// this error has another cause.
-constexpr double least_taken = 0.5;
 
 double mean_of(const BlockLosses& losses) {
   const double root = rmse_mm(losses);
@@ -47,7 +40,8 @@ std::optional<LostPressure> find_lost_pressure(const std::vector<Log>& logs, con
   lost.stage = valve.fit(lost.parts, {start}, tolerance, PressureSensorFit::zero);
   lost.losses_kpa2 = valve.held_out_losses(lost.parts, lost.stage, PressureSensorFit::zero);
   const double before = mean_of(lost.without_kpa2), taken = before - mean_of(lost.losses_kpa2);
-  if (taken < least_taken * before || taken < taken_by_a_leak * (before - mean_of(by_scale)))
+  if (taken < limits::majority_share * before ||
+      taken < (1 - limits::form_error_share) * (before - mean_of(by_scale)))
     return std::nullopt;
   lost.highest_kpa = highest_kpa(logs);
   lost.missing_kpa =

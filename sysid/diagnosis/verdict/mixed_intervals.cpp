@@ -4,12 +4,10 @@
 
 #include "sysid/diagnosis/search/holdout.h"
 #include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
-
-/// A structure is excluded if it has the lower loss in less than this share of the bootstrap samples.
-constexpr double least_weight = 0.05;
 
 /// Widens the intervals of a cause where necessary. Returns true if an interval became wider.
 bool widen(NamedCause& named, const std::vector<CauseParameter>& with) {
@@ -31,7 +29,7 @@ std::vector<std::string> mix_intervals(std::vector<NamedCause>& named, const std
                                        const Selection& selection, std::uint64_t seed) {
   std::vector<std::string> sentences;
   for (const Confounded& other : selection.undecided) {
-    if (winning_share(other.losses, selection.extended_losses, seed) < least_weight) continue;
+    if (winning_share(other.losses, selection.extended_losses, seed) < 1 - limits::probability) continue;
     const FitSpace space = structure_space(records, other.fit.point.model, other.fit.causes);
     const UncertainPoint at = uncertain_point(records, other.fit.point, space);
     std::string beside;

@@ -22,10 +22,6 @@ struct CauseParameter {
   [[nodiscard]] bool determined() const { return has_interval && is_determined(ci95, value); }
 };
 
-/// A cause is named if its inclusion frequency is at least this value. Below this value, the cause is only
-/// possible.
-inline constexpr double full_inclusion = 0.95;
-
 struct NamedCause {
   Cause cause;
   std::size_t block_type = 0;  ///< type of the block with which the cause was found

@@ -27,17 +27,13 @@
 #include "sysid/diagnosis/search/holdout.h"
 #include "sysid/diagnosis/verdict/lost_pressure.h"
 #include "sysid/diagnosis/verdict/measured_valve.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/input_smoothing.h"
 #include "sysid/logs/resampled_record.h"
 
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest share of the remaining mean square that a part of the valve model must explain. A regulator is
-/// not exactly a dead time and a lag, and a part can absorb some of the resulting error. In 16 simulated
-/// textbook cases, a part that was not present explained at most 0.12. A part with an effect of twice the
-/// noise explained at least 0.27.
-constexpr double least_part = 0.2;
 /// Smallest share of the remaining mean square that a second time constant must explain. It is a detail of a
 /// lag and is not reported as a cause.
 constexpr double least_detail = 0.02;
@@ -110,7 +106,7 @@ double range_of(const std::vector<Log>& logs, std::vector<double> Log::*column) 
 }
 
 double least_share_of(ValvePart part) {
-  return part == ValvePart::two_ways ? least_detail : least_part;
+  return part == ValvePart::two_ways ? least_detail : limits::least_explained_share;
 }
 
 ValveParts without(ValveParts parts, ValvePart part) {
@@ -134,7 +130,7 @@ struct PartEvidence {
   double share = 0;
 
   [[nodiscard]] bool is_clear(double least) const {
-    return gain_kpa2.lower > 0 && inclusion >= full_inclusion && share >= least;
+    return gain_kpa2.lower > 0 && inclusion >= limits::probability && share >= least;
   }
 };
 
@@ -226,7 +222,8 @@ class Search {
     start.second_s = start.delay_s;
     start.delay_s = 0;
     const ValveStage lagging = valve_.fit(parts, {start});
-    return !evidence(valve_.held_out_losses(parts, lagging), whole_.losses_kpa2).is_clear(least_part);
+    return !evidence(valve_.held_out_losses(parts, lagging), whole_.losses_kpa2)
+                .is_clear(limits::least_explained_share);
   }
 
   void add_lost_pressure(ValveFindings& found, ValveParts kept) const {
@@ -238,7 +235,8 @@ class Search {
     const PartName name = leak_name();
     const PartEvidence of = evidence(lost->without_kpa2, lost->losses_kpa2);
     NamedCause named = named_as(name, of);
-    if (!of.is_clear(least_part) || !moves_the_finger(of) || position_of(question_.given, named.cause))
+    if (!of.is_clear(limits::least_explained_share) || !moves_the_finger(of) ||
+        position_of(question_.given, named.cause))
       return;
     found.stage = lost->stage;
     found.heldout_rmse_kpa = rmse_mm(lost->losses_kpa2);

@@ -1,4 +1,5 @@
 #include "sysid/evidence/tolerance.h"
+#include "sysid/limits/limits.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +8,6 @@
 #include <cmath>
 #include <random>
 #include <vector>
-
-#include "sysid/evidence/limits.h"
 
 namespace softgrip::sysid::tolerance_test {
 namespace {

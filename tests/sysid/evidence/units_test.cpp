@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "sysid/evidence/limits.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/division.h"
 
 namespace softgrip::sysid::units_test {

@@ -11,6 +11,7 @@
 #include "model/named.h"
 #include "sysid/diagnosis/search/jump_tracking.h"
 #include "sysid/fitting/fit_space.h"
+#include "sysid/limits/limits.h"
 #include "tests/sysid/diagnosis/campaign.h"
 
 namespace softgrip::sysid::stick_slip_test {
@@ -69,7 +70,7 @@ TEST(StickSlip, FindsTheBandOfAValveThatSticksAndJumps) {
     EXPECT_NEAR(found->band_kpa, band_kpa, 0.02 * band_kpa);
     EXPECT_LT(found->band_ci95.lower, found->band_kpa);
     EXPECT_LT(found->band_ci95.upper - found->band_ci95.lower, 0.05 * band_kpa);
-    EXPECT_GE(found->jumps, fewest_jumps);
+    EXPECT_GE(found->jumps, limits::fewest_events);
     // With the positions of the valve that the search has found, the residual contains only the noise of the
     // readings.
     EXPECT_LT(std::sqrt(found->fit.mean_square_mm2), 1.2 * noise_mm);
