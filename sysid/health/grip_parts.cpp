@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sysid/limits/limits.h"
+
 namespace softgrip::sysid::health {
 namespace {
 
 constexpr double moving_share = 0.005;
-constexpr double same_command_share = 0.02;
 /// Distance below which a finger counts as clear of the object. Contact is reported some time after the
 /// finger has touched the object, and a released finger leaves it at an unknown displacement. The finger is
 /// therefore clear of the object only if its reading is below the reading at contact by this distance.
@@ -84,7 +85,8 @@ class Walk {
       if (phase_ == Phase::holding && before != Phase::holding) held_kpa_ = log_.pressure_command_kpa[i];
     }
     const double command_kpa = log_.pressure_command_kpa[i];
-    if (phase_ == Phase::holding && std::abs(command_kpa - held_kpa_) > same_command_share * full_kpa_)
+    if (phase_ == Phase::holding &&
+        std::abs(command_kpa - held_kpa_) > limits::constant_command_share * full_kpa_)
       phase_ = Phase::releasing;
     if (phase_ == Phase::releasing &&
         is_away(std::isfinite(touch_mm_) ? log_.displacement_mm[i] : predicted_mm))

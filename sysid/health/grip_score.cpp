@@ -11,6 +11,7 @@
 #include "sysid/fitting/fit_space.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/health/grip_parts.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/record.h"
 
 namespace softgrip::sysid::health {
@@ -36,8 +37,6 @@ constexpr double least_still_s = 0.5;
 constexpr double least_hold_s = 1.0;
 /// The contact indicator is computed from the readings up to this time after contact [s].
 constexpr double touch_window_s = 0.1;
-/// The command counts as constant while it changes by at most this share of full pressure.
-constexpr double still_command_share = 0.02;
 /// Time after the last change of the command that is not evaluated, because the valve is still settling [s].
 constexpr double settling_s = 0.3;
 /// The loop width is computed where the predicted displacement is between these shares of the free stroke.
@@ -166,7 +165,7 @@ Stretch longest_still(const Compared& c, Part part, double full_kpa) {
     std::size_t end = begin;
     while (end < c.log.size() && c.parts.at[end] == part &&
            std::abs(c.log.pressure_command_kpa[end] - c.log.pressure_command_kpa[begin]) <=
-               still_command_share * full_kpa)
+               limits::constant_command_share * full_kpa)
       ++end;
     Stretch found{begin, end};
     while (found.first < end && c.log.time_s[found.first] < c.log.time_s[begin] + settling_s) ++found.first;

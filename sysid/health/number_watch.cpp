@@ -16,9 +16,6 @@ const double sure = std::log(20.0);
 /// Maximum number of a finger's values that are averaged since a change, and before it. The most recent
 /// values are used.
 constexpr std::size_t points_since = 3, points_before = 10;
-/// Smallest number of values from which their correlation is estimated. With fewer values, averaging is
-/// assumed not to reduce the variance.
-constexpr std::size_t least_for_averaging = 15;
 
 const RunningReference* longest(const ControlChart& chart) {
   const RunningReference* best = nullptr;
@@ -242,7 +239,7 @@ double NumberWatch::usual_variance(std::size_t finger) const {
   const RunningReference* const reference = longest(watched_[finger].own);
   const double spread = std::max(least, watched_[finger].widest_spread);
   double averaged = 2;
-  if (reference != nullptr && reference->count() >= least_for_averaging) {
+  if (reference != nullptr && reference->count() >= limits::fewest_for_correlation) {
     const double persistence = reference->persistence();
     averaged = std::min(averaged,
                         (1 + persistence) / (1 - persistence) * (1.0 / points_since + 1.0 / points_before));

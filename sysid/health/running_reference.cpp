@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sysid/limits/limits.h"
+
 namespace softgrip::sysid::health {
 namespace {
 
-/// Smallest number of values from which the persistence (lag-one correlation) is estimated. With fewer
-/// values, an undetected change would increase the estimate.
-constexpr double least_for_persistence = 15;
 /// The estimate of the persistence is reduced by this multiple of its standard error.
 constexpr double surely = 0.5;
 constexpr double most_persistence = 0.95;
@@ -22,7 +21,7 @@ constexpr double slope_significance = 3;
 constexpr double extrapolation_uncertainty = 0.5;
 
 double persistence_of(const SerialSums& sums, double slope) {
-  if (sums.count() < least_for_persistence) return 0;
+  if (sums.count() < static_cast<double>(limits::fewest_for_correlation)) return 0;
   return std::clamp(sums.correlation(slope) - surely / std::sqrt(sums.count()), 0.0, most_persistence);
 }
 

@@ -36,6 +36,10 @@ inline constexpr std::size_t fewest_events = 20;
 /// fulfilled. With fewer occurrences, single noisy samples could decide.
 inline constexpr std::size_t fewest_occurrences = 5;
 
+/// Smallest number of values from which a correlation is estimated. The standard error of a correlation of 15
+/// values is 0.26.
+inline constexpr std::size_t fewest_for_correlation = 15;
+
 // Shares of an error
 
 /// An improvement by this share (of the mean square, of the RMSE or of the noise variance) is negligible,
@@ -72,6 +76,8 @@ inline constexpr double block_s = 5;
 /// A pressure counts as zero if its distance from the lowest pressure is below this share of the pressure
 /// range. The resolution of a valve near zero has about this size.
 inline constexpr double rest_share = 0.05;
+/// A command counts as constant while it changes by at most this share of the full pressure.
+inline constexpr double constant_command_share = 0.02;
 /// Sample interval of the records in a search [s]. The lags of valves and the resonances of fingers are
 /// longer.
 inline constexpr double search_interval_s = 0.02;
