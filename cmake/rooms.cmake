@@ -74,7 +74,7 @@ softgrip_room(sysid/import USES base document model sysid/logs LIBRARIES nlohman
 # These libraries are linked PRIVATE, so that no other room is compiled against them.
 target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio PkgConfig::hdf5 PkgConfig::libzip PkgConfig::pugixml)
 softgrip_room(sysid/pages USES base model model/file sysid/logs)
-softgrip_room(sysid/fitting USES base model sysid/logs LIBRARIES Eigen3::Eigen Ceres::ceres)
+softgrip_room(sysid/fitting USES base model sysid/limits sysid/logs LIBRARIES Eigen3::Eigen Ceres::ceres)
 softgrip_room(sysid/identification
   USES base model model/file sysid/limits sysid/logs sysid/pages sysid/fitting
   LIBRARIES Eigen3::Eigen Ceres::ceres nlohmann_json::nlohmann_json)

@@ -9,11 +9,10 @@
 #include "base/statistics.h"
 #include "sysid/changes/change_search.h"
 #include "sysid/changes/change_size.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
-
-constexpr double quantile = 1.959963984540054;
 
 /// A parameter of an effect, and the step of its numerical derivative.
 struct Place {
@@ -77,7 +76,7 @@ Eigen::MatrixXd covariance_of(const LaterReadings& readings, const Eigen::Matrix
 
 std::optional<Interval> interval(double value, double variance) {
   if (!std::isfinite(variance) || !(variance > 0)) return std::nullopt;
-  const double half = quantile * std::sqrt(variance);
+  const double half = limits::deviate * std::sqrt(variance);
   return Interval{value - half, value + half};
 }
 

@@ -9,7 +9,7 @@
 namespace softgrip::sysid {
 
 Comparison compare(const PairedLosses& losses, double tolerance, std::uint64_t seed) {
-  constexpr auto draws = static_cast<std::size_t>(limits::bootstrap_draws);
+  constexpr std::size_t draws = limits::bootstrap_draws;
   std::mt19937_64 random(seed);
   std::exponential_distribution<double> weight(1);
   std::vector<double> differences(draws);
@@ -27,7 +27,8 @@ Comparison compare(const PairedLosses& losses, double tolerance, std::uint64_t s
   const auto at = [&](double share) {
     return differences[static_cast<std::size_t>(share * static_cast<double>(draws - 1))];
   };
-  return {static_cast<double>(wins) / static_cast<double>(draws), at(0.025), at(0.975)};
+  return {static_cast<double>(wins) / static_cast<double>(draws), at((1 - limits::probability) / 2),
+          at((1 + limits::probability) / 2)};
 }
 
 bool is_better(const Comparison& comparison) {

@@ -5,10 +5,12 @@
 #include <numeric>
 #include <random>
 
+#include "sysid/limits/limits.h"
+
 namespace softgrip::sysid {
 namespace {
 
-constexpr std::size_t draws = 1000;
+constexpr std::size_t draws = limits::bootstrap_draws;
 
 Spread spread_of(std::size_t blocks, std::uint64_t seed, const BlockStatistic& statistic) {
   std::vector<std::size_t> indices(blocks);
@@ -21,8 +23,8 @@ Spread spread_of(std::size_t blocks, std::uint64_t seed, const BlockStatistic& s
   for (const double value : values) square += (value - mean) * (value - mean);
   spread.standard_error = std::sqrt(square / draws);
   std::sort(values.begin(), values.end());
-  spread.lower = values[static_cast<std::size_t>(0.025 * draws)];
-  spread.upper = values[static_cast<std::size_t>(0.975 * draws)];
+  spread.lower = values[static_cast<std::size_t>((1 - limits::probability) / 2 * draws)];
+  spread.upper = values[static_cast<std::size_t>((1 + limits::probability) / 2 * draws)];
   return spread;
 }
 
@@ -99,16 +101,15 @@ LossDifference loss_difference(const BlockLosses& worse, const BlockLosses& bett
 }
 
 bool is_clearly_less(const BlockLosses& better, const BlockLosses& worse) {
-  constexpr double clearly = 2;  // threshold of a clear difference, in standard errors
   const LossDifference plain = loss_difference(worse, better);
   if (!(plain.mean_mm2 > 0)) return false;
-  if (plain.mean_mm2 > clearly * plain.standard_error_mm2) return true;
+  if (plain.mean_mm2 > limits::deviate * plain.standard_error_mm2) return true;
   const auto logarithms = [](BlockLosses losses) {
     for (double& loss : losses) loss = std::log(std::max(loss, 1e-300));
     return losses;
   };
   const LossDifference by_ratio = loss_difference(logarithms(worse), logarithms(better));
-  return by_ratio.mean_mm2 > clearly * by_ratio.standard_error_mm2;
+  return by_ratio.mean_mm2 > limits::deviate * by_ratio.standard_error_mm2;
 }
 
 }  // namespace softgrip::sysid

@@ -56,7 +56,7 @@ struct LossDifference {
   double standard_error_mm2 = 0;
 };
 [[nodiscard]] LossDifference loss_difference(const BlockLosses& worse, const BlockLosses& better);
-/// Returns true if the mean loss of `better` is lower and the difference exceeds twice its standard error. It
+/// Returns true if the mean loss of `better` is lower and the 95 % interval of the difference is above 0. It
 /// is sufficient if this holds for the losses or for their logarithms. With logarithms, a block that is
 /// difficult for both models does not outweigh the other blocks.
 [[nodiscard]] bool is_clearly_less(const BlockLosses& better, const BlockLosses& worse);

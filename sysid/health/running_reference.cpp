@@ -15,7 +15,6 @@ constexpr double most_persistence = 0.95;
 /// at least this standard deviation.
 constexpr double least_for_slope = 6;
 constexpr double least_temperature_spread_c = 0.3;
-constexpr double slope_significance = 3;
 /// Relative standard deviation of the part of the line that is extrapolated beyond the temperatures of the
 /// earlier values.
 constexpr double extrapolation_uncertainty = 0.5;
@@ -105,7 +104,7 @@ std::optional<TemperatureSlope> RunningReference::found_slope() const {
   const double persistence = persistence_of(warm_, per_c);
   const double error =
       std::sqrt(warm_.left(per_c) / (n - 2) / squares * (1 + persistence) / (1 - persistence));
-  if (per_c == 0 || std::abs(normal_of_t(per_c / error, n - 2)) < slope_significance) return std::nullopt;
+  if (per_c == 0 || std::abs(normal_of_t(per_c / error, n - 2)) < limits::strict_deviate) return std::nullopt;
   return TemperatureSlope{per_c, error, lowest_c_, highest_c_, warm_.mean_x(), warm_.mean_y()};
 }
 

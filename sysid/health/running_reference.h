@@ -9,8 +9,8 @@
 // distribution, as residuals from a mean do. The standard deviation includes the uncertainty of the slope. A
 // value at a temperature far from all earlier temperatures therefore has little weight. Outside the range of
 // the earlier temperatures, no value confirms the line. Half of the extrapolated part of the line is
-// therefore taken as its standard deviation. A slope is used only if it differs from zero by at least 3
-// standard errors, because a smaller slope may be chance.
+// therefore taken as its standard deviation. A slope is used only if its probability in values without a
+// slope is below 0.2 %.
 
 #include <cstddef>
 #include <limits>

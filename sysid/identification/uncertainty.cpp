@@ -11,6 +11,7 @@
 #include "base/statistics.h"
 #include "sysid/fitting/bounded_solve.h"
 #include "sysid/fitting/jacobian.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -138,7 +139,7 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
                 std::vector<bool>(z.size()),
                 std::vector<bool>(z.size()),
                 {},
-                1.96,
+                limits::deviate,
                 {}};
   Jacobian jacobian(static_cast<Index>(rows), n);
   std::vector<double> r(rows);

@@ -13,6 +13,7 @@
 #include "sysid/fitting/fit_space.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/identification/noise_model.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 
@@ -31,7 +32,8 @@ struct Uncertainty {
   std::vector<bool> at_bound;
   std::vector<bool> without_effect;
   NoiseModel noise;
-  double quantile = 1.96;  ///< 95 % quantile of Student's t distribution for the effective number of samples
+  double quantile =
+      limits::deviate;  ///< 95 % quantile of Student's t distribution for the effective number of samples
   std::vector<LooseDirection> loose;
 };
 

@@ -12,6 +12,8 @@ namespace softgrip::sysid::limits {
 inline constexpr double probability = 0.95;
 /// Confidence level of a decision that is made without a comparison of hypotheses: 1 error in 1000 decisions.
 inline constexpr double strict_probability = 0.999;
+/// Half the width of an interval at the level `probability`, in standard errors (normal distribution).
+inline constexpr double deviate = 1.96;
 /// Value that a standard normal variable exceeds with the probability 1 - strict_probability.
 inline constexpr double strict_deviate = 3.09;
 /// Natural logarithm of a likelihood ratio of 1000.
@@ -19,8 +21,8 @@ inline constexpr double strict_log_likelihood = 6.9;
 
 // Numbers of evaluations
 
-/// Number of bootstrap samples. With 500 samples, the standard error of a share of 0.95 is 1 %.
-inline constexpr int bootstrap_draws = 500;
+/// Number of bootstrap samples. With 1000 samples, the standard error of a share of 0.95 is 0.7 %.
+inline constexpr std::size_t bootstrap_draws = 1000;
 /// Largest number of units (sysid/evidence/units.h). Each unit is left out of one fit. If there are more runs
 /// than this number, a unit contains several runs.
 inline constexpr std::size_t most_units = 6;

@@ -19,11 +19,8 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_samples = 12000;
 constexpr std::size_t most_bins = 10;
-constexpr std::size_t draws = 1999;
-/// Smallest length of a block, in correlation times of the residual and in seconds, and smallest number of
-/// blocks.
+/// Smallest length of a block in correlation times of the residual, and smallest number of blocks.
 constexpr double memories_per_block = 8;
-constexpr double shortest_block_s = 4;
 constexpr std::size_t fewest_blocks = 12;
 
 /// Returns the correlation time of the coloured part of the residual: the integral of the autocorrelation
@@ -194,11 +191,11 @@ double sign_flip_p(const Sums& s, std::uint64_t seed) {
   const double observed = between(s, counts, sign, scratch);
   std::mt19937_64 random(seed);
   std::size_t as_large = 0;
-  for (std::size_t d = 0; d < draws; ++d) {
+  for (std::size_t d = 0; d < limits::bootstrap_draws; ++d) {
     for (double& one : sign) one = (random() & 1U) != 0 ? 1.0 : -1.0;
     if (between(s, counts, sign, scratch) >= observed * (1 - 1e-12)) ++as_large;
   }
-  return static_cast<double>(as_large + 1) / static_cast<double>(draws + 1);
+  return static_cast<double>(as_large + 1) / static_cast<double>(limits::bootstrap_draws + 1);
 }
 
 /// Returns the amount by which the bin means predict the residual better than the overall mean [sum of
@@ -335,7 +332,7 @@ ResidualEvidence examine_residual(const std::vector<Record>& records,
   evidence.rms_mm = std::sqrt(mean_square);
   evidence.structure_mm = std::sqrt(std::max(0.0, mean_square - square(noise_mm)));
   evidence.memory_s = memory_s(samples, residual, length_s / n);
-  evidence.block_s = std::min(std::max(shortest_block_s, memories_per_block * evidence.memory_s),
+  evidence.block_s = std::min(std::max(limits::block_s, memories_per_block * evidence.memory_s),
                               length_s / static_cast<double>(fewest_blocks));
   const std::vector<std::size_t> block = blocks_of(samples, evidence.block_s, evidence.blocks);
   const bool present = variance > square(noise_mm) * (1 + limits::negligible_share);

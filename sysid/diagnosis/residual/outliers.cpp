@@ -99,7 +99,7 @@ void weigh(OutlierEvidence& evidence, double noise_mm) {
   evidence.share = count / all;
   evidence.size_mm = std::sqrt(square / count);
   evidence.excess_mm = std::sqrt(square / all);
-  const double z = 1.96;
+  constexpr double z = limits::deviate;
   const double middle = (evidence.share + z * z / (2 * all)) / (1 + z * z / all);
   const double half = z / (1 + z * z / all) *
                       std::sqrt(evidence.share * (1 - evidence.share) / all + z * z / (4 * all * all));

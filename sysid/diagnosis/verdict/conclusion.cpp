@@ -20,11 +20,6 @@
 #include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
-namespace {
-
-constexpr double clearly_correlated = 0.05;
-
-}  // namespace
 
 void Conclusion::count_shift(const BlockLosses& extended) {
   if (!d_.lead) return;
@@ -149,7 +144,7 @@ void Conclusion::name(const Selection& selection) {
 }
 
 bool Conclusion::left_by_outliers(const UnexplainedError& structure) const {
-  return d_.outliers.present && structure.slow_correlation <= clearly_correlated &&
+  return d_.outliers.present && structure.slow_correlation <= limits::form_error_share &&
          structure.excess_mm < d_.noise_mm;
 }
 

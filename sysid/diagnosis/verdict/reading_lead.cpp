@@ -6,6 +6,7 @@
 
 #include "base/statistics.h"
 #include "sysid/diagnosis/causes/clock_offset.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -56,7 +57,7 @@ class LeadSearch {
     for (const Record& record : best.records) readings += static_cast<double>(record.readings);
     const double rise_mm2 = beside_mm2 - least_mm2;
     const double deviation_s = rise_mm2 > 0 ? step_s * std::sqrt(least_mm2 / (readings * rise_mm2)) : lead_s;
-    return {lead_s - 1.96 * deviation_s, lead_s + 1.96 * deviation_s};
+    return {lead_s - limits::deviate * deviation_s, lead_s + limits::deviate * deviation_s};
   }
 
   const SearchData& data_;

@@ -280,7 +280,7 @@ class Search {
     std::vector<CauseParameter> parameters;
     for (std::size_t i = 0; i < name.numbers.size(); ++i) {
       const Number& number = name.numbers[i];
-      const double value = stage.*number.value, half = 1.96 * errors[static_cast<Eigen::Index>(i)];
+      const double value = stage.*number.value, half = limits::deviate * errors[static_cast<Eigen::Index>(i)];
       parameters.push_back({std::string(number.name),
                             std::string(number.unit),
                             value,

@@ -5,6 +5,7 @@
 #include "model/catalogue.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -63,8 +64,7 @@ std::string stick_slip_sentence(const Diagnosis& d, const std::string& before, c
 /// response to fit equally well.
 std::string with_them(const Diagnosis& d, const std::string& before, const std::string& after) {
   const std::string them = d.causes.size() > 1 ? "them" : "it";
-  constexpr double next_to_nothing = 0.02;
-  if (d.extended_rmse_mm < (1 - next_to_nothing) * d.recalibrated_rmse_mm)
+  if (d.extended_rmse_mm < (1 - limits::negligible_share) * d.recalibrated_rmse_mm)
     return ": with " + them + " the held-out error falls from " + before + " to " + after;
   return ": without " + them +
          " the model fits these logs only with an inverse response, which no finger has; the held-out error "
