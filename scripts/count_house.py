@@ -16,6 +16,11 @@ import subprocess
 
 SMALL, LARGE = 40, 400
 DIAGNOSE = "tools/commands/diagnose.cpp"
+LIMITS = "sysid/limits/limits.h"
+# A named constant of the diagnosis: `constexpr`, a number type, a name, and a value with a digit. Constants that are
+# computed from LIMITS, and the folders that only read, write or draw, are not counted.
+CONSTANT = (r"constexpr (?:double|float|int|unsigned|long|auto|std::size_t|std::u?int\d+_t|Eigen::Index) (\w+ = [^;{(]*\d[^;]*)(?=;)")
+NO_DECISIONS = ("sysid/import", "sysid/logs", "sysid/pages", "sysid/recordings", "sysid/instrument", "sysid/diagnosis/report")
 # Folders whose files may contain the id of a block.
 AT_HOME = ("model/", "sysid/diagnosis/causes/")
 
@@ -69,6 +74,14 @@ def block_names(sources):
                   for one in re.findall(r'"(\w+)"', re.sub(r"//.*", "", text)) if one in ids)
 
 
+def constants(sources):
+    """Returns (file, name) for each named constant of the diagnosis."""
+    return [(name, one.split(" = ")[0]) for name, text in sources.items()
+            if name.startswith("sysid/") and folder(name) not in NO_DECISIONS
+            for several in re.findall(CONSTANT, text) if "limits::" not in several
+            for one in several.split(", ") if " = " in one]
+
+
 def reached_from(start, sources, includes):
     """Returns the sources that a program needs: the included headers, and the source file of each header."""
     seen, waiting = set(), [start]
@@ -94,6 +107,7 @@ def count(root):
     floors = {(one.split("/")[0], other.split("/")[0]) for one, other in arrows}
     circles = mutual(arrows)
     names = block_names(sources)
+    numbers = constants(sources)
     diagnose = reached_from(DIAGNOSE, sources, includes)
     small = sorted(name for name in lines if lines[name] < SMALL)
     large = sorted(name for name in lines if lines[name] > LARGE)
@@ -112,6 +126,9 @@ def count(root):
         ("pairs of top folders that include each other", len(mutual({one for one in floors if one[0] != one[1]})), []),
         ("files that contain the name of a block and do not define this block", len({name for name, _ in names}), [f"{name}: {one}" for name, one in names]),
         ("names of blocks in these files", len(names), []),
+        (f"limits of decisions in `{LIMITS}`", sum(name == LIMITS for name, _ in numbers), []),
+        ("named constants of the diagnosis in other files", sum(name != LIMITS for name, _ in numbers),
+         sorted(f"{name}: {one}" for name, one in numbers if name != LIMITS)),
         ("files on which `softgrip diagnose` depends", len(diagnose), []),
         ("folders on which `softgrip diagnose` depends", len(set(map(folder, diagnose))), sorted(set(map(folder, diagnose)))),
     ]
