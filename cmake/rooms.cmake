@@ -104,7 +104,7 @@ softgrip_room(sysid/changes
        sysid/diagnosis/causes
   LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
 softgrip_room(sysid/diagnosis/experiments
-  USES base sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes
+  USES base sysid/limits sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes
        sysid/diagnosis/search sysid/diagnosis/gauge sysid/diagnosis/verdict)
 softgrip_room(sysid/diagnosis/report
   USES base model model/file sysid/logs sysid/pages sysid/fitting sysid/identification sysid/diagnosis/causes

@@ -12,6 +12,7 @@
 #include "sysid/changes/regulator_fit.h"
 #include "sysid/fitting/start_estimate.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/resampled_record.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_fit.h"
@@ -20,10 +21,6 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Shortest bins for a finger [s]: if the input is the measured pressure, and if it is the command. The bins
-/// for the command are shorter, because a valve responds faster than a finger, and because short bins
-/// separate the delay of a finger from its lag.
-constexpr double shortest_finger_bin_s = 0.05, shortest_commanded_bin_s = 0.02;
 /// Order of the autoregression of the residual [bins]. The residual of a displacement has a longer
 /// correlation time than the residual of a pressure. The order for a displacement therefore covers at least
 /// finger_memory_s.
@@ -103,12 +100,13 @@ std::vector<Candidate> candidates(const std::vector<Record>& records, const Base
             {"a regulator", fit_regulator(records, base.largest_kpa, ReadBy::gauge), nothing}};
   const bool command = base.drive == Drive::command;
   const Candidate play = play_candidate(base.drive);
-  std::vector<Candidate> all{play,
-                             {"Bouc-Wen and two creep branches",
-                              {},
-                              [&options, drive = base.drive](const std::vector<Record>& driven) {
-                                return fit_published(driven, drive, 6, options.seed).point;
-                              }}};
+  std::vector<Candidate> all{
+      play,
+      {"Bouc-Wen and two creep branches",
+       {},
+       [&options, drive = base.drive](const std::vector<Record>& driven) {
+         return fit_published(driven, drive, limits::repeated_starts, options.seed).point;
+       }}};
   if (command) {
     const Regulator regulator = fit_regulator(records, base.largest_kpa);
     all.push_back({"a regulator, " + play.description, regulator, play.fit});
@@ -234,7 +232,7 @@ void spread(Base& base) {
 }  // namespace
 
 double finger_bin_s(const std::vector<Record>& records) {
-  return bin_s(records, shortest_finger_bin_s);
+  return bin_s(records, limits::finger_interval_s);
 }
 
 Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double bin_s, unsigned threads) {
@@ -269,7 +267,8 @@ Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive, co
   Base base;
   base.judged = judged;
   base.drive = drive;
-  base.bin_s = bin_s(records, drive == Drive::command ? shortest_commanded_bin_s : shortest_finger_bin_s);
+  base.bin_s =
+      bin_s(records, drive == Drive::command ? limits::search_interval_s : limits::finger_interval_s);
   base.temperature_c = mean_temperature(records);
   for (const Record& record : records) {
     base.largest_kpa = std::max(base.largest_kpa, record.largest_kpa);

@@ -13,6 +13,7 @@
 #include "model/blocks/kelvin_voigt.h"
 #include "model/named.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/each_record.h"
 #include "sysid/logs/resampled_record.h"
 
@@ -23,8 +24,6 @@ constexpr double used_share = 0.05, used_at_least_s = 2, used_at_most_share = 0.
 /// Prior standard deviation of the unsettled creep of a branch, as a share of the settled creep of this
 /// branch over the range of the drive.
 constexpr double unsettled_share = 0.3;
-/// Assumed error of the model, as a share of the predicted motion.
-constexpr double model_tolerance = 0.05;
 /// An initial state at rest is rejected if the residual under this assumption exceeds this number of standard
 /// deviations.
 constexpr double rejected_at = 3;
@@ -249,7 +248,7 @@ class StartSearch {
     const double motion_mm2 = squares / n - square(sum / n);
     const double less_mm2 = resting.left.mean_square_mm2 - moving.left.mean_square_mm2;
     const double by_chance_mm2 = moving.left.mean_square_mm2 / moving.left.independent;
-    return less_mm2 > square(rejected_at) * (by_chance_mm2 + square(model_tolerance) * motion_mm2);
+    return less_mm2 > square(rejected_at) * (by_chance_mm2 + square(limits::form_error_share) * motion_mm2);
   }
 
   static constexpr double smallest_mm2 = 1e-18;

@@ -33,7 +33,6 @@ constexpr double returning_per_s = 0.05;
 constexpr double least_rest_s = 0.1;
 constexpr double least_motion_s = 0.5;
 constexpr double least_return_s = 0.03;
-constexpr double least_still_s = 0.5;
 constexpr double least_hold_s = 1.0;
 /// The contact indicator is computed from the readings up to this time after contact [s].
 constexpr double touch_window_s = 0.1;
@@ -181,7 +180,7 @@ Stretch longest_still(const Compared& c, Part part, double full_kpa) {
 double creep_of(const Compared& c, const FreeFit& fit, double full_kpa) {
   const Stretch still = longest_still(c, Part::free, full_kpa);
   const double nothing = std::numeric_limits<double>::quiet_NaN();
-  if (length_s(c, still) < least_still_s || c.direction[still.first] == 0) return nothing;
+  if (length_s(c, still) < least_motion_s || c.direction[still.first] == 0) return nothing;
   const std::size_t fifth = (still.last - still.first) / 5;
   std::vector<double> early, late;
   for (std::size_t i = still.first; i < still.last; ++i) {

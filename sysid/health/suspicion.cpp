@@ -7,6 +7,7 @@
 #include "sysid/changes/next_steps.h"
 #include "sysid/diagnosis/causes/cause.h"
 #include "sysid/diagnosis/experiments/experiment_advice.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid::health {
 namespace {
@@ -24,7 +25,6 @@ constexpr double unexplained_alarm = 0.75;
 constexpr double lacks_column = 0.05;
 /// A cause is a candidate only if its score is at most this much below the best score.
 constexpr double as_much = 0.1;
-constexpr std::size_t most_suspects = 4;
 
 bool agrees(Moves moves, double change) {
   if (moves == Moves::either_way) return true;
@@ -92,7 +92,8 @@ Suspicion suspicion_of(const FingerHealth& health, const std::vector<SharedChang
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   Suspicion suspicion;
   for (const auto& [worth, id] : found) {
-    if (worth < found.front().first - as_much || suspicion.suspects.size() == most_suspects) break;
+    if (worth < found.front().first - as_much || suspicion.suspects.size() == limits::most_alternatives)
+      break;
     const auto steps = sysid::next_steps(id);
     suspicion.suspects.push_back({std::string(id),
                                   std::string(sysid::plain_words(id)),

@@ -25,9 +25,6 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-/// A search counts as successful if its RMSE exceeds the smallest RMSE of all searches by at most this share.
-constexpr double reached_share = 1e-3;
-
 /// Indices of the fitted parameters in the list of all parameters of the model.
 struct FreeIndices {
   std::vector<std::size_t> flat;
@@ -137,13 +134,7 @@ class Run {
       const Record& record = result_.records[k];
       result_.scores.push_back(score_of(result_.fitted, record, point.starts[k], record.reading_mm));
     }
-    MultiStart& multistart = result_.multistart;
-    multistart.starts = multistart.rmse_mm.size();
-    const double lowest = *std::min_element(multistart.rmse_mm.begin(), multistart.rmse_mm.end());
-    const auto reached =
-        std::count_if(multistart.rmse_mm.begin(), multistart.rmse_mm.end(),
-                      [&](double rmse_mm) { return rmse_mm <= lowest * (1 + reached_share) + 1e-6; });
-    multistart.share_at_best = static_cast<double>(reached) / static_cast<double>(multistart.starts);
+    result_.multistart = multistart_of(std::move(result_.multistart.rmse_mm));
   }
 
   const IdentifyOptions& options_;
@@ -206,6 +197,18 @@ void add_warnings(Identification& result) {
 }
 
 }  // namespace
+
+MultiStart multistart_of(std::vector<double> rmse_mm) {
+  // A search counts as successful if its RMSE exceeds the smallest RMSE of all searches by at most this
+  // share.
+  constexpr double reached_share = 1e-3;
+  const double lowest = *std::min_element(rmse_mm.begin(), rmse_mm.end());
+  const auto reached = std::count_if(rmse_mm.begin(), rmse_mm.end(), [&](double one_mm) {
+    return one_mm <= lowest * (1 + reached_share) + 1e-6;
+  });
+  const auto starts = static_cast<double>(rmse_mm.size());
+  return {rmse_mm.size(), static_cast<double>(reached) / starts, std::move(rmse_mm)};
+}
 
 tl::expected<Identification, std::string> identify(const std::vector<Log>& logs, const model::Model& start,
                                                    const IdentifyOptions& options) {

@@ -42,6 +42,8 @@ struct MultiStart {
   double share_at_best = 0;
   std::vector<double> rmse_mm;  ///< for each start point, the RMSE at the end of its search
 };
+/// Returns the results of searches with these RMSEs [mm], at least one.
+[[nodiscard]] MultiStart multistart_of(std::vector<double> rmse_mm);
 
 struct IdentifyOptions {
   std::vector<std::string> fixed;  ///< paths of the parameters that keep the value of the start model

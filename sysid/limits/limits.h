@@ -31,6 +31,11 @@ inline constexpr std::size_t finalists = 5;
 /// Number of start points from which each candidate is continued. A second start point shows that the first
 /// one led to a local minimum.
 inline constexpr std::size_t followed_starts = 2;
+/// Number of start points of a fit that repeats an earlier search or only gives a rough base. A complete
+/// search uses more start points.
+inline constexpr std::size_t repeated_starts = 6;
+/// Largest number of alternatives that are examined or listed for one cause. A user cannot test more.
+inline constexpr std::size_t most_alternatives = 4;
 /// Smallest number of events (jumps, intervals, samples, simulations) for a test at the level 1 -
 /// probability. One exception in 20 events has this level.
 inline constexpr std::size_t fewest_events = 20;
@@ -83,6 +88,9 @@ inline constexpr double constant_command_share = 0.02;
 /// Sample interval of the records in a search [s]. The lags of valves and the resonances of fingers are
 /// longer.
 inline constexpr double search_interval_s = 0.02;
+/// Sample interval that is sufficient for a finger whose input is its pressure [s]. A finger responds more
+/// slowly than a valve.
+inline constexpr double finger_interval_s = 0.05;
 /// Largest noise of a command that was planned before the run, as a share of its standard deviation. The
 /// noise of such a command is only the rounding in its file. The command of a controller also contains the
 /// noise of the readings.

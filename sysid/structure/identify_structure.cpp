@@ -22,8 +22,6 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-/// A search counts as successful if its RMSE exceeds the smallest RMSE of all searches by at most this share.
-constexpr double reached_share = 1e-3;
 constexpr std::size_t fewest_readings = 100;
 
 StructureEvidence evidence_of(const StructureChoice& choice, const std::vector<WithoutIngredient>& ablation) {
@@ -80,15 +78,6 @@ void add_scores(const StructureTrial& trial, const std::vector<Record>& whole, I
     }
     result.held_out.push_back(score_of(result.fitted, whole[k], start, rest));
   }
-}
-
-MultiStart multistart_of(const StructureTrial& trial) {
-  MultiStart multistart{trial.start_rmse_mm.size(), 0, trial.start_rmse_mm};
-  const double lowest = *std::min_element(multistart.rmse_mm.begin(), multistart.rmse_mm.end());
-  const auto reached = std::count_if(multistart.rmse_mm.begin(), multistart.rmse_mm.end(),
-                                     [&](double r) { return r <= lowest * (1 + reached_share) + 1e-6; });
-  multistart.share_at_best = static_cast<double>(reached) / static_cast<double>(multistart.starts);
-  return multistart;
 }
 
 void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Identification& result) {
@@ -182,7 +171,7 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
   result.model = result.fitted;
   result.rmse_mm = chosen.rmse_mm;
   result.converged = chosen.converged;
-  result.multistart = multistart_of(chosen);
+  result.multistart = multistart_of(chosen.start_rmse_mm);
   add_scores(chosen, whole, result);
   add_estimates(chosen, result);
   add_warnings(result);

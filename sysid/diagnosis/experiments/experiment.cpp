@@ -12,6 +12,7 @@
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
 #include "sysid/diagnosis/search/search.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -19,8 +20,6 @@ namespace {
 /// A larger separation than this value is counted as this value, because the result of the experiment is then
 /// practically certain.
 constexpr double certain_sigma = 40;
-/// Maximum number of alternatives that are tested for each named cause.
-constexpr std::size_t most_alternatives = 4;
 /// Number of waveforms for which nonlinear fits confirm the separation.
 constexpr std::size_t confirmed = 2;
 constexpr double usual_slew_kpa_per_s = 300;
@@ -111,7 +110,7 @@ class Designer {
   void add_contest(const NamedCause& named) {
     std::vector<Cause> alternatives = named.alternatives;
     if (alternatives.empty() && options_.always) alternatives = next_best(named);
-    if (alternatives.size() > most_alternatives) alternatives.resize(most_alternatives);
+    if (alternatives.size() > limits::most_alternatives) alternatives.resize(limits::most_alternatives);
     const std::vector<Cause>& standing = d_.extended.causes;
     const bool stands = std::find(standing.begin(), standing.end(), named.cause) != standing.end();
     if (alternatives.empty() || !stands) return;

@@ -9,6 +9,7 @@
 #include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/resampled_record.h"
 
 namespace softgrip::sysid {
@@ -17,8 +18,6 @@ namespace {
 /// This share of the information on a parameter is added to its diagonal element. The system of equations can
 /// then be solved even if the data contain no information on some combination of parameters.
 constexpr double ridge = 1e-9;
-/// Sample interval of the existing records in a fit together with the new record [s].
-constexpr double thinned_interval_s = 0.05;
 constexpr FitEffort few_iterations{.most_iterations = 10, .tolerance = 1e-6};
 
 /// Whitens the rows `first` to `last` of each column of a matrix with the noise model.
@@ -125,11 +124,11 @@ double Hypothesis::linear_distance(const Record& record, const std::vector<doubl
 
 double Hypothesis::refitted_distance(const Record& record, const std::vector<double>& truth_mm) const {
   std::vector<Record> records;
-  for (const Record& old : records_) records.push_back(thinned_to(old, thinned_interval_s));
+  for (const Record& old : records_) records.push_back(thinned_to(old, limits::finger_interval_s));
   records.push_back(record);
   records.back().reading_mm = truth_mm;
   records.back().readings = truth_mm.size();
-  records.back() = thinned_to(records.back(), thinned_interval_s);
+  records.back() = thinned_to(records.back(), limits::finger_interval_s);
   FitPoint point = fit_.point;
   point.starts.push_back(rest_starts(point.model, {record}).front());
   const StructureFit refitted = fit_structure(records, fit_.causes, point, few_iterations);

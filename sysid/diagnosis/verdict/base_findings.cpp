@@ -29,9 +29,6 @@ constexpr double most_ridge = 1e-5;
 /// squared noise. The increase is 1.9 to 100 for causes that are present with an effect of 2 or 8 times the
 /// noise. It is 0.001 to 0.5 for causes that are not present (60 textbook test cases).
 constexpr double least_missed = 1;
-/// Number of start points for this fit of the published element. A full search has already fitted the
-/// element, and this fit only checks that its error is not much larger.
-constexpr std::size_t published_starts = 6;
 
 /// Returns true if the richer base structure predicts better than the given one. For this test, both
 /// structures are fitted to the first half of each log and predict its second half. Also returns true if the
@@ -215,7 +212,7 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
   options.threads = question.threads;
   options.progress = question.progress;
   options.published_yields_below = 1 - limits::equal_error_share;
-  options.starts = published_starts;
+  options.starts = limits::repeated_starts;
   // An effect that no structure contains may increase the errors of all structures. Therefore the search is
   // repeated with modified readings: the causes found so far, or a drift, are subtracted.
   using Readings = std::vector<Record>;

@@ -32,7 +32,7 @@ constexpr std::size_t fewest_samples = 200;
 tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, const DiagnosisOptions& options) {
   StructureFit best = fit_structure(data.records, {}, data.given);
   IdentifyOptions wide;
-  wide.starts = 6;
+  wide.starts = limits::repeated_starts;
   wide.seed = options.seed;
   wide.threads = options.threads;
   wide.record = options.record;
