@@ -39,7 +39,7 @@ constexpr double touch_window_s = 0.1;
 /// Time after the last change of the command that is not evaluated, because the valve is still settling [s].
 constexpr double settling_s = 0.3;
 /// The loop width is computed where the predicted displacement is between these shares of the free stroke.
-constexpr double loop_lower = 0.15, loop_upper = 0.85;
+constexpr double loop_lower = 0.15, loop_upper = 1 - loop_lower;
 
 /// Samples of a run, and the prediction of the baseline model for each sample.
 struct Compared {

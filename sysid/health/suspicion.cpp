@@ -19,7 +19,7 @@ using sysid::Moves;
 /// Penalties in the score of a cause: one for each of its signs that is missing, and one for each alarm that
 /// the cause does not explain. Each sign that is present adds 1 to the score.
 constexpr double missing_sign = 0.25;
-constexpr double unexplained_alarm = 0.75;
+constexpr double unexplained_alarm = 1 - missing_sign;
 /// Penalty of a cause that can be diagnosed only with an additional column, because recordings of grips may
 /// lack this column.
 constexpr double lacks_column = 0.05;

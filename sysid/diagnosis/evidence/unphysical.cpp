@@ -15,8 +15,6 @@ namespace {
 /// A branch counts as having a stiffness near zero if the motion that it adds exceeds this multiple of the
 /// measured span.
 constexpr double spans_of_a_branch = 3;
-/// The data cannot determine a time constant that exceeds this share of the longest log.
-constexpr double share_of_log = 1.0;
 
 void add_branches(const model::Model& model, const std::vector<Record>& records,
                   std::vector<UnphysicalSign>& signs) {
@@ -36,12 +34,13 @@ void add_branches(const model::Model& model, const std::vector<Record>& records,
                            significant(span_mm, 3) + " " + unit + ".",
                        moved_mm, spans_of_a_branch * span_mm});
     }
-    if (constants_s[b] > share_of_log * longest_s) {
+    // The data cannot determine a time constant that is longer than the longest log.
+    if (constants_s[b] > longest_s) {
       signs.push_back({"creep_beyond_data",
                        "the time constant " + c + "/" + k + " is " + significant(constants_s[b], 3) +
                            " s, longer than the longest log (" + significant(longest_s, 3) +
                            " s), so the branch represents a drift.",
-                       constants_s[b], share_of_log * longest_s});
+                       constants_s[b], longest_s});
     }
   }
 }

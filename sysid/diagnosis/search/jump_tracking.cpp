@@ -17,9 +17,6 @@ namespace {
 
 constexpr std::size_t most_tracks = 40;
 constexpr std::size_t most_jump_targets = 24;
-/// Path hypotheses whose positions differ by less than this multiple of the resolution count as equal, and
-/// only the best of them is continued. The limited number of hypotheses therefore covers different paths.
-constexpr double same_place = 1;
 /// A path is removed if its squared error exceeds that of the best path by more than this multiple of the
 /// squared resolution (converted to mm).
 constexpr double hopeless_resolutions = 4000;
@@ -185,8 +182,10 @@ class JumpTracker {
     for (const std::size_t at : order_) {
       Track& track = next_[at];
       if (tracks_.size() >= most_tracks || track.cost_mm2 > most_mm2) break;
+      // Paths with equal positions continue in the same way, so only the best of them is kept. The limited
+      // number of paths then covers different positions.
       const bool duplicate = std::ranges::any_of(tracks_.span(), [&](const Track& kept) {
-        return std::abs(kept.held_kpa - track.held_kpa) < same_place * resolution_kpa_;
+        return std::abs(kept.held_kpa - track.held_kpa) < resolution_kpa_;
       });
       if (!duplicate) tracks_.take(track);
     }

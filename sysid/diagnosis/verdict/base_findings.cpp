@@ -25,10 +25,6 @@ namespace {
 /// Upper limit of the ridge regularisation when causes are added to a richer base structure. As long as a
 /// cause is missing, the choice of the ridge and of the simplest structure is unreliable.
 constexpr double most_ridge = 1e-5;
-/// A cause is present if its removal increases the held-out mean square by at least this multiple of the
-/// squared noise. The increase is 1.9 to 100 for causes that are present with an effect of 2 or 8 times the
-/// noise. It is 0.001 to 0.5 for causes that are not present (60 textbook test cases).
-constexpr double least_missed = 1;
 
 /// Returns true if the richer base structure predicts better than the given one. For this test, both
 /// structures are fitted to the first half of each log and predict its second half. Also returns true if the
@@ -170,7 +166,8 @@ void drop_what_is_not_missed(StructureFit& with, BlockLosses& losses, std::vecto
   std::erase_if(chosen, [&](const ChosenCause& one) {
     StructureFit rest = fit_without_cause(data.records, with, one.cause);
     BlockLosses without = linear_held_out_losses(data.records, question.division, rest);
-    if (is_missed(without, losses, least_missed * square(question.noise_mm), question.seed)) return false;
+    // A cause is present if its removal increases the held-out mean square by more than the noise variance.
+    if (is_missed(without, losses, square(question.noise_mm), question.seed)) return false;
     with = std::move(rest);
     losses = std::move(without);
     return true;
