@@ -12,6 +12,8 @@ target_sources(softgrip_base PRIVATE ${version_file})
 add_dependencies(softgrip_base softgrip_version_file)
 # Sockets of servers. Every server of the project uses this room.
 softgrip_room(base/net USES base)
+# The results of commands as text, JSON and HTML.
+softgrip_room(base/result)
 softgrip_room(document USES base LIBRARIES yaml-cpp)
 
 # The model of a finger, and its file format.
@@ -73,7 +75,7 @@ softgrip_room(sysid/recordings USES base document sysid/logs LIBRARIES nlohmann_
 softgrip_room(sysid/import USES base document model sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
 # These libraries are linked PRIVATE, so that no other room is compiled against them.
 target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio PkgConfig::hdf5 PkgConfig::libzip PkgConfig::pugixml)
-softgrip_room(sysid/pages USES base model model/file sysid/logs)
+softgrip_room(sysid/pages USES base base/result model model/file sysid/logs)
 softgrip_room(sysid/fitting USES base model sysid/limits sysid/logs LIBRARIES Eigen3::Eigen Ceres::ceres)
 softgrip_room(sysid/identification
   USES base model model/file sysid/limits sysid/logs sysid/pages sysid/fitting

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/numbers.h"
-#include "sysid/pages/markup.h"
+#include "base/result/html.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -21,7 +21,8 @@ std::string place(double x, double y, double width, double height) {
 
 std::string text_at(Pixel at, Anchor anchor, std::string_view text, std::string_view attributes) {
   return "<text x=\"" + fixed(at.x, 1) + "\" y=\"" + fixed(at.y, 1) + "\" text-anchor=\"" +
-         std::string(name_of(anchor)) + '"' + std::string(attributes) + '>' + escaped(text) + "</text>";
+         std::string(name_of(anchor)) + '"' + std::string(attributes) + '>' + result::escaped(text) +
+         "</text>";
 }
 
 }  // namespace

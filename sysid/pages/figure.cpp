@@ -5,8 +5,8 @@
 #include <cstddef>
 
 #include "base/numbers.h"
+#include "base/result/html.h"
 #include "sysid/logs/csv_text.h"
-#include "sysid/pages/markup.h"
 #include "sysid/pages/palette.h"
 
 namespace softgrip::sysid {
@@ -67,7 +67,7 @@ std::string svg(const Figure& figure, std::string_view style) {
   const std::string box = std::to_string(size.width) + ' ' + std::to_string(size.height);
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + box + "\" width=\"" +
          std::to_string(size.width) + "\" height=\"" + std::to_string(size.height) +
-         "\" role=\"img\" aria-label=\"" + escaped(figure.name.empty() ? "chart" : figure.name) +
+         "\" role=\"img\" aria-label=\"" + result::escaped(figure.name.empty() ? "chart" : figure.name) +
          "\" font-family=\"system-ui,sans-serif\" font-size=\"11\">" + std::string(style) +
          "<rect width=\"100%\" height=\"100%\"" + filled(Colour::paper) +
          "/><g fill=\"none\" stroke-linejoin=\"round\">" +

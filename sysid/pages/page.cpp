@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cctype>
 
+#include "base/result/html.h"
 #include "base/version.h"
-#include "sysid/pages/markup.h"
 #include "sysid/pages/palette.h"
 
 namespace softgrip::sysid {
 namespace {
+
+using result::element, result::escaped, result::html_of;
 
 /// Numbers of bytes that must remain free below the size limit of a page. The first applies after a figure is
 /// added. The second applies after a copy of a figure is added that the reader can save.
@@ -62,16 +64,6 @@ std::string uri_of(std::string_view svg) {
   return uri;
 }
 
-std::string element(std::string_view name, std::string_view text) {
-  return '<' + std::string(name) + '>' + escaped(text) + "</" + std::string(name) + ">\n";
-}
-
-std::string html_of(const Terms& entries) {
-  std::string html = "<dl>\n";
-  for (const auto& [term, value] : entries) html += element("dt", term) + element("dd", value);
-  return html + "</dl>\n";
-}
-
 std::string_view class_of(Tone tone) {
   switch (tone) {
     case Tone::good:
@@ -85,32 +77,6 @@ std::string_view class_of(Tone tone) {
 }
 
 }  // namespace
-
-std::string text_of(const Table& table) {
-  // Counts the UTF-8 characters of a text: all bytes except continuation bytes.
-  const auto width_of = [](std::string_view text) {
-    return static_cast<std::size_t>(
-        std::count_if(text.begin(), text.end(), [](char c) { return (c & '\xc0') != '\x80'; }));
-  };
-  std::vector<std::size_t> widths;
-  const auto widen = [&](const std::vector<std::string>& cells) {
-    widths.resize(std::max(widths.size(), cells.size()));
-    for (std::size_t c = 0; c < cells.size(); ++c) widths[c] = std::max(widths[c], width_of(cells[c]));
-  };
-  const auto line = [&](const std::vector<std::string>& cells) {
-    std::string text;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      const std::string room(widths[c] - width_of(cells[c]), ' ');
-      text += "  " + (table.numeric[c] ? room + cells[c] : cells[c] + room);
-    }
-    return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
-  };
-  widen(table.header);
-  for (const std::vector<std::string>& row : table.rows) widen(row);
-  std::string text = table.caption + "\n" + line(table.header);
-  for (const std::vector<std::string>& row : table.rows) text += line(row);
-  return text;
-}
 
 std::string software_and_version() {
   return "softgrip " + std::string(software_version());
@@ -152,24 +118,8 @@ void Page::list(const std::vector<std::string>& items) {
 }
 
 void Page::table(const Table& table) {
-  const auto cell = [&](std::string_view tag, std::size_t column, std::string_view text) {
-    const bool numeric = column < table.numeric.size() && table.numeric[column];
-    return '<' + std::string(tag) + (numeric ? " class=\"n\">" : ">") + escaped(text) + "</" +
-           std::string(tag) + '>';
-  };
-  body_ += "<div class=\"scroll\"><table>";
-  if (!table.caption.empty()) body_ += element("caption", table.caption);
-  body_ += "<thead><tr>";
-  for (std::size_t i = 0; i < table.header.size(); ++i) body_ += cell("th", i, table.header[i]);
-  body_ += "</tr></thead><tbody>\n";
-  for (const auto& row : table.rows) {
-    body_ += "<tr>";
-    for (std::size_t i = 0; i < row.size(); ++i) body_ += cell("td", i, row[i]);
-    body_ += "</tr>\n";
-  }
-  body_ += "</tbody></table></div>\n";
+  body_ += html_of(table);
 }
-
 void Page::terms(const Terms& entries) {
   body_ += html_of(entries);
 }

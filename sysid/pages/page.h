@@ -8,9 +8,9 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
+#include "base/result/table.h"
 #include "sysid/pages/figure.h"
 
 namespace softgrip::sysid {
@@ -18,20 +18,7 @@ namespace softgrip::sysid {
 /// Rating of a verdict; determines the colour of the verdict.
 enum class Tone { good, doubtful, bad };
 
-/// A table of a page. For each column, `numeric` states whether the column is right-aligned. A column without
-/// an entry in `numeric` is left-aligned.
-struct Table {
-  std::string caption;
-  std::vector<std::string> header;
-  std::vector<bool> numeric;
-  std::vector<std::vector<std::string>> rows;
-};
-
-/// Returns the table as lines of text with aligned columns. The first line is the caption.
-[[nodiscard]] std::string text_of(const Table& table);
-
-/// Terms and the value of each term.
-using Terms = std::vector<std::pair<std::string, std::string>>;
+using result::Table, result::Terms, result::text_of;
 
 /// A report page, built from top to bottom.
 class Page {

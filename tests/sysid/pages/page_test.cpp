@@ -2,28 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sysid/pages/markup.h"
-
 namespace softgrip::sysid::page_test {
 namespace {
-
-TEST(Markup, NothingActiveSurvives) {
-  EXPECT_EQ(escaped("<script>alert('x & \"y\"')</script>"),
-            "&lt;script&gt;alert(&#39;x &amp; &quot;y&quot;&#39;)&lt;/script&gt;");
-  EXPECT_EQ(escaped(std::string("a\0b\x1b", 4)),
-            "a\xef\xbf\xbd"
-            "b\xef\xbf\xbd");
-}
-
-TEST(Table, AsTextHasAlignedColumns) {
-  const Table table{
-      "Errors", {"run", "error"}, {false, true}, {{"a", "0.1"}, {"l\xc3\xa4nger", "\xe2\x80\x93"}}};
-  EXPECT_EQ(text_of(table),
-            "Errors\n"
-            "  run     error\n"
-            "  a         0.1\n"
-            "  l\xc3\xa4nger      \xe2\x80\x93\n");
-}
 
 TEST(Page, EveryTextThatEntersIsEscaped) {
   const std::string evil = "\"><img src=x onerror=alert(1)>";
