@@ -13,7 +13,7 @@ add_dependencies(softgrip_base softgrip_version_file)
 # Sockets of servers. Every server of the project uses this room.
 softgrip_room(base/net USES base)
 # The results of commands as text, JSON and HTML.
-softgrip_room(base/result)
+softgrip_room(base/result USES base LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(document USES base LIBRARIES yaml-cpp)
 
 # The model of a finger, and its file format.
@@ -114,7 +114,7 @@ softgrip_room(sysid/diagnosis/report
   LIBRARIES nlohmann_json::nlohmann_json)
 # Health analysis: recorded grips become indicators and their charts, and changed indicators become alarms.
 softgrip_room(sysid/health
-  USES base document model model/file control/elements sysid/limits sysid/logs sysid/recordings sysid/pages sysid/fitting sysid/diagnosis/causes
+  USES base base/result document model model/file control/elements sysid/limits sysid/logs sysid/recordings sysid/pages sysid/fitting sysid/diagnosis/causes
        sysid/changes sysid/diagnosis/experiments
   LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
 # These files contain the innermost loops of a fit and are compiled with -O3. With -O3 and a sanitizer, GCC 12
@@ -175,7 +175,7 @@ softgrip_room(bench/studies
 softgrip_room(tools/baseline
   USES base daemon/service sysid/logs sysid/identification sysid/diagnosis/experiments tools/investigation)
 softgrip_room(tools/commands
-  USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/logs sysid/recordings
+  USES base base/result model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/logs sysid/recordings
        sysid/pages sysid/fitting sysid/identification sysid/structure sysid/instrument sysid/changes sysid/diagnosis/verdict
        sysid/diagnosis/report sysid/health tools/command_line tools/client
        tools/log_input tools/recordings tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
@@ -185,7 +185,7 @@ softgrip_room(tools/commands
 
 # The public library. No other room uses it.
 softgrip_room(library FOLDERS library/include/softgrip
-  USES base document model model/file control/elements control/feedforward control/tick drivers/board simulation/plant
+  USES base base/result document model model/file control/elements control/feedforward control/tick drivers/board simulation/plant
        sysid/logs sysid/import sysid/fitting sysid/identification sysid/instrument sysid/diagnosis/report
        sysid/diagnosis/verdict sysid/changes sysid/health
   LIBRARIES nlohmann_json::nlohmann_json)

@@ -1,14 +1,14 @@
 #include "library/include/softgrip/health.h"
 
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/files.h"
+#include "base/result/result.h"
 #include "base/wall_clock.h"
 #include "library/cancellable.h"
 #include "library/model_parts.h"
-#include "sysid/health/recorded_health.h"
+#include "sysid/health/health_result.h"
 
 namespace softgrip {
 namespace {
@@ -110,7 +110,7 @@ Health health(const std::vector<std::string>& recordings, const std::string& bas
   result.warnings = sysid::health::warnings_of(*found);
   for (const sysid::health::SkippedRun& skipped : found->skipped)
     result.skipped.push_back({skipped.run, skipped.why});
-  result.json = sysid::health::health_json_text(sysid::health::json_of(*found, wall_time_now())) + "\n";
+  result.json = result::json_text(sysid::health::fields_of(*found, wall_time_now()));
   return result;
 }
 

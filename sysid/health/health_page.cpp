@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ranges>
 #include <set>
 
 #include "base/numbers.h"
+#include "sysid/health/health_result.h"
 
 namespace softgrip::sysid::health {
 namespace {
@@ -197,37 +199,13 @@ void add_suspicion(sysid::Page& page, const Suspicion& suspicion, const std::str
   page.code(settling_command(baseline));
 }
 
-void add_alarms(sysid::Page& page, const FingerHealth& health) {
-  sysid::Table table{"All alarms, including those closed by a repair",
-                     {"indicator", "change", "since", "noticed", "grips until then", "active"},
-                     {false, true, false, false, true, false},
-                     {}};
-  for (const HealthAlarm& alarm : health.alarms) {
-    const sysid::HealthNumberInfo& info = sysid::info_of(alarm.number);
-    table.rows.push_back({std::string(info.title),
-                          significant(alarm.change, 3) + " " + model::in_unit(info.unit, health.output_unit),
-                          health.points[alarm.since].label, health.points[alarm.noticed].label,
-                          std::to_string(alarm.grips), alarm.epoch == health.epoch() ? "yes" : "no"});
-  }
-  if (!table.rows.empty()) page.table(table);
-}
-
 void add_numbers(sysid::Page& page, const FingerHealth& health) {
-  sysid::Table table{"Latest value and reference since the last maintenance",
-                     {"indicator", "latest", "reference", "standard deviation", "points", "unit"},
-                     {false, true, true, true, true, false},
-                     {}};
-  for (std::size_t i = 0; i < sysid::health_numbers; ++i) {
-    const sysid::HealthNumberInfo& info = sysid::health_number_infos[i];
-    const auto last = health.latest(static_cast<HealthNumber>(i));
-    const auto& reference = health.references[i];
-    const bool usual = reference && reference->points > 1;
-    table.rows.push_back(
-        {std::string(info.title), last ? significant(*last, 4) : "-",
-         reference ? significant(reference->mean, 4) : "-", usual ? significant(reference->spread, 2) : "-",
-         reference ? std::to_string(reference->points) : "0", model::in_unit(info.unit, health.output_unit)});
-  }
-  page.table(table);
+  const auto of_alarm = [&](const HealthAlarm& alarm) { return alarm_fields(health, alarm); };
+  const auto of_number = [&](std::size_t number) { return number_fields(health, number); };
+  if (!health.alarms.empty())
+    page.table(result::table_of("All alarms, including those closed by a repair", health.alarms, of_alarm));
+  page.table(result::table_of("Latest value and reference since the last maintenance",
+                              std::views::iota(std::size_t{0}, sysid::health_numbers), of_number));
 }
 
 }  // namespace
@@ -256,7 +234,6 @@ sysid::Page health_page(const FingerHealth& health, const Suspicion& suspicion, 
                       " standard deviations"}});
   if (!suspicion.suspects.empty()) add_suspicion(page, suspicion, source.baseline);
   page.section("Indicators");
-  add_alarms(page, health);
   add_numbers(page, health);
   add_allowances(page, health, source.shared);
   page.section("Trends");

@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "base/files.h"
 #include "base/sha256.h"
-#include "base/version.h"
-#include "base/wall_clock.h"
 #include "model/file/model_file.h"
 #include "sysid/changes/baseline_folder.h"
-#include "sysid/health/health_json.h"
 #include "sysid/logs/command_before.h"
 #include "sysid/logs/log.h"
 
@@ -21,7 +17,6 @@ namespace softgrip::sysid::health {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 /// Version of the score computation. It is a prefix of the id of the baseline, so scores of earlier versions
 /// are not used.
@@ -96,18 +91,6 @@ void judge(const std::vector<ScoredRun>& runs, const HealthQuestion& question, B
   }
 }
 
-/// Returns the indicators that have changed at all fingers, and the indicators with an active shared change.
-std::vector<HealthNumber> shared_numbers(const RecordedHealth& rig) {
-  std::vector<const FingerHealth*> all;
-  for (const JudgedFinger& finger : rig.fingers) all.push_back(&finger.health);
-  std::vector<HealthNumber> numbers = shared_changes(all);
-  for (const SharedChange& shared : rig.shared) {
-    if (shared.stands && std::find(numbers.begin(), numbers.end(), shared.number) == numbers.end())
-      numbers.push_back(shared.number);
-  }
-  return numbers;
-}
-
 }  // namespace
 
 bool RecordedHealth::alarm() const {
@@ -147,35 +130,6 @@ std::vector<std::string> warnings_of(const RecordedHealth& health) {
       warnings.push_back(unclear_sentence(finger.health, unclear));
   }
   return warnings;
-}
-
-Json json_of(const RecordedHealth& health, Nanoseconds now) {
-  const ChartLimits limits = health.options.limits();
-  Json json{
-      {"schema", 1},
-      {"made", utc_text(now)},
-      {"made_unix_s", now / 1'000'000'000},
-      {"software_version", std::string(software_version())},
-      {"baseline", health.baseline},
-      {"state", health.alarm() ? "alarm" : "steady"},
-      {"false_alarm_points", health.options.false_alarm_points},
-      {"limits", {{"allowance", limits.allowance}, {"cusum", limits.cusum}, {"single", limits.single}}}};
-  json["fingers"] = Json::array();
-  for (const JudgedFinger& finger : health.fingers)
-    json["fingers"].push_back(json_of(finger.health, finger.suspicion));
-  json["shared"] = Json::array();
-  for (const HealthNumber number : shared_numbers(health)) json["shared"].push_back(info_of(number).id);
-  json["shared_changes"] = Json::array();
-  for (const SharedChange& shared : health.shared) json["shared_changes"].push_back(json_of(shared));
-  json["warnings"] = warnings_of(health);
-  json["skipped"] = Json::array();
-  for (const SkippedRun& skipped : health.skipped)
-    json["skipped"].push_back({{"run", skipped.run}, {"why", skipped.why}});
-  return json;
-}
-
-std::string health_json_text(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace softgrip::sysid::health

@@ -6,10 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
 #include <tl/expected.hpp>
 
-#include "base/time.h"
 #include "document/problem.h"
 #include "sysid/health/health_page.h"
 #include "sysid/health/run_search.h"
@@ -61,10 +59,5 @@ struct RefusedBaseline {
 
 /// Returns warnings about shared changes and about changes that are not attributed to a finger.
 [[nodiscard]] std::vector<std::string> warnings_of(const RecordedHealth& health);
-
-/// Returns the content of health.json. @param now  creation time that is written to the file.
-[[nodiscard]] nlohmann::ordered_json json_of(const RecordedHealth& health, Nanoseconds now);
-/// Returns the text of health.json, without a line break at the end.
-[[nodiscard]] std::string health_json_text(const nlohmann::ordered_json& json);
 
 }  // namespace softgrip::sysid::health

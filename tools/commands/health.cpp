@@ -3,13 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/files.h"
+#include "base/result/result.h"
 #include "base/wall_clock.h"
-#include "sysid/health/health_json.h"
-#include "sysid/health/recorded_health.h"
+#include "sysid/health/health_result.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/output.h"
@@ -87,7 +86,7 @@ tl::expected<void, std::string> write_results(const std::string& out, const heal
         !written)
       return written;
   }
-  return write(health::health_file, json + "\n");
+  return write(health::health_file, json);
 }
 
 ExitCode run(const HealthOptions& chosen) {
@@ -114,13 +113,13 @@ ExitCode run(const HealthOptions& chosen) {
     std::fprintf(stderr, "softgrip: %s is skipped: %s\n", skipped.run.c_str(), skipped.why.c_str());
   if (rig->fingers.empty())
     return fail(ExitCode::input_refused, "no recording can be compared with " + options.baseline);
-  const std::string json = health::health_json_text(health::json_of(*rig, wall_time_now()));
+  const std::string json = result::json_text(health::fields_of(*rig, wall_time_now()));
   if (!options.out.empty()) {
     if (const auto written = write_results(options.out, *rig, json); !written)
       return fail(ExitCode::io, written.error());
   }
   if (options.json) {
-    std::printf("%s\n", json.c_str());
+    std::fputs(json.c_str(), stdout);
   } else {
     for (const health::JudgedFinger& finger : rig->fingers) print(finger);
     for (const std::string& warning : health::warnings_of(*rig)) std::printf("%s\n", warning.c_str());

@@ -9,8 +9,8 @@
 #include "base/numbers.h"
 #include "sysid/changes/next_steps.h"
 #include "sysid/diagnosis/causes/cause.h"
-#include "sysid/health/health_json.h"
 #include "sysid/health/health_page.h"
+#include "sysid/health/health_result.h"
 #include "sysid/health/rig_health.h"
 #include "sysid/health/suspicion.h"
 
@@ -168,7 +168,7 @@ TEST(FingerHealth, ANumberThatNoRecordingHasIsAbsent) {
   for (ScoredRun& run : runs) run.score[HealthNumber::leak] = NAN;
   const FingerHealth health = judge_finger("left", runs, {}, base, {});
   EXPECT_FALSE(health.latest(HealthNumber::leak));
-  const auto json = json_of(health, suspicion_of(health));
+  const auto json = result::json_of(fields_of(health, suspicion_of(health)));
   EXPECT_TRUE(json["numbers"]["leak_kpa_per_s"]["value"].is_null());
   EXPECT_TRUE(json["numbers"]["leak_kpa_per_s"]["reference"].is_null());
   EXPECT_TRUE(json["numbers"]["gain_mm"]["value"].is_number());

@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "base/sha256.h"
 #include "model/file/model_file.h"
+#include "sysid/health/health_result.h"
 #include "tests/sysid/simulated.h"
 
 namespace softgrip::sysid::health::recorded_health_test {
@@ -68,7 +69,7 @@ TEST_F(Recorded, AFingerHasItsOwnBaselineOrThatOfTheRig) {
   EXPECT_EQ(found->fingers[1].source.baseline, at("baseline/right"));
   EXPECT_NEAR(found->fingers[1].source.base.full_kpa, 24.875, 1e-9);
   EXPECT_FALSE(found->alarm());
-  const auto json = json_of(*found, 1'000'000'000);
+  const auto json = result::json_of(fields_of(*found, 1'000'000'000));
   EXPECT_EQ(json["made_unix_s"], 1);
   EXPECT_EQ(json["fingers"][1]["finger"], "right");
 }

@@ -8,8 +8,8 @@
 #include <random>
 
 #include "sysid/health/finger_track.h"
-#include "sysid/health/health_json.h"
 #include "sysid/health/health_page.h"
+#include "sysid/health/health_result.h"
 #include "sysid/health/number_watch.h"
 
 namespace softgrip::sysid::health::rig_health_test {
@@ -179,7 +179,7 @@ TEST(RigHealth, WhatAllFingersShareIsToldOfTheRigAndIsNoAlarm) {
   EXPECT_EQ(alarms_of(judged), 0U);
   EXPECT_NE(shared_sentence(*told).find("pressure loss while holding +"), std::string::npos);
   EXPECT_NE(shared_sentence(*told).find("not recorded"), std::string::npos);
-  EXPECT_EQ(json_of(*told)["number"], "pressure_loss_kpa");
+  EXPECT_EQ(result::json_of(fields_of(*told))["number"], "pressure_loss_kpa");
   // The change that both fingers share ends with the repair.
   for (const SharedChange& shared : rig.judged({{day_text(60), "", "supply line"}}).shared)
     EXPECT_FALSE(shared.stands && shared.since == day_text(50));
@@ -238,7 +238,7 @@ TEST(RigHealth, WithAThermometerTheGainIsComparedAtTheDaysTemperature) {
   const auto& reference = judged.fingers[0].references[static_cast<std::size_t>(HealthNumber::gain)];
   ASSERT_TRUE(reference && reference->slope);
   EXPECT_NEAR(reference->slope->per_c, 0.06, 0.01);
-  const auto json = json_of(judged.fingers[0], {});
+  const auto json = result::json_of(fields_of(judged.fingers[0], {}));
   EXPECT_NEAR(json["numbers"]["gain_mm"]["per_c"].get<double>(), 0.06, 0.01);
   EXPECT_TRUE(json["numbers"]["zero_mm"]["per_c"].is_null());
   EXPECT_TRUE(json["temperature_c"].is_number());

@@ -1,0 +1,108 @@
+#pragma once
+// The result of a command as a tree of fields. A field states its JSON key, its title and its value once, so
+// a new field is added in one place. Three writers read the tree: json_text() writes the fields that have a
+// key. table_of() and terms_of() choose the fields that have a title, and text_of() and html_of() (html.h)
+// write these.
+
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <ranges>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "base/result/table.h"
+
+namespace softgrip::result {
+
+struct Field;
+using Fields = std::vector<Field>;
+
+/// A value of a field: `json` is written to JSON, and `text` is shown to a reader.
+struct Value {
+  using List = std::vector<Value>;
+
+  Value() = default;
+  Value(bool yes) : json(yes), text(yes ? "yes" : "no") {}
+  Value(std::integral auto number)
+      : json(static_cast<std::int64_t>(number)), text(std::to_string(number)), numeric(true) {}
+  Value(double number);
+  Value(const std::optional<double>& number);
+  Value(std::string words) : json(words), text(std::move(words)) {}
+  Value(std::string_view words) : Value(std::string(words)) {}
+  Value(const char* words) : Value(std::string(words)) {}
+  Value(const std::vector<std::string>& items);
+  Value(List items) : json(std::move(items)) {}
+  Value(Fields fields) : json(std::move(fields)) {}
+
+  /// std::monostate is null. Fields are an object.
+  std::variant<std::monostate, bool, std::int64_t, double, std::string, List, Fields> json;
+  std::string text = "-";
+  bool numeric = false;  ///< true: the text is right-aligned in a table
+};
+
+struct Field {
+  Field(std::string key_, Value value_) : key(std::move(key_)), value(std::move(value_)) {}
+  Field(std::string key_, std::string title_, Value value_)
+      : key(std::move(key_)), title(std::move(title_)), value(std::move(value_)) {}
+
+  std::string key;    ///< key in JSON; empty: the field is not in JSON
+  std::string title;  ///< name for a reader; empty: the field is only in JSON
+  Value value;
+};
+
+/// Returns a number whose text has `digits` significant digits and, after a blank, the unit. A number that is
+/// absent or not finite is null in JSON and "-" as text.
+[[nodiscard]] Value number(const std::optional<double>& value, int digits = 4, std::string_view unit = {});
+/// Returns a number whose text has `decimals` digits after the point.
+[[nodiscard]] Value decimals(double value, int decimals);
+/// Returns the value with another text, which is left-aligned in a table.
+[[nodiscard]] Value shown(Value value, std::string text);
+/// Returns the text, which is null in JSON if it is empty.
+[[nodiscard]] Value or_null(std::string text);
+
+/// Returns an object with one entry for each pair of a key and a value.
+template <class Pairs>
+[[nodiscard]] Fields keyed(const Pairs& pairs) {
+  Fields fields;
+  for (const auto& [key, value] : pairs) fields.emplace_back(std::string(key), Value(value));
+  return fields;
+}
+
+/// Returns an array with one element for each item; fields_of(item) returns this element.
+template <std::ranges::range Items, class FieldsOf>
+[[nodiscard]] Value list_of(const Items& items, const FieldsOf& fields_of) {
+  Value::List list;
+  for (const auto& item : items) list.emplace_back(std::invoke(fields_of, item));
+  return list;
+}
+
+/// Returns a table with one column for each titled field of `columns` and one row for each element of `rows`.
+/// Every row has the titled fields of `columns`, in the same order.
+[[nodiscard]] Table table_of(std::string caption, const Fields& columns, const std::vector<Fields>& rows);
+
+/// Returns a table with one row for each item; fields_of(item) returns the fields of this row.
+template <std::ranges::range Items, class FieldsOf>
+[[nodiscard]] Table table_of(std::string caption, const Items& items, const FieldsOf& fields_of) {
+  std::vector<Fields> rows;
+  for (const auto& item : items) rows.push_back(std::invoke(fields_of, item));
+  const Fields columns =
+      rows.empty() ? std::invoke(fields_of, std::ranges::range_value_t<Items>{}) : rows.front();
+  return table_of(std::move(caption), columns, rows);
+}
+
+/// Returns the titles and the texts of the titled fields.
+[[nodiscard]] Terms terms_of(const Fields& fields);
+
+/// Returns the value as JSON. A number that is not finite is null.
+[[nodiscard]] nlohmann::ordered_json json_of(const Value& value);
+/// Returns the fields as the text of a JSON file. Bytes that are not UTF-8 are replaced.
+[[nodiscard]] std::string json_text(const Fields& fields);
+
+}  // namespace softgrip::result
