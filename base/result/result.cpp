@@ -54,9 +54,9 @@ Value decimals(double value, int decimals) {
   return shown;
 }
 
-Value shown(Value value, std::string text) {
+Value shown(Value value, std::string text, bool numeric) {
   value.text = std::move(text);
-  value.numeric = false;
+  value.numeric = numeric;
   return value;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // The result of a command as a tree of fields. A field states its JSON key, its title and its value once, so
 // a new field is added in one place. Three writers read the tree: json_text() writes the fields that have a
-// key. table_of() and terms_of() choose the fields that have a title, and text_of() and html_of() (html.h)
+// key. table_of() and terms_of() choose the fields that have a title, and text_of() and html_of() (table.h)
 // write these.
 
 #include <concepts>
@@ -30,8 +30,10 @@ struct Value {
 
   Value() = default;
   Value(bool yes) : json(yes), text(yes ? "yes" : "no") {}
-  Value(std::integral auto number)
-      : json(static_cast<std::int64_t>(number)), text(std::to_string(number)), numeric(true) {}
+  Value(std::signed_integral auto number)
+      : json(std::int64_t{number}), text(std::to_string(number)), numeric(true) {}
+  Value(std::unsigned_integral auto number)
+      : json(std::uint64_t{number}), text(std::to_string(number)), numeric(true) {}
   Value(double number);
   Value(const std::optional<double>& number);
   Value(std::string words) : json(words), text(std::move(words)) {}
@@ -42,7 +44,7 @@ struct Value {
   Value(Fields fields) : json(std::move(fields)) {}
 
   /// std::monostate is null. Fields are an object.
-  std::variant<std::monostate, bool, std::int64_t, double, std::string, List, Fields> json;
+  std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, List, Fields> json;
   std::string text = "-";
   bool numeric = false;  ///< true: the text is right-aligned in a table
 };
@@ -62,8 +64,8 @@ struct Field {
 [[nodiscard]] Value number(const std::optional<double>& value, int digits = 4, std::string_view unit = {});
 /// Returns a number whose text has `decimals` digits after the point.
 [[nodiscard]] Value decimals(double value, int decimals);
-/// Returns the value with another text, which is left-aligned in a table.
-[[nodiscard]] Value shown(Value value, std::string text);
+/// Returns the value with another text. @param numeric  true: the text is right-aligned in a table.
+[[nodiscard]] Value shown(Value value, std::string text, bool numeric = false);
 /// Returns the text, which is null in JSON if it is empty.
 [[nodiscard]] Value or_null(std::string text);
 
@@ -75,11 +77,14 @@ template <class Pairs>
   return fields;
 }
 
-/// Returns an array with one element for each item; fields_of(item) returns this element.
-template <std::ranges::range Items, class FieldsOf>
-[[nodiscard]] Value list_of(const Items& items, const FieldsOf& fields_of) {
+/// Calls the function fields_of() of the namespace of an item.
+inline constexpr auto fields_of_item = [](const auto& item) { return fields_of(item); };
+
+/// Returns an array with one element for each item; `to_value` returns this element.
+template <std::ranges::range Items, class ToValue = decltype(fields_of_item)>
+[[nodiscard]] Value list_of(const Items& items, const ToValue& to_value = {}) {
   Value::List list;
-  for (const auto& item : items) list.emplace_back(std::invoke(fields_of, item));
+  for (const auto& item : items) list.emplace_back(std::invoke(to_value, item));
   return list;
 }
 
@@ -87,13 +92,13 @@ template <std::ranges::range Items, class FieldsOf>
 /// Every row has the titled fields of `columns`, in the same order.
 [[nodiscard]] Table table_of(std::string caption, const Fields& columns, const std::vector<Fields>& rows);
 
-/// Returns a table with one row for each item; fields_of(item) returns the fields of this row.
-template <std::ranges::range Items, class FieldsOf>
-[[nodiscard]] Table table_of(std::string caption, const Items& items, const FieldsOf& fields_of) {
+/// Returns a table with one row for each item; `to_fields` returns the fields of this row.
+template <std::ranges::range Items, class ToFields = decltype(fields_of_item)>
+[[nodiscard]] Table table_of(std::string caption, const Items& items, const ToFields& to_fields = {}) {
   std::vector<Fields> rows;
-  for (const auto& item : items) rows.push_back(std::invoke(fields_of, item));
+  for (const auto& item : items) rows.push_back(std::invoke(to_fields, item));
   const Fields columns =
-      rows.empty() ? std::invoke(fields_of, std::ranges::range_value_t<Items>{}) : rows.front();
+      rows.empty() ? std::invoke(to_fields, std::ranges::range_value_t<Items>{}) : rows.front();
   return table_of(std::move(caption), columns, rows);
 }
 

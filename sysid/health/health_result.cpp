@@ -126,7 +126,7 @@ Fields fields_of(const RecordedHealth& health, Nanoseconds now) {
       {"fingers",
        list_of(health.fingers, [](const JudgedFinger& one) { return fields_of(one.health, one.suspicion); })},
       {"shared", shared_numbers(health)},
-      {"shared_changes", list_of(health.shared, [](const SharedChange& one) { return fields_of(one); })},
+      {"shared_changes", list_of(health.shared)},
       {"warnings", warnings_of(health)},
       {"skipped", list_of(health.skipped, [](const SkippedRun& one) -> Fields {
          return {{"run", one.run}, {"why", one.why}};

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/numbers.h"
-#include "base/result/html.h"
+#include "base/result/table.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "base/numbers.h"
-#include "base/result/html.h"
+#include "base/result/table.h"
 #include "sysid/logs/csv_text.h"
 #include "sysid/pages/palette.h"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "base/result/html.h"
 #include "base/version.h"
 #include "sysid/pages/palette.h"
 

@@ -81,6 +81,7 @@ TEST(Result, AMissingNumberIsOnTheRightLikeTheOthers) {
   EXPECT_TRUE(number(std::nullopt).numeric);
   EXPECT_TRUE(Value(3).numeric);
   EXPECT_FALSE(shown(3, "three").numeric);
+  EXPECT_TRUE(shown("0.1 / 0.2", "0.1 / 0.2", true).numeric);
   EXPECT_FALSE(Value("3").numeric);
 }
 

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "base/result/html.h"
-
 namespace softgrip::result::table_test {
 namespace {
 
