@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/files.h"
 #include "base/numbers.h"
 #include "sysid/changes/baseline_folder.h"
 #include "sysid/diagnosis/report/report.h"
@@ -231,11 +230,7 @@ ExitCode run(const DiagnoseOptions& chosen, const std::vector<std::string>& call
                                       consequences.experiment.advice,
                                       closed_loop_curves(consequences)};
   const sysid::Page page = sysid::diagnosis_page(report);
-  if (const auto written =
-          write_file((std::filesystem::path(options.out) / "report.html").string(), page.to_html());
-      !written)
-    return fail(ExitCode::io, written.error());
-  if (const auto written = write_figures(options.figures, page.figures()); !written)
+  if (const auto written = write_report(options.out, {}, page, options.figures); !written)
     return fail(ExitCode::io, written.error());
   if (const auto written = write_series(options.out, series_of(*result, *logs)); !written)
     return fail(ExitCode::io, written.error());

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "base/files.h"
 #include "base/numbers.h"
 #include "model/file/model_file.h"
 #include "sysid/fitting/score.h"
@@ -166,23 +165,17 @@ ExitCode run(const IdentifyOptions& chosen, const std::vector<std::string>& call
   const sysid::IdentifyReport report = all->report(call);
   const std::string json = sysid::identify_json(report);
   const sysid::Page page = sysid::identify_page(report);
-  const std::filesystem::path out(options.out);
-  for (const auto& [name, text] :
-       {std::pair<const char*, std::string>{"model.yaml", model::to_yaml(result.model)},
-        {"identify.json", json},
-        {"report.html", page.to_html()}}) {
-    if (const auto written = write_file((out / name).string(), text); !written) {
-      return fail(ExitCode::io, written.error());
-    }
-  }
+  if (const auto written =
+          write_report(options.out, {{"model.yaml", model::to_yaml(result.model)}, {"identify.json", json}},
+                       page, options.figures);
+      !written)
+    return fail(ExitCode::io, written.error());
   std::vector<sysid::LogSeries> series =
       series_of(all->logs, result.records, result.scores, "identified", false);
   for (sysid::LogSeries& one :
        series_of(all->validation_logs, all->validation_records, all->validation, "identified", true))
     series.push_back(std::move(one));
   if (const auto written = write_series(options.out, series); !written)
-    return fail(ExitCode::io, written.error());
-  if (const auto written = write_figures(options.figures, page.figures()); !written)
     return fail(ExitCode::io, written.error());
   if (options.json) {
     std::fputs(json.c_str(), stdout);

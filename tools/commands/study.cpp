@@ -5,10 +5,8 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "base/files.h"
 #include "bench/studies/control_study.h"
 #include "bench/studies/published.h"
 #include "tools/command_line/options.h"
@@ -30,17 +28,10 @@ struct Output {
 
 ExitCode write_all(const Output& output, const std::string& json_name, const std::string& json,
                    const sysid::Page& page, const std::string& text) {
-  const std::filesystem::path folder(output.out);
-  for (const auto& [name, content] :
-       {std::pair<std::string, std::string>{json_name, json}, {"report.html", page.to_html()}}) {
-    if (const auto written = write_file((folder / name).string(), content); !written) {
-      return fail(ExitCode::io, written.error());
-    }
-  }
-  if (const auto written = write_figures(output.figures, page.figures()); !written)
+  if (const auto written = write_report(output.out, {{json_name, json}}, page, output.figures); !written)
     return fail(ExitCode::io, written.error());
   std::fputs(output.json ? json.c_str() : on_screen(text).c_str(), stdout);
-  if (!output.json) std::printf("report: %s\n", (folder / "report.html").c_str());
+  if (!output.json) std::printf("report: %s\n", (std::filesystem::path(output.out) / "report.html").c_str());
   return ExitCode::done;
 }
 

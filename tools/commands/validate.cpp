@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "base/files.h"
 #include "base/numbers.h"
 #include "sysid/identification/validate.h"
 #include "sysid/instrument/identified_logs.h"
@@ -80,20 +78,13 @@ ExitCode run(const ValidateOptions& options, const std::vector<std::string>& cal
   v.at_most_percent = options.at_most_percent;
   v.call = call;
   const std::string json = sysid::validate_json(v, *logs);
-  std::optional<sysid::Page> page;
-  if (!options.figures.empty() || !options.out.empty()) page = sysid::validate_page(v, *logs);
-  if (page) {
-    if (const auto written = write_figures(options.figures, page->figures()); !written)
+  if (!options.figures.empty() || !options.out.empty()) {
+    const sysid::Page page = sysid::validate_page(v, *logs);
+    if (const auto written = write_report(options.out, {{"validate.json", json}}, page, options.figures);
+        !written)
       return fail(ExitCode::io, written.error());
   }
   if (!options.out.empty()) {
-    const std::filesystem::path out(options.out);
-    for (const auto& [name, text] :
-         {std::pair<const char*, std::string>{"validate.json", json}, {"report.html", page->to_html()}}) {
-      if (const auto written = write_file((out / name).string(), text); !written) {
-        return fail(ExitCode::io, written.error());
-      }
-    }
     if (const auto written = write_series(options.out, series_of(*logs, v.records, v.scores, "given", true));
         !written)
       return fail(ExitCode::io, written.error());

@@ -74,4 +74,19 @@ tl::expected<void, std::string> write_figures(const std::string& folder,
   return {};
 }
 
+tl::expected<void, std::string> write_report(const std::string& out,
+                                             const std::vector<std::pair<std::string, std::string>>& files,
+                                             const sysid::Page& page, const std::string& figures) {
+  const auto write = [&](const std::string& name, const std::string& text) {
+    return write_file((std::filesystem::path(out) / name).string(), text);
+  };
+  if (!out.empty()) {
+    for (const auto& [name, text] : files) {
+      if (auto written = write(name, text); !written) return written;
+    }
+    if (auto written = write("report.html", page.to_html()); !written) return written;
+  }
+  return write_figures(figures, page.figures());
+}
+
 }  // namespace softgrip::tools

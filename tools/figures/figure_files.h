@@ -1,15 +1,16 @@
 #pragma once
-// Converts figures to SVG, PDF, PNG and HTML, and writes them as files, for a paper or for other plotting
-// programs.
+// Writes the files of a report, and converts figures to SVG, PDF, PNG and HTML files for a paper or for other
+// plotting programs.
 
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tl/expected.hpp>
 
-#include "sysid/pages/figure.h"
+#include "sysid/pages/page.h"
 
 namespace softgrip::tools {
 
@@ -39,5 +40,11 @@ enum class PictureFormat { svg, pdf, png, html };
 
 /// Returns a PNG on a white background, with twice as many pixels in each direction as the picture.
 [[nodiscard]] tl::expected<std::string, std::string> png_of(std::string_view svg);
+
+/// Writes the files (name and content) and report.html into the folder `out`, and the figures of the page
+/// into the folder `figures`. Omits a folder whose name is empty. The error is a sentence.
+[[nodiscard]] tl::expected<void, std::string> write_report(
+    const std::string& out, const std::vector<std::pair<std::string, std::string>>& files,
+    const sysid::Page& page, const std::string& figures);
 
 }  // namespace softgrip::tools

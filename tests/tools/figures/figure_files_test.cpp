@@ -37,5 +37,20 @@ TEST(FigureFiles, NoFolderNoFiles) {
   EXPECT_TRUE(write_figures("", {sysid::Figure{}}));
 }
 
+TEST(FigureFiles, AReportIsItsFilesItsPageAndItsFigures) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("softgrip_report_" + std::to_string(::getpid()));
+  sysid::Page page("Title", "Verdict", sysid::Tone::good);
+  page.figure({"forest", "", {}, sysid::Drawing{.markup = "", .header = {"cause"}, .rows = {{"leak"}}}});
+  ASSERT_TRUE(write_report((folder / "out").string(), {{"result.json", "{}\n"}}, page,
+                           (folder / "figures").string()));
+  EXPECT_EQ(*read_file((folder / "out/result.json").string(), 10000), "{}\n");
+  EXPECT_EQ(*read_file((folder / "out/report.html").string(), 100000), page.to_html());
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder / "figures/figure-1-forest.csv"));
+  std::filesystem::remove_all(folder);
+  ASSERT_TRUE(write_report("", {{"result.json", "{}\n"}}, page, ""));
+  EXPECT_FALSE(std::filesystem::exists("result.json"));
+}
+
 }  // namespace
 }  // namespace softgrip::tools::figure_files_test
