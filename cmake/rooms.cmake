@@ -102,7 +102,7 @@ softgrip_room(sysid/diagnosis/verdict
        sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge sysid/evidence
   LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/changes
-  USES base model sysid/limits sysid/logs sysid/pages sysid/fitting sysid/structure sysid/evidence sysid/diagnosis/residual
+  USES base base/result model sysid/limits sysid/logs sysid/pages sysid/fitting sysid/structure sysid/evidence sysid/diagnosis/residual
        sysid/diagnosis/causes
   LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
 softgrip_room(sysid/diagnosis/experiments

@@ -10,8 +10,8 @@
 #include "library/model_parts.h"
 #include "library/predictions.h"
 #include "sysid/changes/change.h"
-#include "sysid/changes/change_json.h"
 #include "sysid/changes/change_page.h"
+#include "sysid/changes/change_result.h"
 #include "sysid/diagnosis/report/diagnosis_json.h"
 #include "sysid/diagnosis/report/report.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
@@ -109,7 +109,7 @@ Change diagnose_change(const Model& model, const std::vector<Log>& healthy, cons
           found->warnings,
           std::move(causes),
           model.unit(),
-          sysid::json_of(*found).dump(2) + "\n",
+          result::json_text(sysid::fields_of(*found)),
           sysid::change_page(*found, before, now, model.parts().value).to_html()};
 }
 

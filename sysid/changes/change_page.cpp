@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "sysid/changes/change_result.h"
 #include "sysid/changes/next_steps.h"
 #include "sysid/pages/provenance.h"
 
@@ -20,18 +20,7 @@ Tone tone_of(ChangeVerdict verdict) {
 
 void add_causes(Page& page, const ChangeDiagnosis& d) {
   page.section("What changed");
-  Table table{
-      "Causes, largest first",
-      {"cause", "size", "95 % interval", "at full pressure", "share of the error [%]", "alternatives"},
-      {false, false, false, false, true, false},
-      {}};
-  for (const ChangeCause& cause : d.causes) {
-    table.rows.push_back(
-        {cause.id, size_text(cause), interval_text(cause),
-         significant(cause.full_pressure_mm, 2) + " " + unit_of(cause.judged, cause.output_unit),
-         fixed(cause.share_percent, 0), cause.alternatives.empty() ? "-" : with_commas(cause.alternatives)});
-  }
-  page.table(table);
+  page.table(cause_table(d));
   for (const ChangeCause& cause : d.causes) {
     page.subsection("Next steps for " + cause.id);
     const auto steps = next_steps(cause.id);
@@ -102,10 +91,6 @@ Figure tried_figure(const JudgedChange& judged) {
           stacked({chart})};
 }
 
-std::string name_with_state(const RunLeft& run) {
-  return run.run + (run.is_healthy ? " (healthy)" : "");
-}
-
 /// Returns the figure of the RMS error of the baseline model in every run. The healthy runs come first.
 Figure runs_figure(const JudgedChange& judged, bool explained) {
   std::vector<std::string> names;
@@ -126,25 +111,9 @@ Figure runs_figure(const JudgedChange& judged, bool explained) {
           stacked({chart})};
 }
 
-/// Returns the table of the causes that the logs cannot show, with a recording that would test each cause.
-Table not_tested_table(const JudgedChange& judged) {
-  Table table{"Not tested", {"cause", "recording that would test the cause"}, {false, false}, {}};
-  for (const auto& [id, recording] : judged.not_tested) table.rows.push_back({id, recording});
-  return table;
-}
-
 void add_reading(Page& page, const JudgedChange& judged, const ChangeDiagnosis& d) {
   page.section(std::string("The ") + name_of(judged.judged));
-  const std::string unit = std::string(" ") + unit_of(judged.judged, judged.output_unit);
-  page.terms({{"base", judged.base},
-              {"noise of the readings", significant(judged.noise_mm, 2) + unit},
-              {"healthy logs", std::to_string(judged.healthy_runs)},
-              {"error of left-out healthy runs", significant(judged.healthy_mm, 3) + unit},
-              {"largest error that another healthy run may have", significant(judged.allowed_mm, 3) + unit},
-              {"error of the later logs", significant(judged.later_mm, 3) + unit},
-              {"with the causes", significant(judged.explained_mm, 3) + unit},
-              {"offset change", significant(judged.zero_mm, 2) + unit},
-              {"gain within the healthy spread", significant(judged.gain_percent, 2) + " %"}});
+  page.terms(result::terms_of(fields_of(judged)));
   bool explained = false;
   for (const ChangeCause& cause : d.causes) explained |= cause.judged == judged.judged;
   page.figure(residual_figure(judged, explained));
@@ -170,29 +139,6 @@ Page change_page(const ChangeDiagnosis& diagnosis, const std::vector<Log>& healt
   }
   for (const JudgedChange& judged : diagnosis.readings) add_reading(page, judged, diagnosis);
   return page;
-}
-
-Table tried_table(const JudgedChange& judged) {
-  Table table{"Tested causes, each alone; improvement: reduction of the whitened squared error per bin",
-              {"cause", "improvement", "in healthy runs", "tolerance", "reason of rejection"},
-              {false, true, true, true, false},
-              {}};
-  for (const TriedCause& tried : judged.tried)
-    table.rows.push_back({tried.id, fixed(tried.gain, 3), fixed(tried.healthy_gain, 3),
-                          fixed(tried.tolerance, 3), tried.rejected});
-  return table;
-}
-
-Table run_table(const JudgedChange& judged) {
-  Table table{std::string("RMS error of each run after the subtraction of its mean error [") +
-                  unit_of(judged.judged, judged.output_unit) + "]",
-              {"run", "base", "with the causes"},
-              {false, true, true},
-              {}};
-  for (const RunLeft& run : judged.runs)
-    table.rows.push_back({name_with_state(run), significant(run.base, 3),
-                          run.is_healthy ? "-" : significant(run.explained, 3)});
-  return table;
 }
 
 }  // namespace softgrip::sysid

@@ -12,9 +12,4 @@ namespace softgrip::sysid {
 [[nodiscard]] Page change_page(const ChangeDiagnosis& diagnosis, const std::vector<Log>& healthy,
                                const std::vector<Log>& later, const model::Model& given);
 
-/// Returns the table of all tested causes: error reduction, tolerance, and reason of a rejection.
-[[nodiscard]] Table tried_table(const JudgedChange& judged);
-/// Returns the table of the RMS error of the baseline model in every run, without and with the causes.
-[[nodiscard]] Table run_table(const JudgedChange& judged);
-
 }  // namespace softgrip::sysid

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
-#include "base/files.h"
 #include "base/numbers.h"
-#include "sysid/changes/change_json.h"
+#include "base/result/result.h"
 #include "sysid/changes/change_page.h"
+#include "sysid/changes/change_result.h"
 #include "sysid/changes/next_steps.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/progress_line.h"
@@ -17,10 +16,10 @@
 namespace softgrip::tools {
 namespace {
 
-nlohmann::ordered_json sources_of(const std::vector<sysid::Log>& logs) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const sysid::Log& log : logs) list.push_back({{"path", log.path}, {"sha256", log.sha256}});
-  return list;
+result::Value sources_of(const std::vector<sysid::Log>& logs) {
+  return result::list_of(logs, [](const sysid::Log& log) -> result::Fields {
+    return {{"path", log.path}, {"sha256", log.sha256}};
+  });
 }
 
 void print_cause(const sysid::ChangeCause& cause) {
@@ -43,8 +42,8 @@ void print_explanation(const sysid::JudgedChange& judged) {
       significant(judged.allowed_mm, 3).c_str(), significant(judged.later_mm, 3).c_str());
   std::printf("  whitened squared error of the later logs %s (1: equal to that of healthy runs)\n",
               significant(judged.loss_before, 3).c_str());
-  std::printf("%s\n%s", sysid::text_of(sysid::run_table(judged)).c_str(),
-              sysid::text_of(sysid::tried_table(judged)).c_str());
+  std::printf("%s\n%s", result::text_of(sysid::run_table(judged)).c_str(),
+              result::text_of(sysid::tried_table(judged)).c_str());
   for (const auto& [id, recording] : judged.not_tested)
     std::printf("  %-26s not tested: %s\n", id.c_str(), recording.c_str());
 }
@@ -75,22 +74,15 @@ ExitCode run_change(ChangeQuestion question) {
     return sysid::diagnose_change(question.healthy, question.later, question.options);
   }();
   if (!diagnosis) return fail(ExitCode::input_refused, diagnosis.error());
-  nlohmann::ordered_json json = sysid::json_of(*diagnosis);
-  json["made_of"] = {{"call", question.call},
-                     {"model", question.given.name},
-                     {"healthy", sources_of(question.healthy)},
-                     {"data", sources_of(question.later)}};
-  const std::string text = json.dump(2) + "\n";
-  if (const auto written =
-          write_file((std::filesystem::path(question.out) / "diagnosis.json").string(), text);
-      !written)
-    return fail(ExitCode::io, written.error());
+  result::Fields fields = sysid::fields_of(*diagnosis);
+  fields.emplace_back("made_of", result::Fields{{"call", question.call},
+                                                {"model", question.given.name},
+                                                {"healthy", sources_of(question.healthy)},
+                                                {"data", sources_of(question.later)}});
+  const std::string text = result::json_text(fields);
   const sysid::Page page = sysid::change_page(*diagnosis, question.healthy, question.later, question.given);
-  if (const auto written =
-          write_file((std::filesystem::path(question.out) / "report.html").string(), page.to_html());
+  if (const auto written = write_report(question.out, {{"diagnosis.json", text}}, page, question.figures);
       !written)
-    return fail(ExitCode::io, written.error());
-  if (const auto written = write_figures(question.figures, page.figures()); !written)
     return fail(ExitCode::io, written.error());
   if (question.json) {
     std::fputs(text.c_str(), stdout);

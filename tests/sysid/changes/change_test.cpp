@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "sysid/changes/change_json.h"
 #include "sysid/changes/change_page.h"
+#include "sysid/changes/change_result.h"
 #include "sysid/changes/next_steps.h"
 #include "sysid/changes/regulator.h"
 #include "tests/sysid/changes/finger.h"
@@ -352,7 +352,7 @@ TEST(Change, ALaterStartOfThePressureIsADelayInSeconds) {
 }
 
 TEST(Change, TheJsonHasTheKeysOfEveryDiagnosis) {
-  const auto json = json_of(changed({.gain = 0.19}));
+  const auto json = result::json_of(fields_of(changed({.gain = 0.19})));
   for (const char* const key : {"schema", "verdict", "causes", "alternatives", "noise_mm", "heldout_rmse_mm",
                                 "gain_percent", "unexplained_percent", "next_experiment", "warnings"})
     EXPECT_TRUE(json.contains(key)) << key;

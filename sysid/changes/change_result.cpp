@@ -1,0 +1,171 @@
+#include "sysid/changes/change_result.h"
+
+#include <algorithm>
+
+#include "base/numbers.h"
+#include "sysid/changes/next_steps.h"
+
+namespace softgrip::sysid {
+namespace {
+
+using result::decimals, result::Fields, result::list_of, result::number, result::shown, result::Table,
+    result::Value;
+
+Value interval_value(const std::optional<Interval>& interval) {
+  return interval ? Value(Value::List{interval->lower, interval->upper}) : Value();
+}
+
+Fields fields_of_cause(const ChangeCause& cause) {
+  Fields parameters;
+  for (std::size_t i = 0; i < cause.fitted.numbers.size(); ++i)
+    parameters.emplace_back(
+        cause.fitted.effect.numbers[i].name,
+        Fields{{"value", cause.fitted.numbers[i]}, {"ci95", interval_value(cause.intervals.numbers[i])}});
+  const Fields size{{"what", cause.size.what},
+                    {"value", cause.size.value},
+                    {"unit", model::in_unit(cause.size.unit, cause.output_unit)},
+                    {"ci95", interval_value(cause.intervals.size)}};
+  const std::string unit = unit_of(cause.judged, cause.output_unit);
+  const auto steps = next_steps(cause.id);
+  return {{"id", "cause", cause.id},
+          {"form", cause.fitted.effect.form},
+          {"station", model::name_of(cause.station)},
+          {"parameters", std::move(parameters)},
+          {"size", "size", shown(size, size_text(cause))},
+          {"", "95 % interval", interval_text(cause)},
+          {"full_pressure", "at full pressure",
+           shown(cause.full_pressure_mm, significant(cause.full_pressure_mm, 2) + " " + unit)},
+          {"effect_rms", cause.effect_mm},
+          {"unit", unit},
+          {"share_percent", "share of the error [%]", decimals(cause.share_percent, 0)},
+          {"gain", Fields{{"value", cause.gain}, {"ci95", Value::List{cause.gain_lower, cause.gain_upper}}}},
+          {"next_steps", Value::List{steps[0], steps[1]}},
+          {"", "alternatives", cause.alternatives}};
+}
+
+Fields fields_of_tried(const TriedCause& tried) {
+  return {{"id", "cause", tried.id},
+          {"form", tried.form},
+          {"gain", "improvement", decimals(tried.gain, 3)},
+          {"healthy_gain", "in healthy runs", decimals(tried.healthy_gain, 3)},
+          {"tolerance", "tolerance", decimals(tried.tolerance, 3)},
+          {"rejected", "reason of rejection", result::or_null(tried.rejected)}};
+}
+
+Fields fields_of_run(const RunLeft& run) {
+  Value explained = number(run.explained, 3);
+  if (run.is_healthy) explained.text = "-";
+  return {{"run", "run", shown(run.run, name_with_state(run))},
+          {"healthy", run.is_healthy},
+          {"base_rms", "base", number(run.base, 3)},
+          {"explained_rms", "with the causes", std::move(explained)}};
+}
+
+std::string named(const ChangeCause& cause) {
+  std::string text = std::string(plain_words(cause.id)) + " (" + cause.id + ": " + size_text(cause) + ")";
+  for (const std::string& alternative : cause.alternatives)
+    text += ", or " + std::string(plain_words(alternative)) + " (" + alternative + ")";
+  return text;
+}
+
+}  // namespace
+
+Fields fields_of(const JudgedChange& judged) {
+  const std::string unit = unit_of(judged.judged, judged.output_unit);
+  const Fields loss{{"before", judged.loss_before}, {"left", judged.loss_left}};
+  return {
+      {"reading", judged.judged == Judged::pressure ? "pressure_kpa" : "displacement_mm"},
+      {"unit", unit},
+      {"base", "base", judged.base},
+      {"noise", "noise of the readings", number(judged.noise_mm, 2, unit)},
+      {"healthy_runs", "healthy logs", judged.healthy_runs},
+      {"healthy_heldout_rms", "error of left-out healthy runs", number(judged.healthy_mm, 3, unit)},
+      {"allowed_rms", "largest error that another healthy run may have", number(judged.allowed_mm, 3, unit)},
+      {"later_rms", "error of the later logs", number(judged.later_mm, 3, unit)},
+      {"explained_rms", "with the causes", number(judged.explained_mm, 3, unit)},
+      {"whitened_loss", loss},
+      {"misfit", loss},
+      {"unexplained", judged.left_over},
+      {"structure_left", judged.left_over},
+      {"zero", "offset change", number(judged.zero_mm, 2, unit)},
+      {"gain_percent", "gain within the healthy spread", number(judged.gain_percent, 2, "%")},
+      {"not_tested", result::keyed(judged.not_tested)},
+      {"runs", list_of(judged.runs, fields_of_run)},
+      {"tried", list_of(judged.tried, fields_of_tried)}};
+}
+
+Fields fields_of(const ChangeDiagnosis& d) {
+  const JudgedChange& finger = d.readings.back();
+  const double gain = finger.later_mm > 0 ? 100 * (1 - finger.explained_mm / finger.later_mm) : 0;
+  const double excess = finger.loss_before - 1;
+  return {{"schema", 1},
+          {"question", "change"},
+          {"verdict", name_of(d.verdict)},
+          {"output_unit", model::name_of(d.output_unit)},
+          {"causes", list_of(d.causes, fields_of_cause)},
+          {"alternatives", list_of(d.causes, &ChangeCause::alternatives)},
+          {"noise_mm", finger.noise_mm},
+          {"heldout_rmse_mm", Fields{{"as_given", finger.later_mm},
+                                     {"recalibrated", finger.later_mm},
+                                     {"extended", finger.explained_mm}}},
+          {"gain_percent", Fields{{"value", gain}, {"ci95", Value()}}},
+          {"unexplained_percent",
+           excess > 0 ? std::clamp(100 * (finger.loss_left - 1) / excess, 0.0, 100.0) : 0.0},
+          {"partial_causes", Value::List()},
+          {"base", finger.base},
+          {"next_experiment", Value()},
+          {"readings", list_of(d.readings)},
+          {"warnings", d.warnings},
+          {"wall_s", d.wall_s}};
+}
+
+Table cause_table(const ChangeDiagnosis& d) {
+  return result::table_of("Causes, largest first", d.causes, fields_of_cause);
+}
+
+Table tried_table(const JudgedChange& judged) {
+  return result::table_of(
+      "Tested causes, each alone; improvement: reduction of the whitened squared error per bin", judged.tried,
+      fields_of_tried);
+}
+
+Table run_table(const JudgedChange& judged) {
+  return result::table_of(std::string("RMS error of each run after the subtraction of its mean error [") +
+                              unit_of(judged.judged, judged.output_unit) + "]",
+                          judged.runs, fields_of_run);
+}
+
+Table not_tested_table(const JudgedChange& judged) {
+  return result::table_of("Not tested", judged.not_tested, [](const auto& entry) -> Fields {
+    return {{"", "cause", entry.first}, {"", "recording that would test the cause", entry.second}};
+  });
+}
+
+std::string name_with_state(const RunLeft& run) {
+  return run.run + (run.is_healthy ? " (healthy)" : "");
+}
+
+std::string size_text(const ChangeCause& cause) {
+  return cause.size.what + " " + significant(cause.size.value, 3) + " " +
+         model::in_unit(cause.size.unit, cause.output_unit);
+}
+
+std::string interval_text(const ChangeCause& cause) {
+  return cause.intervals.size ? text_of(*cause.intervals.size, cause.size.value, " .. ") : "-";
+}
+
+std::string change_sentence(const ChangeDiagnosis& diagnosis) {
+  if (diagnosis.verdict == ChangeVerdict::unchanged)
+    return "Unchanged: the later logs differ from the healthy logs by no more than the healthy logs differ "
+           "from each other.";
+  if (diagnosis.verdict == ChangeVerdict::unexplained)
+    return "The finger has changed since the healthy logs, but no cause of the library explains the change.";
+  std::string text = "Change since the healthy logs: ";
+  for (std::size_t i = 0; i < diagnosis.causes.size(); ++i)
+    text += (i == 0 ? "" : "; and ") + named(diagnosis.causes[i]);
+  if (diagnosis.verdict == ChangeVerdict::partly_explained)
+    text += "; another part of the change remains unexplained";
+  return text + ".";
+}
+
+}  // namespace softgrip::sysid
