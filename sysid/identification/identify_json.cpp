@@ -1,16 +1,15 @@
-#include <cmath>
-
 #include <nlohmann/json.hpp>
 
 #include "model/file/model_file.h"
 #include "sysid/identification/identify_report.h"
-#include "sysid/identification/score_json.h"
+#include "sysid/identification/log_report.h"
 #include "sysid/pages/page.h"
 
 namespace softgrip::sysid {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using result::json_of;
 
 Json interval(const std::optional<Interval>& given) {
   return given ? Json::array({given->lower, given->upper}) : Json(nullptr);
@@ -57,7 +56,9 @@ Json structure(const StructureEvidence& s) {
                    {"rmse_percent_of_range", s.valve->rmse_percent_of_range},
                    {"sample_to_sample_noise_kpa", s.valve->noise_kpa}};
   if (s.valve->held_out_rmse_kpa > 0) json["valve"]["held_out_rmse_kpa"] = s.valve->held_out_rmse_kpa;
-  add_scores(json["valve"]["from_command"], s.valve->from_command);
+  json["valve"]["from_command"] = nullptr;
+  if (!s.valve->from_command.empty())
+    json["valve"]["from_command"] = json_of(fields_of(s.valve->from_command));
   return json;
 }
 
@@ -70,8 +71,8 @@ std::string identify_json(const IdentifyReport& report) {
   json["model"] = {{"name", r.model.name}, {"hash", model::model_hash(r.model)}, {"file", "model.yaml"}};
   json["start"] = {{"name", report.start.name}, {"hash", model::model_hash(report.start)}};
   json["output_unit"] = model::name_of(r.model.output_unit);
-  json["logs"] = logs_json(report.logs);
-  add_scores(json, r.scores);
+  json["logs"] = json_of(logs_value(report.logs));
+  json.update(json_of(fields_of(r.scores)));
   json["parameters"] = estimates(r.parameters);
   json["combinations"] = estimates(r.combinations);
   if (!r.starts.empty()) json["starts"] = estimates(r.starts);
@@ -97,12 +98,13 @@ std::string identify_json(const IdentifyReport& report) {
   }
   if (!r.held_out.empty()) {
     json["held_out"]["kind"] = "continuation";
-    add_scores(json["held_out"], r.held_out);
+    json["held_out"].update(json_of(fields_of(r.held_out)));
   }
   if (r.structure) json["structure"] = structure(*r.structure);
   if (!report.validation.empty()) {
-    if (report.validation_logs != nullptr) json["validation"]["logs"] = logs_json(*report.validation_logs);
-    add_scores(json["validation"], report.validation);
+    if (report.validation_logs != nullptr)
+      json["validation"]["logs"] = json_of(logs_value(*report.validation_logs));
+    json["validation"].update(json_of(fields_of(report.validation)));
   }
   json["warnings"] = r.warnings;
   json["iterations"] = r.iterations;

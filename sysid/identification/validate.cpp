@@ -8,8 +8,7 @@
 #include "base/numbers.h"
 #include "model/file/model_file.h"
 #include "sysid/fitting/start_estimate.h"
-#include "sysid/identification/log_figures.h"
-#include "sysid/identification/score_json.h"
+#include "sysid/identification/log_report.h"
 #include "sysid/logs/plausibility_warnings.h"
 #include "sysid/pages/provenance.h"
 
@@ -122,8 +121,8 @@ std::string validate_json(const Validation& v, const std::vector<Log>& logs) {
   json["call"] = v.call;
   json["model"] = {{"name", v.model.name}, {"hash", model::model_hash(v.model)}};
   json["output_unit"] = model::name_of(v.model.output_unit);
-  json["logs"] = logs_json(logs);
-  add_scores(json, v.scores);
+  json["logs"] = result::json_of(logs_value(logs));
+  json.update(result::json_of(fields_of(v.scores)));
   if (v.at_most_percent) {
     json["at_most_percent"] = *v.at_most_percent;
     for (const Score& s : v.scores) json["acceptable"][s.name] = is_acceptable(v, s);

@@ -11,9 +11,10 @@
 #include "base/enumerated.h"
 #include "base/files.h"
 #include "base/numbers.h"
+#include "base/result/result.h"
 #include "model/file/model_file.h"
 #include "sysid/diagnosis/report/diagnosis_json.h"
-#include "sysid/identification/score_json.h"
+#include "sysid/identification/log_report.h"
 #include "sysid/identification/start_points.h"
 #include "sysid/pages/page.h"
 
@@ -32,7 +33,7 @@ std::string complete_json(const sysid::Diagnosis& diagnosis, const DiagnosisSour
   json["call"] = source.call;
   json["given"] = {{"name", source.given.name}, {"hash", model::model_hash(source.given)}};
   json["model"] = {{"hash", model::model_hash(diagnosis.extended_model)}, {"file", "model.yaml"}};
-  json["logs"] = sysid::logs_json(source.logs);
+  json["logs"] = result::json_of(sysid::logs_value(source.logs));
   add_experiment(json, consequences.experiment, experiment_file);
   if (consequences.closed_loop) add_closed_loop(json, *consequences.closed_loop);
   return json.dump(2) + "\n";

@@ -2,7 +2,7 @@
 
 #include "base/numbers.h"
 #include "model/file/model_file.h"
-#include "sysid/identification/log_figures.h"
+#include "sysid/identification/log_report.h"
 #include "sysid/pages/page.h"
 #include "sysid/pages/provenance.h"
 

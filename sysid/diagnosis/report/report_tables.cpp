@@ -5,7 +5,7 @@
 
 #include "base/numbers.h"
 #include "model/catalogue.h"
-#include "sysid/identification/log_figures.h"
+#include "sysid/identification/log_report.h"
 
 namespace softgrip::sysid {
 namespace {

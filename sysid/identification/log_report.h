@@ -1,9 +1,13 @@
 #pragma once
-// Draws the figures of a log and its prediction. All reports use these figures.
+// Reports a log and its prediction: their fields, the table of the scores, and the figures. identify.json,
+// validate.json and diagnosis.json use the same keys.
 
+#include <string>
 #include <vector>
 
+#include "base/result/result.h"
 #include "sysid/fitting/score.h"
+#include "sysid/logs/log.h"
 #include "sysid/logs/record.h"
 #include "sysid/pages/chart.h"
 #include "sysid/pages/page.h"
@@ -21,9 +25,16 @@ namespace softgrip::sysid {
 /// Adds the figures of one log to a page.
 void add_log_figures(Page& page, const Record& record, const Score& score);
 
+/// Returns an array with one element per log.
+[[nodiscard]] result::Value logs_value(const std::vector<Log>& logs);
+
+/// Returns the keys drive, rmse_mm, rmse_percent_of_span and the keys of the other scores. The value of each
+/// key is an object with one entry per log.
+[[nodiscard]] result::Fields fields_of(const std::vector<Score>& scores);
+
 /// Returns a table with one row per log. The columns are: input of the model, number of samples, RMSE, RMSE
 /// in % of the span, RMSE of the first cycle, RMSE of the settled cycles, and the largest error.
-[[nodiscard]] Table score_table(const std::vector<Record>& records, const std::vector<Score>& scores);
+[[nodiscard]] result::Table score_table(const std::vector<Record>& records, const std::vector<Score>& scores);
 
 /// Returns a number as text, or a dash if the number is not finite.
 [[nodiscard]] std::string or_dash(double value, int digits = 3);

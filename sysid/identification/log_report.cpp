@@ -1,11 +1,14 @@
-#include "sysid/identification/log_figures.h"
+#include "sysid/identification/log_report.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/numbers.h"
 
 namespace softgrip::sysid {
 namespace {
+
+using result::Fields, result::Value;
 
 Series line(std::string label, const std::vector<double>& x, const std::vector<double>& y, Colour colour) {
   Series series;
@@ -14,6 +17,37 @@ Series line(std::string label, const std::vector<double>& x, const std::vector<d
   series.y = y;
   series.colour = colour;
   return series;
+}
+
+Fields fields_of_note(const LogNote& note) {
+  return {{"line", note.line}, {"text", note.text}};
+}
+
+Fields fields_of_log(const Log& log) {
+  Fields fields{{"name", log.name}, {"path", log.path}, {"sha256", log.sha256}};
+  if (!log.channel.empty()) fields.emplace_back("channel", log.channel);
+  fields.emplace_back("samples", log.size());
+  fields.emplace_back("duration_s", log.time_s.empty() ? 0 : log.time_s.back() - log.time_s.front());
+  if (!log.notes.empty()) fields.emplace_back("notes", result::list_of(log.notes, fields_of_note));
+  return fields;
+}
+
+Fields fields_of_score(const Score& s, double span_mm) {
+  const auto number = [](double value) {
+    Value shown(value);
+    shown.text = or_dash(value);
+    return shown;
+  };
+  const auto in_unit = [&](const char* title) { return model::in_unit(title, s.output_unit); };
+  return {{"", "log", s.name},
+          {"drive", "driven by", name_of(s.drive)},
+          {"", "samples", std::ranges::count_if(s.error_mm, [](double e) { return std::isfinite(e); })},
+          {"", in_unit("span [mm]"), number(span_mm)},
+          {"rmse_mm", in_unit("RMSE [mm]"), number(s.rmse_mm)},
+          {"rmse_percent_of_span", "RMSE [% of span]", number(s.rmse_percent_of_span)},
+          {"first_cycle_rmse_mm", "first cycle", number(s.first_cycle_rmse_mm)},
+          {"settled_rmse_mm", in_unit("settled [mm]"), number(s.settled_rmse_mm)},
+          {"largest_error_mm", in_unit("largest error [mm]"), number(s.largest_error_mm)}};
 }
 
 }  // namespace
@@ -87,29 +121,32 @@ void add_log_figures(Page& page, const Record& record, const Score& score) {
                {{loops(record, score), error_by_pressure(record, score)}}});
 }
 
-std::string or_dash(double value, int digits) {
-  return std::isfinite(value) ? significant(value, digits) : "\xe2\x80\x93";
+Value logs_value(const std::vector<Log>& logs) {
+  return result::list_of(logs, fields_of_log);
 }
 
-Table score_table(const std::vector<Record>& records, const std::vector<Score>& scores) {
-  Table table;
-  table.header = {"log",         "driven by",    "samples",
-                  "span [mm]",   "RMSE [mm]",    "RMSE [% of span]",
-                  "first cycle", "settled [mm]", "largest error [mm]"};
-  for (std::string& title : table.header)
-    if (!scores.empty()) title = model::in_unit(title, scores.front().output_unit);
-  table.numeric = {false, false, true, true, true, true, true, true, true};
-  for (std::size_t i = 0; i < scores.size(); ++i) {
-    const Score& s = scores[i];
-    std::size_t samples = 0;
-    for (const double e : s.error_mm) {
-      if (std::isfinite(e)) ++samples;
-    }
-    table.rows.push_back({s.name, name_of(s.drive), std::to_string(samples), or_dash(records[i].span_mm),
-                          or_dash(s.rmse_mm), or_dash(s.rmse_percent_of_span), or_dash(s.first_cycle_rmse_mm),
-                          or_dash(s.settled_rmse_mm), or_dash(s.largest_error_mm)});
+Fields fields_of(const std::vector<Score>& scores) {
+  Fields fields;
+  if (scores.empty()) return fields;
+  const Fields keys = fields_of_score({}, 0);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (keys[i].key.empty()) continue;
+    Fields by_log;
+    for (const Score& s : scores) by_log.emplace_back(s.name, fields_of_score(s, 0)[i].value);
+    fields.emplace_back(keys[i].key, std::move(by_log));
   }
-  return table;
+  return fields;
+}
+
+result::Table score_table(const std::vector<Record>& records, const std::vector<Score>& scores) {
+  std::vector<Fields> rows;
+  for (std::size_t i = 0; i < scores.size(); ++i)
+    rows.push_back(fields_of_score(scores[i], records[i].span_mm));
+  return result::table_of("", rows.empty() ? fields_of_score({}, 0) : rows.front(), rows);
+}
+
+std::string or_dash(double value, int digits) {
+  return std::isfinite(value) ? significant(value, digits) : "\xe2\x80\x93";
 }
 
 }  // namespace softgrip::sysid
