@@ -169,7 +169,7 @@ softgrip_room(tools/investigation
 softgrip_room(tools/verification USES base document model model/file sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
 # The studies of the paper. `softgrip study` runs them.
 softgrip_room(bench/studies
-  USES base model control/elements control/feedforward control/tuning sysid/logs sysid/pages sysid/fitting
+  USES base base/result model control/elements control/feedforward control/tuning sysid/logs sysid/pages sysid/fitting
        sysid/identification)
 # Runs the commissioning experiment on a rig.
 softgrip_room(tools/baseline

@@ -82,10 +82,10 @@ std::string control_json(const ControlStudy& study) {
   json["most_sensitivity"] = study.options.most_sensitivity;
   json["identified"] = {{"rmse_mm", study.identified_rmse_mm},
                         {"ratio", wrong_way_ratio(study.identified)},
-                        {"parameters", parameters_of(study.identified)}};
+                        {"parameters", result::json_of(parameters_of(study.identified))}};
   json["extended"] = {{"rmse_mm", study.extended_rmse_mm},
                       {"ratio", wrong_way_ratio(study.extended)},
-                      {"parameters", parameters_of(study.extended)}};
+                      {"parameters", result::json_of(parameters_of(study.extended))}};
   json["schemes"] = Json::array();
   for (const ControlScheme& scheme : study.schemes) {
     Json entry{{"id", scheme.id}, {"about", scheme.about}};

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "base/result/result.h"
 #include "bench/studies/paper_table.h"
 #include "model/model.h"
 #include "sysid/logs/log.h"
@@ -112,6 +113,12 @@ enum class Triangles {
 
 /// Formats a ratio as text: "> 100" if alpha + 1/k0 is almost zero.
 [[nodiscard]] std::string ratio_text(double ratio);
+/// Returns the fields of a row of each table; the titled fields are the columns of the page.
+[[nodiscard]] result::Fields fields_of(const HiddenLatency& row);
+[[nodiscard]] result::Fields fields_of(const PublishedMatch& row);
+[[nodiscard]] result::Fields fields_of(const InverseTrial& row);
+[[nodiscard]] result::Fields fields_of(const PaperRow& row);
+
 /// Returns the results of the study as the text of published.json.
 [[nodiscard]] std::string published_json(const PublishedStudy& study);
 /// Returns the results of the study as the page report.html.

@@ -83,20 +83,11 @@ void latency_section(sysid::Page& page, const PublishedStudy& study) {
       significant(study.options.noise_mm) +
       " mm, identified with the published structure, which has no lag and no dead time. If the fitted ratio "
       "is 1 or more, the fitted model has an inverse response and no causal inverse.");
-  sysid::Table table;
-  table.caption = "Ratio: beta/(alpha + 1/k0). Published: ratio " + fixed(study.published_ratio, 2) +
-                  ", tau2 0.60 s, k2 0.020 bar/mm, c2 0.012 bar s/mm; truth: k2 0.04, c2 0.016, tau2 0.4 s.";
-  table.header = {"lag / delay [s]", "ratio",       "other triangles", "RMSE [mm]", "span [mm]",
-                  "tau2 [s]",        "k2 [bar/mm]", "c2 [bar s/mm]",   "inverse"};
-  table.numeric = {true, true, true, true, true, true, true, true, false};
-  for (const HiddenLatency& row : study.latency) {
-    table.rows.push_back({fixed(row.lag_s, 2) + " / " + fixed(row.delay_s, 2), significant(row.ratio, 3),
-                          ratio_text(row.other_ratio), fixed(row.rmse_mm, 3), fixed(row.span_mm, 1),
-                          fixed(row.tau2_s, 2), significant(row.k2_kpa_per_mm / kpa_per_bar, 3),
-                          significant(row.c2_kpa_s_per_mm / kpa_per_bar, 3),
-                          row.refused ? "refused" : "exists"});
-  }
-  page.table(table);
+  page.table(result::table_of("Ratio: beta/(alpha + 1/k0). Published: ratio " +
+                                  fixed(study.published_ratio, 2) +
+                                  ", tau2 0.60 s, k2 0.020 bar/mm, c2 0.012 bar s/mm; truth: k2 0.04, c2 "
+                                  "0.016, tau2 0.4 s.",
+                              study.latency));
   page.figure({"fitted ratio by hidden latency",
                "The fitted ratio against the hidden latency.",
                {{ratio_chart(study)}}});
@@ -120,16 +111,7 @@ void match_section(sysid::Page& page, const PublishedStudy& study) {
       "matched "
       "by an actuator with beta at most 0.8 (alpha + 1/k0) behind lag and delay. The residual that the paper "
       "reports on its signal TP1 is 0.194 mm.");
-  sysid::Table table;
-  table.header = {"eta [1/bar]", "RMSE [mm]", "on tp2, unseen [mm]", "span [mm]",
-                  "lag [s]",     "delay [s]", "lag + delay [s]",     "beta / (alpha + 1/k0)"};
-  table.numeric.assign(table.header.size(), true);
-  for (const PublishedMatch& row : study.matches) {
-    table.rows.push_back({significant(row.eta_per_bar), fixed(row.rmse_mm, 4), fixed(row.other_rmse_mm, 4),
-                          fixed(row.span_mm, 1), fixed(row.lag_s, 3), fixed(row.delay_s, 3),
-                          fixed(row.lag_s + row.delay_s, 3), fixed(row.ratio, 3)});
-  }
-  page.table(table);
+  page.table(result::table_of("", study.matches));
   if (study.match_log.size() > 0) {
     page.figure(
         {"published response from an invertible actuator",
@@ -148,23 +130,7 @@ void inverse_section(sysid::Page& page, const PublishedStudy& study) {
       "The published Bouc-Wen element with a varied beta is driven by a sine of 0 to 60 kPa. Each inverse "
       "computes the pressure from the resulting displacement. The explicit form p(k) = (y(k) + "
       "h(k-1))/alpha is a fixed-point iteration whose loop gain is beta/alpha.");
-  sysid::Table table;
-  table.header = {"beta/alpha",
-                  "explicit form: error growth per sample",
-                  "explicit: error [kPa]",
-                  "implicit: error [kPa]",
-                  "implicit: jump [kPa]",
-                  "true: jump [kPa]",
-                  "not reached",
-                  "before a start"};
-  table.numeric = {true, true, true, true, true, true, true, false};
-  for (const InverseTrial& row : study.inverses) {
-    table.rows.push_back({significant(row.ratio, 3), significant(row.growth, 3),
-                          significant(row.explicit_error_kpa, 2), significant(row.implicit_error_kpa, 2),
-                          significant(row.implicit_jump_kpa, 3), significant(row.true_jump_kpa, 2),
-                          fixed(100 * row.unreached_share, 0) + " %", row.refused ? "refused" : "exists"});
-  }
-  page.table(table);
+  page.table(result::table_of("", study.inverses));
   std::vector<Chart> charts;
   for (const InverseTrial& row : study.inverses) {
     if (row.ratio != 0.95 && row.ratio != 1.25 && row.ratio < 2) continue;
@@ -206,19 +172,9 @@ void paper_section(sysid::Page& page, const PublishedStudy& study) {
       "simulated "
       "logs of two fingers, noise " +
       significant(study.options.noise_mm) + " mm.");
-  sysid::Table table;
-  table.caption = "RMSE in mm; in brackets: share of the span of the log [%], which the paper does not give.";
-  table.header = {"signal", "the paper's finger", "finger = published model",
-                  "finger = bench_twin (latency)"};
-  table.numeric = {false, true, true, true};
-  const auto figure = [](const PaperFigure& f) {
-    return fixed(f.rmse_mm, 3) + " (" + fixed(f.rmse_percent_of_span, 2) + ")";
-  };
-  for (const PaperRow& row : study.paper) {
-    table.rows.push_back({std::string(model::name_of(row.signal)), fixed(row.paper_mm, 3),
-                          figure(row.published), figure(row.twin)});
-  }
-  page.table(table);
+  page.table(result::table_of(
+      "RMSE in mm; in brackets: share of the span of the log [%], which the paper does not give.",
+      study.paper));
   page.list(paper_table_remarks());
 }
 

@@ -1,7 +1,6 @@
 // Formats the study of the published model as text for a terminal and as JSON.
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "base/numbers.h"
 #include "bench/studies/models.h"
@@ -12,10 +11,11 @@
 namespace softgrip::studies {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using result::decimals, result::Fields, result::list_of, result::number, result::shown;
 
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
+/// Returns a value per kPa, which the page shows per bar.
+result::Value in_bar(double per_kpa) {
+  return shown(per_kpa, significant(per_kpa / kpa_per_bar, 3), true);
 }
 
 std::string paper_text(const std::vector<PaperRow>& rows) {
@@ -92,70 +92,79 @@ std::string published_text(const PublishedStudy& study) {
   return text + "seed " + std::to_string(study.options.seed) + ", " + significant(study.wall_s, 3) + " s\n";
 }
 
+Fields fields_of(const HiddenLatency& row) {
+  return {
+      {"lag_s", "lag / delay [s]",
+       shown(row.lag_s, fixed(row.lag_s, 2) + " / " + fixed(row.delay_s, 2), true)},
+      {"delay_s", row.delay_s},
+      {"ratio", "ratio", number(row.ratio, 3)},
+      {"ratio_other_triangles", "other triangles", shown(row.other_ratio, ratio_text(row.other_ratio), true)},
+      {"ratio_planned", row.planned_ratio},
+      {"ratio_true", row.true_ratio},
+      {"rmse_mm", "RMSE [mm]", decimals(row.rmse_mm, 3)},
+      {"span_mm", "span [mm]", decimals(row.span_mm, 1)},
+      {"tau2_s", "tau2 [s]", decimals(row.tau2_s, 2)},
+      {"k2_kpa_per_mm", "k2 [bar/mm]", in_bar(row.k2_kpa_per_mm)},
+      {"c2_kpa_s_per_mm", "c2 [bar s/mm]", in_bar(row.c2_kpa_s_per_mm)},
+      {"inverse_refused", "inverse", shown(row.refused, row.refused ? "refused" : "exists")},
+      {"parameters", parameters_of(row.fitted)}};
+}
+
+Fields fields_of(const PublishedMatch& row) {
+  return {{"eta_per_bar", "eta [1/bar]", row.eta_per_bar},
+          {"rmse_mm", "RMSE [mm]", decimals(row.rmse_mm, 4)},
+          {"rmse_unseen_mm", "on tp2, unseen [mm]", decimals(row.other_rmse_mm, 4)},
+          {"span_mm", "span [mm]", decimals(row.span_mm, 1)},
+          {"lag_s", "lag [s]", decimals(row.lag_s, 3)},
+          {"delay_s", "delay [s]", decimals(row.delay_s, 3)},
+          {"", "lag + delay [s]", decimals(row.lag_s + row.delay_s, 3)},
+          {"ratio", "beta / (alpha + 1/k0)", decimals(row.ratio, 3)},
+          {"parameters", parameters_of(row.model)}};
+}
+
+Fields fields_of(const InverseTrial& row) {
+  return {{"beta_over_alpha", "beta/alpha", number(row.ratio, 3)},
+          {"explicit_growth_per_sample", "explicit form: error growth per sample", number(row.growth, 3)},
+          {"explicit_error_kpa", "explicit: error [kPa]", number(row.explicit_error_kpa, 2)},
+          {"implicit_error_kpa", "implicit: error [kPa]", number(row.implicit_error_kpa, 2)},
+          {"implicit_jump_kpa", "implicit: jump [kPa]", number(row.implicit_jump_kpa, 3)},
+          {"true_jump_kpa", "true: jump [kPa]", number(row.true_jump_kpa, 2)},
+          {"unreached_share", "not reached",
+           shown(row.unreached_share, fixed(100 * row.unreached_share, 0) + " %", true)},
+          {"refused", "before a start", shown(row.refused, row.refused ? "refused" : "exists")}};
+}
+
+Fields fields_of(const PaperRow& row) {
+  const auto figure = [](const PaperFigure& f) {
+    return shown(f.rmse_mm, fixed(f.rmse_mm, 3) + " (" + fixed(f.rmse_percent_of_span, 2) + ")", true);
+  };
+  return {{"signal", "signal", model::name_of(row.signal)},
+          {"paper_mm", "the paper's finger", decimals(row.paper_mm, 3)},
+          {"published_mm", "finger = published model", figure(row.published)},
+          {"published_percent_of_span", row.published.rmse_percent_of_span},
+          {"bench_twin_mm", "finger = bench_twin (latency)", figure(row.twin)},
+          {"bench_twin_percent_of_span", row.twin.rmse_percent_of_span}};
+}
+
 std::string published_json(const PublishedStudy& study) {
-  Json json;
-  json["schema"] = 1;
-  json["software"] = sysid::software_and_version();
-  json["seed"] = study.options.seed;
-  json["rate_hz"] = study.options.rate_hz;
-  json["noise_mm"] = study.options.noise_mm;
-  json["starts"] = study.options.starts;
-  json["hidden_latency"] = Json::array();
-  for (const HiddenLatency& row : study.latency) {
-    json["hidden_latency"].push_back({{"lag_s", row.lag_s},
-                                      {"delay_s", row.delay_s},
-                                      {"ratio", row.ratio},
-                                      {"ratio_other_triangles", row.other_ratio},
-                                      {"ratio_planned", row.planned_ratio},
-                                      {"ratio_true", row.true_ratio},
-                                      {"rmse_mm", row.rmse_mm},
-                                      {"span_mm", row.span_mm},
-                                      {"tau2_s", row.tau2_s},
-                                      {"k2_kpa_per_mm", row.k2_kpa_per_mm},
-                                      {"c2_kpa_s_per_mm", row.c2_kpa_s_per_mm},
-                                      {"inverse_refused", row.refused},
-                                      {"parameters", parameters_of(row.fitted)}});
-  }
-  json["published_response"] = Json::array();
-  for (const PublishedMatch& row : study.matches) {
-    json["published_response"].push_back({{"eta_per_bar", row.eta_per_bar},
-                                          {"rmse_mm", row.rmse_mm},
-                                          {"rmse_unseen_mm", row.other_rmse_mm},
-                                          {"span_mm", row.span_mm},
-                                          {"lag_s", row.lag_s},
-                                          {"delay_s", row.delay_s},
-                                          {"ratio", row.ratio},
-                                          {"parameters", parameters_of(row.model)}});
-  }
-  json["inverse"] = Json::array();
-  for (const InverseTrial& row : study.inverses) {
-    json["inverse"].push_back({{"beta_over_alpha", row.ratio},
-                               {"explicit_growth_per_sample", row.growth},
-                               {"explicit_error_kpa", number(row.explicit_error_kpa)},
-                               {"implicit_error_kpa", number(row.implicit_error_kpa)},
-                               {"implicit_jump_kpa", row.implicit_jump_kpa},
-                               {"true_jump_kpa", row.true_jump_kpa},
-                               {"unreached_share", row.unreached_share},
-                               {"refused", row.refused}});
-  }
-  json["paper_rmse"] = Json::array();
-  for (const PaperRow& row : study.paper) {
-    json["paper_rmse"].push_back({{"signal", model::name_of(row.signal)},
-                                  {"paper_mm", row.paper_mm},
-                                  {"published_mm", row.published.rmse_mm},
-                                  {"published_percent_of_span", row.published.rmse_percent_of_span},
-                                  {"bench_twin_mm", row.twin.rmse_mm},
-                                  {"bench_twin_percent_of_span", row.twin.rmse_percent_of_span}});
-  }
-  json["published"] = {{"ratio", study.published_ratio},
-                       {"bench_twin_rmse_mm", study.twin_rmse_mm},
-                       {"falls_by_mm", study.falls_by_mm},
-                       {"falls_until_kpa", study.falls_until_kpa},
-                       {"back_at_kpa", number(study.back_at_kpa)},
-                       {"bouc_wen_refusal", study.bouc_wen_refusal},
-                       {"full_model_refusal", study.full_model_refusal}};
-  json["wall_s"] = study.wall_s;
-  return json.dump(2) + "\n";
+  return result::json_text({{"schema", 1},
+                            {"software", sysid::software_and_version()},
+                            {"seed", study.options.seed},
+                            {"rate_hz", study.options.rate_hz},
+                            {"noise_mm", study.options.noise_mm},
+                            {"starts", study.options.starts},
+                            {"hidden_latency", list_of(study.latency)},
+                            {"published_response", list_of(study.matches)},
+                            {"inverse", list_of(study.inverses)},
+                            {"paper_rmse", list_of(study.paper)},
+                            {"published", Fields{{"ratio", study.published_ratio},
+                                                 {"bench_twin_rmse_mm", study.twin_rmse_mm},
+                                                 {"falls_by_mm", study.falls_by_mm},
+                                                 {"falls_until_kpa", study.falls_until_kpa},
+                                                 {"back_at_kpa", study.back_at_kpa},
+                                                 {"bouc_wen_refusal", study.bouc_wen_refusal},
+                                                 {"full_model_refusal", study.full_model_refusal}}},
+                            {"wall_s", study.wall_s}});
 }
 
 }  // namespace softgrip::studies

@@ -6,11 +6,12 @@ std::string cell(const std::string& text, std::size_t width) {
   return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
 }
 
-nlohmann::ordered_json parameters_of(const model::Model& model) {
-  auto json = nlohmann::ordered_json::object();
+result::Fields parameters_of(const model::Model& model) {
+  result::Fields fields;
   const std::vector<double> values = model::flat_values(model);
-  for (std::size_t i = 0; i < values.size(); ++i) json[model::parameter_path(model, i)] = values[i];
-  return json;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    fields.emplace_back(model::parameter_path(model, i), values[i]);
+  return fields;
 }
 
 }  // namespace softgrip::studies

@@ -14,7 +14,7 @@ TEST(StudyText, ACellIsFilledAtTheLeftAndNeverCut) {
 
 TEST(StudyText, EveryParameterStandsUnderItsPath) {
   const model::Model model = bench_twin();
-  const auto json = parameters_of(model);
+  const auto json = result::json_of(parameters_of(model));
   EXPECT_EQ(json.size(), model::flat_values(model).size());
   for (const auto& [path, value] : json.items()) EXPECT_EQ(value, value_of(model, path.c_str())) << path;
 }
