@@ -13,18 +13,6 @@ namespace softgrip::document {
 
 namespace {
 
-/// Returns the allowed range as a text: "at least 0", "at most 10" or "0 to 10".
-std::string allowed(double lower, double upper, bool no_lower, bool no_upper) {
-  if (no_lower) return "at most " + written(upper);
-  if (no_upper) return "at least " + written(lower);
-  if (lower == upper) return "only " + written(lower);
-  return written(lower) + " to " + written(upper);
-}
-
-std::string allowed(Range range) {
-  return allowed(range.lower, range.upper, range.lower == Range{}.lower, range.upper == Range{}.upper);
-}
-
 double harmless(Range range) {
   return std::clamp(0.0, range.lower, range.upper);
 }
@@ -52,6 +40,13 @@ std::string listed(const std::vector<std::string>& choices) {
 
 }  // namespace
 
+std::string text_of(Range range) {
+  if (range.lower == Range{}.lower) return "at most " + written(range.upper);
+  if (range.upper == Range{}.upper) return "at least " + written(range.lower);
+  if (range.lower == range.upper) return "only " + written(range.lower);
+  return written(range.lower) + " to " + written(range.upper);
+}
+
 MapReader::MapReader(const Document& document, const Node& node, Problems& problems, std::string what)
     : document_(document), node_(node), problems_(problems), what_(std::move(what)) {
   if (node.kind == Node::Kind::map) return;
@@ -74,7 +69,8 @@ const Node::Entry* MapReader::find(std::string_view key) {
 
 const Node* MapReader::need(std::string_view key) {
   const Node::Entry* const entry = find(key);
-  if (entry == nullptr) missing_.emplace_back(key);
+  if (entry == nullptr && std::find(missing_.begin(), missing_.end(), key) == missing_.end())
+    missing_.emplace_back(key);
   return entry == nullptr ? nullptr : &entry->value;
 }
 
@@ -93,7 +89,7 @@ double MapReader::checked(std::string_view key, const Node* value, Range range) 
   }
   if (*number.value < range.lower || *number.value > range.upper) {
     const std::string whose = value->stands_for.empty() ? "" : " (" + in_backticks(value->stands_for) + ")";
-    refuse(*value, key, "is " + written(*number.value) + whose + ", allowed is " + allowed(range),
+    refuse(*value, key, "is " + written(*number.value) + whose + ", allowed is " + text_of(range),
            hint_for_range(key, *number.value, range.lower, range.upper));
   }
   return std::clamp(*number.value, range.lower, range.upper);
@@ -103,14 +99,8 @@ double MapReader::number(std::string_view key, Range range) {
   return checked(key, need(key), range);
 }
 
-std::optional<double> MapReader::optional_number(std::string_view key, Range range) {
-  const Node::Entry* const entry = find(key);
-  if (entry == nullptr) return std::nullopt;
-  return checked(key, &entry->value, range);
-}
-
-std::int64_t MapReader::checked_integer(std::string_view key, const Node* value, std::int64_t lower,
-                                        std::int64_t upper) {
+std::int64_t MapReader::integer(std::string_view key, std::int64_t lower, std::int64_t upper) {
+  const Node* const value = need(key);
   const std::int64_t zero = std::clamp<std::int64_t>(0, lower, upper);
   if (value == nullptr || value->refused) return zero;
   Parsed<std::int64_t> number = parse_integer(*value);
@@ -129,35 +119,24 @@ std::int64_t MapReader::checked_integer(std::string_view key, const Node* value,
   return std::clamp(*number.value, lower, upper);
 }
 
-std::int64_t MapReader::integer(std::string_view key, std::int64_t lower, std::int64_t upper) {
-  return checked_integer(key, need(key), lower, upper);
+std::int64_t MapReader::integer(std::string_view key, Range range) {
+  using Limits = std::numeric_limits<std::int64_t>;
+  const bool above = range.lower == Range{}.lower;
+  const bool below = range.upper == Range{}.upper;
+  return integer(key, above ? Limits::min() : static_cast<std::int64_t>(range.lower),
+                 below ? Limits::max() : static_cast<std::int64_t>(range.upper));
 }
 
-std::optional<std::int64_t> MapReader::optional_integer(std::string_view key, std::int64_t lower,
-                                                        std::int64_t upper) {
-  const Node::Entry* const entry = find(key);
-  if (entry == nullptr) return std::nullopt;
-  return checked_integer(key, &entry->value, lower, upper);
-}
-
-bool MapReader::checked_boolean(std::string_view key, const Node* value) {
+bool MapReader::boolean(std::string_view key) {
+  const Node* const value = need(key);
   if (value == nullptr || value->refused) return false;
   Parsed<bool> flag = parse_boolean(*value);
   if (!flag.value) refuse(*value, key, flag.message, std::move(flag.hint));
   return flag.value.value_or(false);
 }
 
-bool MapReader::boolean(std::string_view key) {
-  return checked_boolean(key, need(key));
-}
-
-std::optional<bool> MapReader::optional_boolean(std::string_view key) {
-  const Node::Entry* const entry = find(key);
-  if (entry == nullptr) return std::nullopt;
-  return checked_boolean(key, &entry->value);
-}
-
-std::string MapReader::checked_text(std::string_view key, const Node* value) {
+std::string MapReader::text(std::string_view key) {
+  const Node* const value = need(key);
   if (value == nullptr || value->refused) return {};
   if (value->kind != Node::Kind::scalar || value->scalar.empty() || !value->stands_for.empty()) {
     refuse(*value, key, "must be a text, found " + found(*value), "");
@@ -171,18 +150,8 @@ std::string MapReader::checked_text(std::string_view key, const Node* value) {
   return value->scalar;
 }
 
-std::string MapReader::text(std::string_view key) {
-  return checked_text(key, need(key));
-}
-
-std::optional<std::string> MapReader::optional_text(std::string_view key) {
-  const Node::Entry* const entry = find(key);
-  if (entry == nullptr) return std::nullopt;
-  return checked_text(key, &entry->value);
-}
-
-std::size_t MapReader::checked_choice(std::string_view key, const Node* value,
-                                      const std::vector<std::string>& choices) {
+std::size_t MapReader::choice(std::string_view key, const std::vector<std::string>& choices) {
+  const Node* const value = need(key);
   if (value == nullptr || value->refused) return 0;
   const auto choice = std::find(choices.begin(), choices.end(), value->scalar);
   if (value->kind == Node::Kind::scalar && choice != choices.end()) {
@@ -192,17 +161,6 @@ std::size_t MapReader::checked_choice(std::string_view key, const Node* value,
   refuse(*value, key, "must be " + listed(choices) + ", found " + found(*value),
          near.empty() ? "" : "did you mean " + in_backticks(near) + "?");
   return 0;
-}
-
-std::size_t MapReader::choice(std::string_view key, const std::vector<std::string>& choices) {
-  return checked_choice(key, need(key), choices);
-}
-
-std::optional<std::size_t> MapReader::optional_choice(std::string_view key,
-                                                      const std::vector<std::string>& choices) {
-  const Node::Entry* const entry = find(key);
-  if (entry == nullptr) return std::nullopt;
-  return checked_choice(key, &entry->value, choices);
 }
 
 const Node* MapReader::child(std::string_view key, bool required) {
@@ -224,8 +182,8 @@ std::vector<const Node*> MapReader::sequence(std::string_view key, bool required
   return items;
 }
 
-std::vector<double> MapReader::checked_numbers(std::string_view key, const Node* value, std::size_t count,
-                                               Range range) {
+std::vector<double> MapReader::numbers(std::string_view key, std::size_t count, Range range) {
+  const Node* const value = need(key);
   std::vector<double> result(count, harmless(range));
   if (value == nullptr || value->refused) return result;
   const std::string wanted = "must be a list of " + std::to_string(count) + " numbers, found ";
@@ -245,17 +203,6 @@ std::vector<double> MapReader::checked_numbers(std::string_view key, const Node*
     result[i] = checked(key, &value->items[i], range);
   }
   return result;
-}
-
-std::vector<double> MapReader::numbers(std::string_view key, std::size_t count, Range range) {
-  return checked_numbers(key, need(key), count, range);
-}
-
-std::optional<std::vector<double>> MapReader::optional_numbers(std::string_view key, std::size_t count,
-                                                               Range range) {
-  const Node::Entry* const entry = find(key);
-  if (entry == nullptr) return std::nullopt;
-  return checked_numbers(key, &entry->value, count, range);
 }
 
 bool MapReader::has(std::string_view key) const {
@@ -341,7 +288,7 @@ std::optional<double> number_in(const Document& document, const Node& node, Rang
   }
   if (*number.value < range.lower || *number.value > range.upper) {
     problems.add(document.problem(
-        node.at, std::string(what) + " is " + written(*number.value) + ", allowed is " + allowed(range),
+        node.at, std::string(what) + " is " + written(*number.value) + ", allowed is " + text_of(range),
         hint_for_range(what, *number.value, range.lower, range.upper)));
     return std::nullopt;
   }

@@ -19,6 +19,9 @@ struct Range {
   double upper = std::numeric_limits<double>::max();
 };
 
+/// Returns a range as text: "at least 0", "at most 10", "0 to 10" or "only 1".
+[[nodiscard]] std::string text_of(Range range);
+
 /// Reads one map. Each getter marks its key as known. finish() reports all other keys as unknown, together
 /// with the most similar known key. This known key may be the unknown key with a unit (`delay_s` for `delay`)
 /// or with another unit (`delay_s` for `delay_ms`). finish() also reports a missing key, unless an unknown
@@ -42,19 +45,31 @@ class MapReader {
   double number(std::string_view key, Range range);
   /// Reads a number in `range` under a key that may be absent. number() describes the result for a wrong
   /// value.
-  std::optional<double> optional_number(std::string_view key, Range range);
+  std::optional<double> optional_number(std::string_view key, Range range) {
+    return given(key) ? std::optional(number(key, range)) : std::nullopt;
+  }
   /// Reads a required whole number from `lower` to `upper`.
   std::int64_t integer(std::string_view key, std::int64_t lower, std::int64_t upper);
-  std::optional<std::int64_t> optional_integer(std::string_view key, std::int64_t lower, std::int64_t upper);
+  /// The ends of `range` must be whole numbers. An end that is not given has no limit.
+  std::int64_t integer(std::string_view key, Range range);
+  std::optional<std::int64_t> optional_integer(std::string_view key, std::int64_t lower, std::int64_t upper) {
+    return given(key) ? std::optional(integer(key, lower, upper)) : std::nullopt;
+  }
   /// Reads a truth value: `true` or `false`. No other words are accepted.
   bool boolean(std::string_view key);
-  std::optional<bool> optional_boolean(std::string_view key);
+  std::optional<bool> optional_boolean(std::string_view key) {
+    return given(key) ? std::optional(boolean(key)) : std::nullopt;
+  }
   /// Reads a text of one line that is not empty.
   std::string text(std::string_view key);
-  std::optional<std::string> optional_text(std::string_view key);
+  std::optional<std::string> optional_text(std::string_view key) {
+    return given(key) ? std::optional(text(key)) : std::nullopt;
+  }
   /// Reads one of the texts in `choices` and returns the index of this text. After a problem, returns 0.
   std::size_t choice(std::string_view key, const std::vector<std::string>& choices);
-  std::optional<std::size_t> optional_choice(std::string_view key, const std::vector<std::string>& choices);
+  std::optional<std::size_t> optional_choice(std::string_view key, const std::vector<std::string>& choices) {
+    return given(key) ? std::optional(choice(key, choices)) : std::nullopt;
+  }
   /// Returns the node under a key; the node may be of any kind. If the key is absent, returns nullptr. In
   /// this case, reports a problem if `required` is true.
   const Node* child(std::string_view key, bool required);
@@ -64,7 +79,9 @@ class MapReader {
   /// Reads a required list of `count` numbers in `range`, for example `at_v: [0, 10]`. The result always has
   /// `count` numbers, also after a problem.
   std::vector<double> numbers(std::string_view key, std::size_t count, Range range);
-  std::optional<std::vector<double>> optional_numbers(std::string_view key, std::size_t count, Range range);
+  std::optional<std::vector<double>> optional_numbers(std::string_view key, std::size_t count, Range range) {
+    return given(key) ? std::optional(numbers(key, count, range)) : std::nullopt;
+  }
 
   /// Returns true if the map contains the key. The call does not mark the key as known.
   [[nodiscard]] bool has(std::string_view key) const;
@@ -85,17 +102,10 @@ class MapReader {
 
  private:
   const Node::Entry* find(std::string_view key);
+  bool given(std::string_view key) { return find(key) != nullptr; }
   const Node* need(std::string_view key);
   void refuse(const Node& value, std::string_view key, const std::string& message, std::string hint);
   double checked(std::string_view key, const Node* value, Range range);
-  std::int64_t checked_integer(std::string_view key, const Node* value, std::int64_t lower,
-                               std::int64_t upper);
-  bool checked_boolean(std::string_view key, const Node* value);
-  std::string checked_text(std::string_view key, const Node* value);
-  std::size_t checked_choice(std::string_view key, const Node* value,
-                             const std::vector<std::string>& choices);
-  std::vector<double> checked_numbers(std::string_view key, const Node* value, std::size_t count,
-                                      Range range);
   void report_unknown(const Node::Entry& entry);
 
   const Document& document_;
