@@ -188,8 +188,8 @@ RigReading read_with(const std::vector<InputFile>* stored, const document::Docum
   Context context{document, problems, rig, {}, {}, {}, {}, {}, {}, {}, {}, false, {}, {}, stored};
   Context::Sound& sound = context.sound;
   MapReader top(document, document.root, problems, "the rig");
+  read_keys(top, rig_keys().rig, rig.settings);
   rig.name = read_name(top, "name");
-  rig.settings.rate_hz = top.number("rate_hz", {1, 10'000});
   context.rate_known = top.good("rate_hz");
   sound.loop = reads_well(context, top, "loop", read_loop) || !top.has("loop");
   sound.faults = reads_well(context, top, "faults", read_faults);

@@ -12,40 +12,7 @@ namespace {
 
 using document::Node;
 
-/// Gauge pressures and displacements that a rig file may contain, for any supported finger. The limits of a
-/// rig are narrower than these ranges.
-constexpr document::Range any_pressure_kpa{-100, 2000};
-constexpr document::Range any_displacement_mm{-1000, 1000};
-
-control::PidSettings read_pid(Context& context, const Node& node, const std::string& who) {
-  MapReader reader(context.document, node, context.problems, "pid of " + who);
-  control::PidSettings pid;
-  pid.kp_kpa_per_mm = reader.number("kp_kpa_per_mm", {0, 1e6});
-  pid.ki_kpa_per_mm_s = reader.number("ki_kpa_per_mm_s", {0, 1e6});
-  pid.kd_kpa_s_per_mm = reader.number("kd_kpa_s_per_mm", {0, 1e6});
-  pid.derivative_filter_s = reader.number("derivative_filter_s", {0, 100});
-  pid.setpoint_weight = reader.number("setpoint_weight", {0, 1});
-  pid.anti_windup = static_cast<control::AntiWindup>(
-      reader.choice("anti_windup", {"none", "conditional", "back_calculation"}));
-  constexpr document::Range tracking{1e-4, 1000};
-  if (pid.anti_windup == control::AntiWindup::back_calculation) {
-    pid.tracking_time_s = reader.number("tracking_time_s", tracking);
-  } else {
-    pid.tracking_time_s = reader.optional_number("tracking_time_s", tracking).value_or(pid.tracking_time_s);
-  }
-  return pid;
-}
-
-control::LimitSettings read_limits(Context& context, const Node& node, const std::string& who) {
-  MapReader reader(context.document, node, context.problems, "limits of " + who);
-  control::LimitSettings limits;
-  limits.pressure_min_kpa = reader.number("pressure_min_kpa", any_pressure_kpa);
-  limits.pressure_max_kpa = reader.number("pressure_max_kpa", any_pressure_kpa);
-  limits.slew_up_kpa_per_s = reader.number("slew_up_kpa_per_s", {0.001, 1e6});
-  limits.slew_down_kpa_per_s = reader.number("slew_down_kpa_per_s", {0.001, 1e6});
-  limits.displacement_min_mm = reader.number("displacement_min_mm", any_displacement_mm);
-  limits.displacement_max_mm = reader.number("displacement_max_mm", any_displacement_mm);
-  limits.displacement_margin_mm = reader.number("displacement_margin_mm", {0, 1000});
+void check_limits(MapReader& reader, const control::LimitSettings& limits) {
   const auto ordered = [&](std::string_view lower, double least, std::string_view upper, double most) {
     if (reader.good(lower) && reader.good(upper) && most <= least) {
       reader.report(upper, "`" + std::string(upper) + "` must be above `" + std::string(lower) + "`");
@@ -54,21 +21,18 @@ control::LimitSettings read_limits(Context& context, const Node& node, const std
   ordered("pressure_min_kpa", limits.pressure_min_kpa, "pressure_max_kpa", limits.pressure_max_kpa);
   ordered("displacement_min_mm", limits.displacement_min_mm, "displacement_max_mm",
           limits.displacement_max_mm);
-  return limits;
 }
 
 /// Reads `rest_kpa`, the pressure of all safe states. If the key is missing, this pressure is 0 kPa, limited
 /// to the pressure range.
 void read_rest_pressure(MapReader& reader, const std::string& who, control::LimitSettings& limits) {
   const bool limits_known = reader.good("limits") && limits.pressure_max_kpa > limits.pressure_min_kpa;
-  const auto rest_kpa = reader.optional_number("rest_kpa", any_pressure_kpa);
-  if (!rest_kpa) return;
-  limits.rest_kpa = *rest_kpa;
-  if (!reader.good("rest_kpa") || !limits_known || control::resting_kpa(limits) == *rest_kpa) return;
+  read_keys(reader, rig_keys().rest_pressure, limits);
+  if (!reader.good("rest_kpa") || !limits_known || control::resting_kpa(limits) == limits.rest_kpa) return;
   reader.report("rest_kpa",
                 "`rest_kpa` must be in [" + written(limits.pressure_min_kpa) + ", " +
                     written(limits.pressure_max_kpa) + "], the pressure limits of " + who + ", found " +
-                    written(*rest_kpa),
+                    written(limits.rest_kpa),
                 "`rest_kpa` is the pressure of every safe state");
 }
 
@@ -83,12 +47,10 @@ std::string read_channel_name(Context& context, MapReader& reader) {
 }
 
 void read_feedforward(Context& context, MapReader& reader, control::ChannelSettings& channel) {
-  channel.feedforward.kind = static_cast<control::FeedforwardKind>(
-      reader.choice("feedforward", {control::feedforward_names.begin(), control::feedforward_names.end()}));
   // A command of the loop waits until the bus thread sends it. This is the delay of the bus thread relative
   // to the loop.
-  const double lag_s = context.rig.loop.bus_offset_fraction * context.period_s();
-  channel.feedforward.extra_latency_s = reader.optional_number("extra_latency_s", {0, 1}).value_or(lag_s);
+  channel.feedforward.extra_latency_s = context.rig.loop.bus_offset_fraction * context.period_s();
+  read_keys(reader, rig_keys().feedforward, channel.feedforward);
 }
 
 void read_wiring(Context& context, MapReader& reader, const std::string& who,
@@ -109,7 +71,6 @@ void read_wiring(Context& context, MapReader& reader, const std::string& who,
     wiring.temperature = read_temperature_sensor(context, *thermometer, who);
   }
   channel.pressure_measured = wiring.pressure.has_value();
-  channel.displacement_used = reader.optional_boolean("displacement_used").value_or(true);
   if (!channel.displacement_used && !channel.pressure_measured) {
     reader.report("displacement_used",
                   who + " must measure the displacement or the pressure, but measures neither",
@@ -119,36 +80,40 @@ void read_wiring(Context& context, MapReader& reader, const std::string& who,
   context.rig.valves.push_back(facts);
 }
 
-/// Settings that all channels share. A channel may replace each of them by its own setting.
+/// The maps `plausibility` and `model_health` at the top level of the file, which all channels share. A
+/// channel may replace each of them by its own map.
 struct Shared {
-  std::optional<control::PlausibilitySettings> plausibility;
-  std::optional<control::ModelHealthSettings> health;
+  const MapReader& top;
+  control::ChannelSettings settings;
 };
+
+void read_plausibility(Context& context, MapReader& outer, control::PlausibilitySettings& settings) {
+  read_map(context, outer, "plausibility", false, rig_keys().plausibility, settings, [&](MapReader& reader) {
+    if (!context.rate_known || !reader.good("max_age_s") || settings.max_age_s > context.period_s()) return;
+    reader.report("max_age_s",
+                  "`max_age_s` must be longer than one cycle of the control loop, which is " +
+                      written(context.period_s()) + " s",
+                  "otherwise every reading would be too old");
+  });
+}
+
+void read_model_health(Context& context, MapReader& outer, control::ModelHealthSettings& settings) {
+  read_map(context, outer, "model_health", false, rig_keys().model_health, settings);
+}
 
 void read_own_or_shared(Context& context, MapReader& reader, const std::string& who, const Shared& shared,
                         control::ChannelSettings& channel) {
+  if (!reader.has("plausibility")) channel.plausibility = shared.settings.plausibility;
+  if (!reader.has("model_health")) channel.health = shared.settings.health;
   // If the document is incomplete, the shared maps may be in the part that was not read, so they are not
   // reported as missing.
   const bool judge = context.document.complete && !reader.keys().empty();
-  const Node* const plausibility = reader.child("plausibility", false);
-  if (plausibility != nullptr) {
-    channel.plausibility = read_plausibility(context, *plausibility);
-  } else if (shared.plausibility) {
-    channel.plausibility = *shared.plausibility;
-  } else if (judge) {
-    reader.report("plausibility",
-                  who + " has no `plausibility`, and the top level of the rig file has none either",
-                  "to share one `plausibility` between all channels, put it at the top level of the file");
-  }
-  const Node* const health = reader.child("model_health", false);
-  if (health != nullptr) {
-    channel.health = read_model_health(context, *health);
-  } else if (shared.health) {
-    channel.health = *shared.health;
-  } else if (judge) {
-    reader.report("model_health",
-                  who + " has no `model_health`, and the top level of the rig file has none either",
-                  "to share one `model_health` between all channels, put it at the top level of the file");
+  read_plausibility(context, reader, channel.plausibility);
+  read_model_health(context, reader, channel.health);
+  for (const std::string key : {"plausibility", "model_health"}) {
+    if (!judge || reader.has(key) || shared.top.has(key)) continue;
+    reader.report(key, who + " has no `" + key + "`, and the top level of the rig file has none either",
+                  "to share one `" + key + "` between all channels, put it at the top level of the file");
   }
 }
 
@@ -173,13 +138,22 @@ void read_channel(Context& context, const Node& node, const Shared& shared, Chan
   const Node whole = defaults.completed(node);
   MapReader reader(context.document, whole, context.problems, number);
   control::ChannelSettings channel;
+  read_keys(reader, rig_keys().channel, channel);
   channel.name = read_channel_name(context, reader);
   const std::string who = channel.name.empty() ? number : "channel `" + channel.name + "`";
   const auto model = named_model(context, reader, "model", InputFile::Role::model);
   if (model) channel.model = *model;
   read_feedforward(context, reader, channel);
-  if (const Node* pid = reader.child("pid", true)) channel.pid = read_pid(context, *pid, who);
-  if (const Node* limits = reader.child("limits", true)) channel.limits = read_limits(context, *limits, who);
+  read_keys(reader, rig_keys().channel_parts, channel);
+  read_map(
+      context, reader, "pid", true, rig_keys().pid, channel.pid,
+      [&](MapReader& pid) {
+        (void)pid.child("tracking_time_s", channel.pid.anti_windup == control::AntiWindup::back_calculation);
+      },
+      "pid of " + who);
+  read_map(
+      context, reader, "limits", true, rig_keys().limits, channel.limits,
+      [&](MapReader& limits) { check_limits(limits, channel.limits); }, "limits of " + who);
   read_rest_pressure(reader, who, channel.limits);
   const bool motion_known = model && context.problems.size() == before && context.rate_known &&
                             reader.good("feedforward") && reader.good("pid") && reader.good("limits");
@@ -197,13 +171,9 @@ void read_channel(Context& context, const Node& node, const Shared& shared, Chan
 }  // namespace
 
 void read_channels(Context& context, MapReader& top) {
-  Shared shared;
-  if (const Node* node = top.child("plausibility", false)) {
-    shared.plausibility = read_plausibility(context, *node);
-  }
-  if (const Node* node = top.child("model_health", false)) {
-    shared.health = read_model_health(context, *node);
-  }
+  Shared shared{top, {}};
+  read_plausibility(context, top, shared.settings.plausibility);
+  read_model_health(context, top, shared.settings.health);
   ChannelDefaults defaults(context, top);
   const std::vector<const Node*> channels = top.sequence("channels", true);
   if (top.has("channels") && channels.empty() && context.document.complete) {

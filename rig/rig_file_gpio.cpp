@@ -17,29 +17,15 @@ using drivers::GpioRole;
 /// Length of the longest line name in the kernel [bytes].
 constexpr std::size_t longest_name = 31;
 
-std::string read_line_name(MapReader& reader) {
-  const auto text = reader.optional_text("line");
-  if (text && text->size() > longest_name)
-    reader.report("line", "`line` is longer than 31 bytes, the longest name of a GPIO line in the kernel");
-  return text.value_or("");
-}
-
-/// Reads the word that identifies a chip. Reports a word that matches several chips of this computer. A word
-/// that matches no chip is accepted, because the rig may be connected to another computer.
-std::string read_chip(MapReader& reader, const std::vector<ComputerDevice>& there) {
-  std::string chip = reader.text("chip");
-  const auto found = only_device(there, chip, "GPIO chip");
+/// Checks the name of a line, and the word that identifies a chip. Reports a word that matches several chips
+/// of this computer. A word that matches no chip is accepted, because the rig may be connected to another
+/// computer.
+void check_which_line(MapReader& reader, const GpioLineSettings& line,
+                      const std::vector<ComputerDevice>& there, const std::string& what) {
+  const auto found = only_device(there, line.chip, "GPIO chip");
   if (!found && found.error().several) reader.report("chip", found.error().message, found.error().hint);
-  return chip;
-}
-
-void read_which_line(MapReader& reader, GpioLineSettings& line, const std::vector<ComputerDevice>& there,
-                     const std::string& what) {
-  line.chip = read_chip(reader, there);
-  line.line = read_line_name(reader);
-  if (const auto offset = reader.optional_integer("offset", 0, 65535)) {
-    line.offset = static_cast<std::uint32_t>(*offset);
-  }
+  if (line.line.size() > longest_name)
+    reader.report("line", "`line` is longer than 31 bytes, the longest name of a GPIO line in the kernel");
   if (reader.has("line") == reader.has("offset") && !reader.keys().empty()) {
     reader.report(reader.has("line") ? "offset" : "chip",
                   what + " needs either `line` (its name) or `offset` (its number in the chip)",
@@ -70,12 +56,11 @@ void read_line(Context& context, MapReader& gpio, const std::vector<ComputerDevi
   MapReader reader(context.document, *node, context.problems, name);
   GpioLineSettings line;
   line.role = role;
-  read_which_line(reader, line, there, name);
-  line.active_low = reader.choice("active", {"high", "low"}) == 1;
+  read_keys(reader, rig_keys().gpio_line, line);
+  check_which_line(reader, line, there, name);
   if (drivers::is_input(role)) {
-    const auto bias = reader.optional_choice("bias", {"as_is", "disabled", "pull_up", "pull_down"});
-    line.bias = static_cast<GpioBias>(bias.value_or(0));
-    if (bias && reader.good("bias")) check_broken_wire(reader, line);
+    read_keys(reader, rig_keys().gpio_input, line);
+    if (reader.good("bias")) check_broken_wire(reader, line);
   }
   if (role == GpioRole::enable) {
     settings.enable_drops_on_fault = reader.choice("on_fault", {"drop", "keep"}) == 0;
@@ -98,11 +83,7 @@ void read_gpio(Context& context, MapReader& top) {
   if (node == nullptr) return;
   GpioSettings& settings = context.rig.gpio.emplace();
   MapReader reader(context.document, *node, context.problems, "gpio");
-  settings.debounce_s = reader.number("debounce_s", {0.0001, 0.1});
-  settings.stale_after_s = reader.number("stale_after_s", {0.01, 10});
-  if (const auto interval = reader.optional_number("look_interval_s", {0.001, 0.1})) {
-    settings.look_interval_s = *interval;
-  }
+  read_keys(reader, rig_keys().gpio, settings);
   // If the rig is read from stored texts, this computer may not have the devices of the rig.
   const auto there = context.stored == nullptr ? drivers::chips_in() : std::vector<ComputerDevice>{};
   for (std::size_t i = 0; i < drivers::gpio_role_count; ++i)

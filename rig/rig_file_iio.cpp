@@ -11,8 +11,6 @@ namespace {
 
 using document::Node;
 
-constexpr std::int64_t largest_raw = (std::int64_t{1} << 24) - 1;
-
 /// Reads the terminals of the board. No two terminals may be the same channel of a converter.
 class TerminalsReader {
  public:
@@ -33,7 +31,7 @@ class TerminalsReader {
     for (const Node* item : iio.sequence("outputs", true)) {
       MapReader reader(context_.document, *item, context_.problems, "an output");
       terminals.push_back(terminal(reader, true, known_outputs_));
-      terminals.back().raw_max = reader.integer("raw_max", 1, largest_raw);
+      read_keys(reader, rig_keys().iio_output, terminals.back());
     }
     return terminals;
   }
@@ -46,6 +44,7 @@ class TerminalsReader {
     MapReader reader(context_.document, *node, context_.problems, "the heartbeat");
     drivers::IioHeartbeat heartbeat;
     heartbeat.terminal = terminal(reader, true, known_outputs_);
+    read_keys(reader, rig_keys().heartbeat, heartbeat);
     const auto raws = reader.numbers("raw", 2, {0, largest_raw});
     if (reader.good("raw") &&
         (raws[0] == raws[1] || std::floor(raws[0]) != raws[0] || std::floor(raws[1]) != raws[1]))
@@ -54,7 +53,6 @@ class TerminalsReader {
           "`raw` must be two different whole numbers, because the external circuit waits for a change");
     heartbeat.first = static_cast<long>(raws[0]);
     heartbeat.second = static_cast<long>(raws[1]);
-    heartbeat.timeout_s = reader.number("timeout_s", {0.001, 3600});
     return heartbeat;
   }
 
@@ -63,8 +61,7 @@ class TerminalsReader {
 
   drivers::IioTerminal terminal(MapReader& reader, bool output, Known& known) {
     drivers::IioTerminal terminal;
-    terminal.device = reader.text("device");
-    terminal.channel = reader.text("channel");
+    read_keys(reader, rig_keys().iio_terminal, terminal);
     check_channel(reader, terminal.channel, output);
     check_device(reader, terminal, known);
     return terminal;
@@ -112,7 +109,7 @@ class TerminalsReader {
 void read_iio(Context& context, const Node& node) {
   MapReader reader(context.document, node, context.problems, "iio");
   drivers::IioSettings settings;
-  settings.root = reader.optional_text("root").value_or(settings.root);
+  read_keys(reader, rig_keys().iio, settings);
   // If the rig is read from stored texts, this computer may not have the devices of the rig.
   const auto there =
       context.stored == nullptr ? drivers::converters_in(settings.root) : std::vector<ComputerDevice>{};

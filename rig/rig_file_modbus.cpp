@@ -28,20 +28,19 @@ constexpr int largest_rtu_unit = 247;
 /// If an adapter delays responses by more than this time, a warning is given [s].
 constexpr double usual_latency_s = 0.0015;
 
-/// Reads a numeric address. Host names are not accepted, because resolving a name may take an unlimited time.
-std::string read_host(MapReader& reader) {
-  std::string host = reader.text("host");
+/// Checks for a numeric address. Host names are not accepted, because resolving a name may take an unlimited
+/// time.
+void check_host(MapReader& reader, const std::string& host) {
   std::array<unsigned char, sizeof(in6_addr)> address{};
   if (host.empty() || ::inet_pton(AF_INET, host.c_str(), address.data()) == 1 ||
       ::inet_pton(AF_INET6, host.c_str(), address.data()) == 1) {
-    return host;
+    return;
   }
   reader.report("host", "`host` must be a numeric address, found `" + document::shown(host) + "`",
                 host == "localhost" ? "write 127.0.0.1" : "host names are not resolved");
-  return host;
 }
 
-std::optional<drivers::BoardMap> read_map(Context& context, MapReader& reader) {
+std::optional<drivers::BoardMap> read_module_map(Context& context, MapReader& reader) {
   const std::size_t before = context.problems.size();
   const auto document = named_document(context, reader, "map", InputFile::Role::board);
   if (!document) return std::nullopt;
@@ -54,8 +53,7 @@ std::optional<drivers::BoardMap> read_map(Context& context, MapReader& reader) {
 /// them with the deadlines, which are read later.
 drivers::LinkHabits read_habits(Context& context, MapReader& reader) {
   drivers::LinkHabits habits;
-  habits.settle_s = reader.optional_number("settle_s", {0, 30}).value_or(0);
-  habits.repeat_after_s = reader.optional_number("repeat_after_s", {0.001, 1}).value_or(0);
+  read_keys(reader, rig_keys().habits, habits);
   const auto note = [&](std::string_view key, double value_s, std::string_view deadline) {
     if (reader.good(key)) context.waits.push_back({reader.where(key), key, value_s, deadline});
   };
@@ -97,9 +95,9 @@ void read_numbering(MapReader& reader, drivers::TcpAddress& address) {
 }
 
 void read_framing(MapReader& reader, drivers::TcpAddress& address) {
-  address.rtu_framing = reader.optional_choice("framing", {"tcp", "rtu"}).value_or(0) == 1;
+  read_keys(reader, rig_keys().framing, address);
   if (!address.rtu_framing) return read_numbering(reader, address);
-  address.silence_s = reader.optional_number("silence_s", {0, 1}).value_or(address.silence_s);
+  read_keys(reader, rig_keys().rtu_framing, address);
 }
 
 /// Reads the modules of a board. If there is a single module, the map of the board contains `map` and `unit`,
@@ -132,7 +130,7 @@ class ModulesReader {
  private:
   void add(MapReader& reader, const std::string& name) {
     ModbusModuleSettings module;
-    const auto map = read_map(context_, reader);
+    const auto map = read_module_map(context_, reader);
     if (map) module.map = *map;
     module.name = name.empty() ? module.map.name : name;
     bool rtu = serial_;
@@ -158,8 +156,8 @@ class ModulesReader {
 
   drivers::TcpAddress read_address(MapReader& reader) {
     drivers::TcpAddress address;
-    address.host = read_host(reader);
-    address.port = static_cast<std::uint16_t>(reader.integer("port", 1, 65535));
+    read_keys(reader, rig_keys().tcp, address);
+    check_host(reader, address.host);
     address.habits = read_habits(context_, reader);
     read_framing(reader, address);
     return address;
@@ -214,12 +212,11 @@ void check_device(MapReader& reader, const std::string& device) {
   if (unclear && unclear->several) reader.report("device", unclear->message, unclear->hint);
 }
 
-/// Reads the latency of the adapter from the file. If the file does not give it, asks the kernel for the
-/// latency of the connected adapter. Warns of an adapter with a long latency.
-void read_adapter_latency(MapReader& reader, drivers::SerialLine& line) {
-  const auto stated = reader.optional_number("adapter_latency_s", {0, 1});
+/// If the file does not give the latency of the adapter, asks the kernel for that of the connected adapter.
+/// Warns of an adapter with a long latency.
+void find_adapter_latency(MapReader& reader, drivers::SerialLine& line) {
   const auto found = drivers::adapter_latency(line.device);
-  line.adapter_latency_s = stated.value_or(found ? found->seconds : 0);
+  if (found && !reader.has("adapter_latency_s")) line.adapter_latency_s = found->seconds;
   if (!found || found->seconds <= usual_latency_s) return;
   reader.warn("device",
               "the adapter delays every response by up to " + written(found->seconds * 1e3) +
@@ -229,23 +226,19 @@ void read_adapter_latency(MapReader& reader, drivers::SerialLine& line) {
 
 drivers::SerialLine read_line(Context& context, MapReader& reader) {
   drivers::SerialLine line;
-  line.device = reader.text("device");
+  read_keys(reader, rig_keys().serial, line);
   if (reader.good("device") && line.device.front() != '/') {
     reader.report("device",
                   "`device` must be an absolute path, found `" + document::shown(line.device) + "`");
   }
   // If the rig is read from stored texts, this computer may not have the devices of the rig.
   if (context.stored == nullptr) check_device(reader, line.device);
-  line.baud = static_cast<std::uint32_t>(reader.integer("baud", baud_rates.front(), baud_rates.back()));
   if (reader.good("baud") && std::find(baud_rates.begin(), baud_rates.end(), line.baud) == baud_rates.end()) {
     reader.report("baud", "`baud` must be one of the usual rates",
                   with_commas(baud_rates, [](std::uint32_t rate) { return std::to_string(rate); }));
   }
   read_format(reader, line);
-  line.silence_s = reader.optional_number("silence_s", {1e-5, 1});
-  line.turnaround_s = reader.number("turnaround_s", {0, 1});
-  read_adapter_latency(reader, line);
-  line.echo = reader.optional_boolean("echo").value_or(false);
+  find_adapter_latency(reader, line);
   line.habits = read_habits(context, reader);
   const double usual_s = line.turnaround_s + line.adapter_latency_s;
   if (reader.good("repeat_after_s") && line.habits.repeat_after_s <= usual_s) {

@@ -1,14 +1,16 @@
 #pragma once
 // The functions by which read_rig() reads the maps of a rig file. Only rig_file*.cpp uses this file.
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
-#include "document/reader.h"
+#include "document/schema.h"
 #include "rig/rig_file.h"
+#include "rig/rig_keys.h"
 
 namespace softgrip::rig {
 
@@ -80,6 +82,20 @@ struct Context {
 [[nodiscard]] std::optional<model::Model> named_model(Context& context, MapReader& reader,
                                                       std::string_view key, InputFile::Role role);
 
+/// Reads the map under `key` into `settings`, then calls `check` for keys and conditions that have no
+/// declaration. `what` is the name of the map in messages; the default is the key. Does nothing if an
+/// optional map is absent.
+template <class S>
+void read_map(Context& context, MapReader& outer, const std::string& key, bool required,
+              const document::Keys<S>& keys, S& settings,
+              const std::function<void(MapReader& reader)>& check = nullptr, const std::string& what = "") {
+  const document::Node* const node = outer.child(key, required);
+  if (node == nullptr) return;
+  MapReader reader(context.document, *node, context.problems, what.empty() ? key : what);
+  read_keys(reader, keys, settings);
+  if (check) check(reader);
+}
+
 /// Reads a name that can be used in folders, metrics and messages: letters, digits, `-` and `_`.
 [[nodiscard]] std::string read_name(MapReader& reader, std::string_view key);
 /// Returns a location as text, for example "12:5" for line 12, column 5.
@@ -105,10 +121,6 @@ void read_real_time(Context& context, MapReader& top);
 void read_recorder(Context& context, MapReader& top);
 void read_socket(Context& context, MapReader& top);
 void read_gpio(Context& context, MapReader& top);
-
-// The following two maps are at the top level of the file, where they apply to all channels, or in a channel.
-[[nodiscard]] control::PlausibilitySettings read_plausibility(Context& context, const document::Node& node);
-[[nodiscard]] control::ModelHealthSettings read_model_health(Context& context, const document::Node& node);
 
 /// Returns 0 kPa if the rest pressure differs from 0 kPa only because the pressure range does not contain 0
 /// kPa. Otherwise returns the rest pressure.

@@ -22,11 +22,8 @@ std::uint64_t seed_of(std::uint64_t seed, std::uint64_t channel) {
 simulation::PlantSettings read_plant(Context& context, const Node& node, const std::string& name) {
   MapReader reader(context.document, node, context.problems, "the plant of `" + name + "`");
   simulation::PlantSettings plant;
+  read_keys(reader, rig_keys().plant, plant);
   if (const auto model = named_model(context, reader, "model", InputFile::Role::plant)) plant.model = *model;
-  plant.displacement_noise_mm = reader.number("displacement_noise_mm", {0, 100});
-  plant.pressure_noise_kpa = reader.number("pressure_noise_kpa", {0, 100});
-  plant.temperature_c = reader.optional_number("temperature_c", {-50, 150}).value_or(plant.temperature_c);
-  plant.temperature_noise_c = reader.optional_number("temperature_noise_c", {0, 100}).value_or(0);
   if (const Node* object = reader.child("object", false))
     plant.object = simulation::read_object(context.document, *object, context.problems);
   plant.sample_time_s = context.period_s();
@@ -115,15 +112,15 @@ void read_simulated_board(Context& context, const Node& node) {
   const auto seed =
       static_cast<std::uint64_t>(reader.integer("seed", 0, std::numeric_limits<std::int64_t>::max()));
   context.rig.seed = seed;
-  settings.watchdog_timeout_s = reader.number("watchdog_timeout_s", {0, 60});
-  const int output_bits = static_cast<int>(reader.integer("output_bits", 0, 24));
-  const int input_bits = static_cast<int>(reader.integer("input_bits", 0, 24));
+  read_keys(reader, rig_keys().simulated, settings);
+  simulation::SimulatedChannel converters;
+  read_keys(reader, rig_keys().converters, converters);
   if (const Node* plants = reader.child("plants", true)) {
     MapReader plant_reader(context.document, *plants, context.problems, "plants");
     for (std::size_t i = 0; i < context.wiring.size(); ++i) {
       simulation::SimulatedChannel channel = simulated_channel(context, i);
-      channel.output_bits = output_bits;
-      channel.input_bits = input_bits;
+      channel.output_bits = converters.output_bits;
+      channel.input_bits = converters.input_bits;
       const Node* const plant = channel.name.empty() ? nullptr : plant_reader.child(channel.name, true);
       if (plant != nullptr) channel.plant = read_plant(context, *plant, channel.name);
       channel.plant.seed = seed_of(seed, i);

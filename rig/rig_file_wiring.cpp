@@ -251,10 +251,9 @@ drivers::OutputWiring read_valve(Context& context, const Node& node, const std::
   if (reader.good("range_kpa") && range[0] >= range[1]) {
     reader.report("range_kpa", "the first number of `range_kpa` must be smaller than the second");
   }
-  facts.on_power_loss = static_cast<PowerLoss>(reader.choice("on_power_loss", {"vents", "holds"}));
-  const auto power_loss_kpa = reader.optional_number("on_power_loss_kpa", {-200, 10'000});
-  facts.power_loss_kpa = power_loss_kpa.value_or(0);
-  if (power_loss_kpa && reader.good("on_power_loss") && facts.on_power_loss == PowerLoss::holds) {
+  read_keys(reader, rig_keys().valve, facts);
+  if (reader.has("on_power_loss_kpa") && reader.good("on_power_loss") &&
+      facts.on_power_loss == PowerLoss::holds) {
     reader.report("on_power_loss_kpa",
                   "with `on_power_loss: holds`, no other pressure on power loss is possible",
                   "leave `on_power_loss_kpa` out, or write `on_power_loss: vents`");

@@ -1,0 +1,142 @@
+#pragma once
+// Declares the keys of a map, each key once. The strict reader of the map, its list of known keys for hints,
+// and its table on a reference page follow from the declaration.
+
+#include <chrono>
+#include <concepts>
+#include <functional>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "base/enumerated.h"
+#include "base/numbers.h"
+#include "document/reader.h"
+
+namespace softgrip::document {
+
+/// The permitted values of a key: numbers from `lower` to `upper` (both included), one of several words, or
+/// any value of the type.
+struct Allowed {
+  Allowed() = default;
+  Allowed(double lower, double upper) : range{lower, upper} {}
+  Allowed(std::vector<std::string> choices) : words(std::move(choices)) {}
+  Allowed(std::initializer_list<const char*> choices) : words(choices.begin(), choices.end()) {}
+
+  Range range{};
+  std::vector<std::string> words;
+};
+
+/// A key as a reference page describes it.
+struct KeyFacts {
+  std::string name;
+  std::string values;    ///< permitted values, for example "0.001 to 100"
+  std::string fallback;  ///< value of an omitted key, for example "0.1"; empty: the key is required
+  std::string meaning;
+
+  [[nodiscard]] bool required() const noexcept { return fallback.empty(); }
+};
+
+/// One key of a map whose values are stored in an `S`.
+template <class S>
+struct Key {
+  KeyFacts facts;
+  std::function<void(MapReader& reader, const KeyFacts& facts, S& settings)> read;
+
+  Key(KeyFacts described, decltype(read) reading) : facts(std::move(described)), read(std::move(reading)) {}
+  /// Declares a key whose value the caller reads. read_keys() only marks it as known.
+  Key(std::string name, std::string values, std::string fallback, std::string meaning)
+      : facts{std::move(name), std::move(values), std::move(fallback), std::move(meaning)},
+        read([](MapReader& reader, const KeyFacts& key, S&) {
+          (void)reader.child(key.name, key.required());
+        }) {}
+  /// Key of a base class of the settings.
+  template <class Base>
+  requires(std::derived_from<S, Base> && !std::same_as<S, Base>) Key(Key<Base> base)
+      : facts(std::move(base.facts)), read(std::move(base.read)) {}
+};
+template <class S>
+using Keys = std::vector<Key<S>>;
+
+/// Reads all keys of a map in the order of the declaration. An omitted optional key keeps its value in
+/// `settings`, except for a std::optional, which is reset.
+template <class S>
+void read_keys(MapReader& reader, const Keys<S>& keys, S& settings) {
+  for (const Key<S>& key : keys) key.read(reader, key.facts, settings);
+}
+
+/// Reads the value of a key that is required or present.
+template <class T>
+void read_value(MapReader& reader, std::string_view key, const Allowed& allowed, T& value) {
+  if constexpr (std::is_same_v<T, bool>) {
+    value = allowed.words.empty() ? reader.boolean(key) : reader.choice(key, allowed.words) == 1;
+  } else if constexpr (std::is_enum_v<T>) {
+    value = static_cast<T>(reader.choice(key, allowed.words));
+  } else if constexpr (std::is_integral_v<T>) {
+    value = static_cast<T>(reader.integer(key, allowed.range));
+  } else if constexpr (std::is_floating_point_v<T>) {
+    value = reader.number(key, allowed.range);
+  } else if constexpr (std::is_same_v<T, std::chrono::nanoseconds>) {
+    value = T(static_cast<std::int64_t>(reader.number(key, allowed.range) * 1e9));
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    value = reader.text(key);
+  } else {
+    read_value(reader, key, allowed, value.emplace());
+  }
+}
+
+/// Returns the permitted values as text: "0.001 to 100", "`none` or `look`", "at least 0" ...
+[[nodiscard]] inline std::string text_of(const Allowed& allowed) {
+  return allowed.words.empty() ? text_of(allowed.range) : enumerated(allowed.words, " or ", in_backticks);
+}
+
+/// Returns the default of an optional key as text. Returns "none" for a default without a text.
+template <class T>
+std::string default_text(const T& value, const Allowed& allowed) {
+  if constexpr (std::is_enum_v<T> || std::is_same_v<T, bool>) {
+    const auto index = static_cast<std::size_t>(value);
+    return in_backticks(allowed.words.empty() ? (value == T{} ? "false" : "true") : allowed.words.at(index));
+  } else if constexpr (std::is_arithmetic_v<T>) {
+    return written(static_cast<double>(value));
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    return value.empty() ? "none" : in_backticks(value);
+  } else {
+    return "none";
+  }
+}
+
+/// Declares a required key. `member` is the member in which the value is stored.
+template <class S, class T>
+Key<S> required(std::string name, T S::*member, const Allowed& allowed, std::string meaning) {
+  std::string values = "a text";
+  if constexpr (std::is_same_v<T, bool>)
+    values = text_of(allowed.words.empty() ? Allowed{"true", "false"} : allowed);
+  else if constexpr (!std::is_same_v<T, std::string>)
+    values = text_of(allowed);
+  return {{std::move(name), std::move(values), "", std::move(meaning)},
+          [member, allowed](MapReader& reader, const KeyFacts& key, S& settings) {
+            read_value(reader, key.name, allowed, settings.*member);
+          }};
+}
+
+/// Declares an optional key. Its default is the value of the member in `S{}`. `fallback` describes a default
+/// that has no text, or that the caller computes.
+template <class S, class T>
+Key<S> optional(std::string name, T S::*member, const Allowed& allowed, std::string meaning,
+                std::string fallback = "") {
+  Key<S> key = required(std::move(name), member, allowed, std::move(meaning));
+  key.facts.fallback = fallback.empty() ? default_text(S{}.*member, allowed) : std::move(fallback);
+  key.read = [member, read = std::move(key.read)](MapReader& reader, const KeyFacts& facts, S& settings) {
+    if (reader.child(facts.name, false) != nullptr) {
+      read(reader, facts, settings);
+    } else if constexpr (requires { (settings.*member).reset(); }) {
+      (settings.*member).reset();
+    }
+  };
+  return key;
+}
+
+}  // namespace softgrip::document

@@ -1,0 +1,390 @@
+#include "rig/rig_keys.h"
+
+namespace softgrip::rig {
+
+namespace {
+
+using document::KeyFacts;
+using document::Keys;
+using document::MapReader;
+using document::optional;
+using document::required;
+
+/// Gauge pressures and displacements that a rig file may contain, for any supported finger. The limits of a
+/// rig are narrower than these ranges.
+const document::Allowed any_pressure_kpa{-100, 2000};
+const document::Allowed any_displacement_mm{-1000, 1000};
+/// Pressures at a valve or in its line.
+const document::Allowed line_pressure_kpa{-200, 10'000};
+const document::Allowed cycles{1, 100'000};
+
+void declare_rig(RigKeys& keys) {
+  using control::RigSettings;
+  keys.rig = {
+      {"name", "a name", "", "name of the rig in folders and metrics"},
+      required("rate_hz", &RigSettings::rate_hz, {1, 10'000}, "cycles per second of control loop and bus"),
+      {"loop", "map", "none", "[timing of the bus thread](#loop)"},
+      {"faults", "map", "", "[reaction times](#faults)"},
+      {"board", "map", "", "one of `modbus_tcp`, `modbus_rtu`, `iio` and `simulated`"},
+      {"plausibility", "map", "none", "[limits of a valid reading](#plausibility), for all channels"},
+      {"model_health", "map", "none", "[residual of a healthy finger](#model_health), for all channels"},
+      {"channel_defaults", "map", "none", "[keys that all channels share](#channel_defaults)"},
+      {"channels", "list", "", "1 to 16 [channels](#a-channel)"},
+      {"safety", "map", "", "[actions of the safe states](#safety)"},
+      {"detection", "map", "", "[detection of a contact](#detection-rest)"},
+      {"rest", "map", "", "[detection of rest](#detection-rest)"},
+      {"real_time", "map", "", "[requests to the operating system](#real_time)"},
+      {"recorder", "map", "", "[recordings](#recorder)"},
+      {"socket", "map", "", "[sockets for clients](#socket)"},
+      {"gpio", "map", "none", "[emergency stop, enable output, lamps, part in position](#gpio)"},
+  };
+  keys.loop = {required("bus_offset_fraction", &LoopSettings::bus_offset_fraction, {0.01, 0.99},
+                        "start of the exchange with the board, as a fraction of the cycle")};
+  using control::DetectionSettings;
+  keys.detection = {
+      required("margin_mm", &DetectionSettings::margin_mm, {0.001, 1000},
+               "a finger has contact if its model of free motion is at least this far ahead of it"),
+      optional("model_rmse_mm", &DetectionSettings::model_rmse_mm, {0, 1000},
+               "RMSE of the model; `margin_mm` must be at least 3 times as large", "none")};
+  keys.rest = {required("band_mm", &RigSettings::rest_band_mm, {0.001, 100},
+                        "a finger is at rest if its readings stay within this band for `time_s`"),
+               required("time_s", &RigSettings::rest_time_s, {0.001, 600}, "see `band_mm`"),
+               required("timeout_s", &RigSettings::rest_timeout_s, {0.001, 3600},
+                        "a start ends with ERROR if the fingers are not at rest by then")};
+}
+
+void declare_channel(RigKeys& keys) {
+  keys.channel = {{"name", "a name", "", "unique name of the channel, for example `left`"},
+                  {"model", "a path", "", "model file of the finger without contact, for the controller"}};
+  keys.channel_parts = {
+      {"pid", "map", "", "[settings of the feedback](#pid)"},
+      {"limits", "map", "", "[limits of every command](#limits)"},
+      {"valve", "map", "", "[output for the valve](#valve)"},
+      {"sensor", "map", "", "[input with the displacement](#sensor)"},
+      {"pressure_monitor", "map", "none", "input with the measured pressure"},
+      {"temperature_sensor", "map", "none", "input with the temperature, which is only recorded"},
+      optional("displacement_used", &control::ChannelSettings::displacement_used, {},
+               "`false`: displacements are only recorded; requires `pressure_monitor`"),
+      {"plausibility", "map", "map of the rig", "[limits of a valid reading](#plausibility)"},
+      {"model_health", "map", "map of the rig", "[residual of a healthy finger](#model_health)"},
+  };
+  using control::FeedforwardSettings;
+  const auto& names = control::feedforward_names;
+  keys.feedforward = {
+      required("feedforward", &FeedforwardSettings::kind, {{names.begin(), names.end()}},
+               "inverse of the model that computes the command"),
+      optional("extra_latency_s", &FeedforwardSettings::extra_latency_s, {0, 1},
+               "delay of a command until the output of the board, without the valve blocks of the model",
+               "`bus_offset_fraction` of a cycle")};
+  using Limits = control::LimitSettings;
+  keys.rest_pressure = {optional("rest_kpa", &Limits::rest_kpa, any_pressure_kpa,
+                                 "[pressure of every safe state](#rest_kpa), inside the pressure limits")};
+  keys.limits = {
+      required("pressure_min_kpa", &Limits::pressure_min_kpa, any_pressure_kpa, "smallest command"),
+      required("pressure_max_kpa", &Limits::pressure_max_kpa, any_pressure_kpa, "largest command"),
+      required("slew_up_kpa_per_s", &Limits::slew_up_kpa_per_s, {0.001, 1e6}, "fastest increase"),
+      required("slew_down_kpa_per_s", &Limits::slew_down_kpa_per_s, {0.001, 1e6}, "fastest decrease"),
+      required("displacement_min_mm", &Limits::displacement_min_mm, any_displacement_mm, "least reference"),
+      required("displacement_max_mm", &Limits::displacement_max_mm, any_displacement_mm,
+               "greatest reference"),
+      required("displacement_margin_mm", &Limits::displacement_margin_mm, {0, 1000},
+               "a reading that exceeds the displacement limits by more than this causes a fault")};
+  using Pid = control::PidSettings;
+  keys.pid = {
+      required("kp_kpa_per_mm", &Pid::kp_kpa_per_mm, {0, 1e6}, "proportional gain"),
+      required("ki_kpa_per_mm_s", &Pid::ki_kpa_per_mm_s, {0, 1e6}, "integral gain"),
+      required("kd_kpa_s_per_mm", &Pid::kd_kpa_s_per_mm, {0, 1e6}, "derivative gain"),
+      required("derivative_filter_s", &Pid::derivative_filter_s, {0, 100}, "time constant of the derivative"),
+      required("setpoint_weight", &Pid::setpoint_weight, {0, 1}, "weight of the reference in the P term"),
+      required("anti_windup", &Pid::anti_windup, {"none", "conditional", "back_calculation"},
+               "method against integrator windup"),
+      optional("tracking_time_s", &Pid::tracking_time_s, {1e-4, 1000},
+               "time constant of the back-calculation; required with `back_calculation`")};
+}
+
+void declare_wiring(RigKeys& keys) {
+  keys.output = {
+      {"output", "0 to 255", "", "number of the output terminal; a terminal may be used only once"},
+      {"module", "a name", "the only module with outputs", "module with the terminal"},
+      {"at_v", "two numbers", "", "two signals at the terminal in the board's unit; or `at_ma`, `at_kpa`"},
+      {"is_kpa", "two numbers", "", "the two pressures at these signals; the slope may be negative"},
+      {"range_kpa", "two numbers", "", "lowest and highest pressure that the valve controls"}};
+  keys.input = {
+      {"input", "0 to 255", "", "number of the input terminal; a terminal may be used only once"},
+      {"module", "a name", "the only module with inputs", "module with the terminal"},
+      {"at_v", "two numbers", "", "two signals at the terminal in the board's unit; or `at_ma`, `at_kpa`"},
+      {"is_mm", "two numbers", "", "the two displacements at these signals; the slope may be negative"},
+      {"valid_v", "two numbers", "",
+       "lowest and highest signal of a valid reading; or `valid_ma`, `valid_kpa`"},
+      {"error_codes", "list", "none", "signals with which the sensor reports that it cannot measure"}};
+  keys.valve = {
+      required("on_power_loss", &ValveFacts::on_power_loss, {"vents", "holds"}, "behaviour without power"),
+      optional("on_power_loss_kpa", &ValveFacts::power_loss_kpa, line_pressure_kpa,
+               "pressure without power of a valve that vents")};
+}
+
+/// Reads `overrun_cycles`. The deprecated name of this key is `slipped_cycles`.
+void read_overrun_cycles(MapReader& reader, const KeyFacts& key, control::FaultSettings& faults) {
+  constexpr document::Range any{0, 100'000};
+  const std::string old_name = "slipped_cycles";
+  const bool renamed = reader.has(old_name);
+  faults.overrun_cycles = static_cast<std::uint32_t>(reader.integer(renamed ? old_name : key.name, any));
+  if (!renamed || reader.child(key.name, false) == nullptr) return;
+  (void)reader.integer(key.name, any);
+  reader.report(old_name, "this repeats overrun_cycles", "overrun_cycles alone");
+}
+
+void declare_safety(RigKeys& keys) {
+  keys.safety = {{"safe_action", "map", "",
+                  "`vent` or `hold` for each phase: `idle`, `closing`, `holding`, `releasing`"},
+                 required("on_emergency_stop", &control::SafetySettings::on_emergency_stop, {"vent", "hold"},
+                          "action after an emergency stop")};
+  keys.commands = {
+      required("max_missed_commands", &LoopSettings::max_missed_commands, {1, 1000},
+               "exchanges without a new command until the bus thread writes the safe outputs"),
+      {"accept_no_watchdog", "a text", "none",
+       "required if the board has no watchdog that vents: `" + std::string(no_watchdog_words) + "`"}};
+  using Fault = control::FaultSettings;
+  keys.faults = {
+      required("bus_down_cycles", &Fault::bus_down_cycles, cycles, "no successful exchange"),
+      required("invalid_reading_cycles", &Fault::invalid_reading_cycles, cycles, "a reading is not valid"),
+      required("displacement_cycles", &Fault::displacement_cycles, cycles, "displacement outside its limits"),
+      required("readback_cycles", &Fault::readback_cycles, cycles, "an output differs from the commands"),
+      required("readback_tolerance_kpa", &Fault::readback_tolerance_kpa, {0.001, 1000},
+               "permitted difference of the output from the commands of the last `readback_delay_s`"),
+      required("readback_delay_s", &Fault::readback_delay_s, {0, 10}, "see `readback_tolerance_kpa`"),
+      optional("pressure_cycles", &Fault::pressure_cycles, {0, 100'000},
+               "a measured pressure differs from the commands; 0: no comparison"),
+      optional("pressure_tolerance_kpa", &Fault::pressure_tolerance_kpa, {0.001, 1000},
+               "permitted difference of the pressure from the commands of the last `pressure_delay_s`",
+               "none"),
+      optional("pressure_delay_s", &Fault::pressure_delay_s, {0, 10}, "see `pressure_tolerance_kpa`", "none"),
+      {{"overrun_cycles", "0 to 100000", "",
+        "missed cycles of the control loop; 0: they never cause a fault"},
+       read_overrun_cycles},
+      required("model_unfit_is_fault", &Fault::model_unfit_is_fault, {}, "`true`: an unfit model is a fault"),
+      optional("unsteady_is_fault", &Fault::unsteady_is_fault, {},
+               "`true`: readings that jump back and forth cause F204, otherwise only an event")};
+}
+
+void declare_monitoring(RigKeys& keys) {
+  using Check = control::PlausibilitySettings;
+  keys.plausibility = {
+      required("max_age_s", &Check::max_age_s, {1e-4, 60}, "an older reading is stale"),
+      required("max_speed_mm_per_s", &Check::max_speed_mm_per_s, {0.001, 1e6},
+               "speed that no finger reaches"),
+      required("jump_margin_mm", &Check::jump_margin_mm, {0, 1000}, "tolerance of this speed for noise"),
+      required("frozen_after_s", &Check::frozen_after_s, {0.001, 3600},
+               "a reading that is constant for this time while the command changes is frozen"),
+      required("frozen_band_mm", &Check::frozen_band_mm, {0, 1000}, "largest change of a constant reading"),
+      required("frozen_command_kpa", &Check::frozen_command_kpa, {0.001, 10'000},
+               "change of the command for a frozen reading"),
+      optional("jump_mm", &Check::jump_mm, {0.001, 1000},
+               "a change between two readings that exceeds that of the model by more than this is a jump"),
+      optional("unsteady_jumps", &Check::unsteady_jumps, {2, control::most_unsteady_jumps},
+               "number of jumps back and forth within 1 s that makes the sensor unsteady")};
+  using Health = control::ModelHealthSettings;
+  keys.model_health = {
+      required("model_error_mm", &Health::model_error_mm, {1e-6, 1000},
+               "standard deviation of the model error"),
+      required("correlation_time_s", &Health::correlation_time_s, {1e-6, 3600},
+               "correlation time of this error"),
+      required("noise_mm", &Health::noise_mm, {1e-6, 1000}, "standard deviation of the noise of a reading"),
+      required("unfit_mm", &Health::unfit_mm, {1e-6, 1000},
+               "the model is unfit if the RMS of the residual over `unfit_window_s` exceeds this"),
+      optional("interval_s", &Health::interval_s, {1e-6, 3600}, "time over which the residual is averaged"),
+      optional("allowance_sigma", &Health::allowance_sigma, {1e-6, 100},
+               "half of the smallest shift that is detected, in standard deviations"),
+      optional("false_alarm_interval_s", &Health::false_alarm_interval_s, {1e-6, 1e12},
+               "mean time between false alarms of a healthy model"),
+      optional("unfit_window_s", &Health::unfit_window_s, {1e-6, 3600}, "see `unfit_mm`")};
+}
+
+void declare_service(RigKeys& keys) {
+  using RealTime = RealTimeSettings;
+  keys.real_time = {
+      required("required", &RealTime::required, {}, "`true`: refuse to start if a setting is not available"),
+      required("priority", &RealTime::priority, {0, 80},
+               "SCHED_FIFO priority of the control loop; 0: default scheduling of Linux"),
+      required("lock_memory", &RealTime::lock_memory, {}, "`true`: lock and prefault the daemon's memory"),
+      {"cpus", "list", "", "processors for control loop and bus thread; `[]`: all processors"},
+      optional("cpu_dma_latency_us", &RealTime::cpu_dma_latency_us, {0, 1'000'000},
+               "longest permitted wake-up time of a processor from a sleep state"),
+      optional("prefault_stack_bytes", &RealTime::prefault_stack_bytes, {0, 4 << 20}, "prefaulted stack"),
+      optional("prefault_heap_bytes", &RealTime::prefault_heap_bytes, {0, 1 << 30}, "prefaulted heap")};
+  using Recorder = RecorderSettings;
+  keys.recorder = {
+      required("mode", &Recorder::mode, {"off", "sequences", "always"}, "occasions of recordings"),
+      required("directory", &Recorder::directory, {}, "folder of the recordings"),
+      optional("decimation", &Recorder::decimation, {1, 10'000}, "number of cycles per row of the recording"),
+      optional("flush_interval_s", &Recorder::flush_interval_s, {0.001, 0.5},
+               "length of the recording that can be lost after `kill -9`"),
+      optional("sync_interval_s", &Recorder::sync_interval_s, {0, 3600},
+               "length of the recording that can be lost after a power failure; 0: the kernel decides"),
+      optional("history_s", &Recorder::history_s, {0, 60},
+               "a recording also contains this time before the event that started it")};
+  keys.look = {
+      required("path", &SocketFile::path, {}, "path of the Unix domain socket, at most 107 bytes"),
+      {"mode", "a text", "", "permissions of the socket, such as `rw-rw----` or `\"0660\"`"},
+      optional("group", &SocketFile::group, {}, "group of the socket's file", "group of the daemon")};
+  using Socket = SocketSettings;
+  const Keys<Socket> own{
+      {"look", "map", "none", "a second, read-only socket with the keys `path`, `mode` and `group`"},
+      required("sequence_directory", &Socket::sequence_directory, {}, "folder of the sequences for clients"),
+      optional("max_clients", &Socket::max_clients, {1, 1000}, "most clients on each of the two sockets"),
+      optional("max_line_bytes", &Socket::max_line_bytes, {256, 1 << 20}, "longest line of a client"),
+      optional("max_queue_bytes", &Socket::max_queue_bytes, {4096, 64 << 20},
+               "largest size of the responses that a client has not read yet")};
+  keys.socket.assign(keys.look.begin(), keys.look.end());
+  keys.socket.insert(keys.socket.end(), own.begin(), own.end());
+}
+
+void declare_gpio(RigKeys& keys) {
+  keys.gpio = {required("debounce_s", &GpioSettings::debounce_s, {0.0001, 0.1},
+                        "a new level must be constant for this time"),
+               required("stale_after_s", &GpioSettings::stale_after_s, {0.01, 10},
+                        "time without a reading of the lines, or without a cycle, until the reaction"),
+               optional("look_interval_s", &GpioSettings::look_interval_s, {0.001, 0.1},
+                        "interval of the readings between edges; at most a quarter of `stale_after_s`")};
+  using Line = drivers::GpioLineSettings;
+  keys.gpio_line = {
+      required("chip", &Line::chip, {}, "[word that identifies one chip](#devices-of-the-computer)"),
+      optional("line", &Line::line, {}, "name of the line"),
+      optional("offset", &Line::offset, {0, 65535}, "number of the line in the chip, in place of `line`"),
+      required("active", &Line::active_low, {"high", "low"}, "level at which the line is active")};
+  keys.gpio_input = {
+      optional("bias", &Line::bias, {"as_is", "disabled", "pull_up", "pull_down"}, "inputs: pull resistor")};
+  keys.gpio_enable = {
+      {"on_fault", "`drop` or `keep`", "", "`enable`: behaviour during a fault other than F501 and F502"}};
+}
+
+void declare_modbus(RigKeys& keys) {
+  keys.exchange = {required("exchange_deadline_s", &LoopSettings::exchange_deadline_s, {1e-4, 1},
+                            "an exchange that takes longer has failed; a new session is opened")};
+  keys.connecting = {
+      required("connect_deadline_s", &ReconnectSettings::connect_deadline, {1e-3, 30},
+               "limit for opening a session"),
+      required("first_pause_s", &ReconnectSettings::first_pause, {1e-3, 60},
+               "first pause between two connection attempts; it doubles after each attempt"),
+      required("longest_pause_s", &ReconnectSettings::longest_pause, {1e-3, 600}, "longest pause")};
+  keys.budget = {optional("accept_over_budget", &RigFile::accept_over_budget, {},
+                          "`true`: accept a `rate_hz` that exceeds the bus budget")};
+  keys.module = {{"map", "a path", "", "[board map](board-map.md)"},
+                 {"unit", "0 to 255", "", "unit id of the board; 1 to 247 with RTU frames"},
+                 {"modules", "list", "none", "several modules, in place of one"}};
+  using drivers::LinkHabits;
+  keys.habits = {
+      optional("settle_s", &LinkHabits::settle_s, {0, 30},
+               "time from opening a connection to the first request, below `connect_deadline_s`"),
+      optional("repeat_after_s", &LinkHabits::repeat_after_s, {0.001, 1},
+               "time without a response until a request is repeated, below `exchange_deadline_s`", "never")};
+  using drivers::TcpAddress;
+  keys.tcp = {required("host", &TcpAddress::host, {}, "numeric IPv4 or IPv6 address; names are not resolved"),
+              required("port", &TcpAddress::port, {1, 65535}, "the standard port of Modbus TCP is 502")};
+  keys.framing = {optional("framing", &TcpAddress::rtu_framing, {"tcp", "rtu"},
+                           "`rtu` for serial servers that forward RTU frames")};
+  keys.rtu_framing = {optional("silence_s", &TcpAddress::silence_s, {0, 1},
+                               "with `framing: rtu`: silence between a response and the next request")};
+  keys.numbering = {{"accept_no_transaction_id", "a text", "none",
+                     "for gateways that do not return the transaction id; states the accepted risk"}};
+  using drivers::SerialLine;
+  keys.serial = {
+      required("device", &SerialLine::device, {}, "path of the device, such as `/dev/serial/by-id/...`"),
+      required("baud", &SerialLine::baud, {1200, 1'000'000}, "one of the usual rates"),
+      {"format", "a text", "", "data bits, parity and stop bits: `8N1`, `8E1`, `8O1`, `8N2` or `8E2`"},
+      optional("silence_s", &SerialLine::silence_s, {1e-5, 1}, "silence between frames", "3.5 characters"),
+      required("turnaround_s", &SerialLine::turnaround_s, {0, 1}, "response time of a module"),
+      optional("adapter_latency_s", &SerialLine::adapter_latency_s, {0, 1},
+               "delay of a response by the adapter", "value of the kernel"),
+      optional("echo", &SerialLine::echo, {}, "`true`: the adapter also receives the frames that it sends")};
+}
+
+void declare_converters(RigKeys& keys) {
+  using drivers::IioTerminal;
+  keys.iio = {optional("root", &drivers::IioSettings::root, {}, "folder of the converters"),
+              {"inputs", "list", "", "inputs 0, 1 ... of the rig's channels"},
+              {"outputs", "list", "", "outputs 0, 1 ... of the rig's channels"},
+              {"heartbeat", "map", "none", "output that changes in every exchange"}};
+  keys.iio_terminal = {required("device", &IioTerminal::device, {},
+                                "[word that identifies one converter](#devices-of-the-computer)"),
+                       required("channel", &IioTerminal::channel, {},
+                                "such as `voltage0`, `current1`, `voltage0-voltage1`, `pressure`")};
+  keys.iio_output = {
+      required("raw_max", &IioTerminal::raw_max, {1, largest_raw}, "outputs: largest raw number")};
+  keys.heartbeat = {
+      {"raw", "two whole numbers", "", "numbers that are written alternately"},
+      required("timeout_s", &drivers::IioHeartbeat::timeout_s, {0.001, 3600},
+               "time without a change after which the external circuit switches off the valves")};
+  keys.simulated = {
+      {"seed", "at least 0", "", "the same seed gives the same noise"},
+      required("watchdog_timeout_s", &simulation::SimulatedBoardSettings::watchdog_timeout_s, {0, 60},
+               "time without an exchange until the outputs go to rest; 0: no watchdog")};
+  using simulation::SimulatedChannel;
+  keys.converters = {required("output_bits", &SimulatedChannel::output_bits, {0, 24}, "0: no quantisation"),
+                     required("input_bits", &SimulatedChannel::input_bits, {0, 24}, "0: no quantisation"),
+                     {"plants", "map", "", "a plant for each channel, under the name of the channel"},
+                     {"events", "list", "none", "timed events"}};
+  using Plant = simulation::PlantSettings;
+  keys.plant = {
+      {"model", "a path", "", "model file of the simulated finger"},
+      required("displacement_noise_mm", &Plant::displacement_noise_mm, {0, 100}, "standard deviation"),
+      required("pressure_noise_kpa", &Plant::pressure_noise_kpa, {0, 100}, "standard deviation"),
+      optional("temperature_c", &Plant::temperature_c, {-50, 150}, "ambient temperature"),
+      optional("temperature_noise_c", &Plant::temperature_noise_c, {0, 100}, "standard deviation"),
+      {"object", "map", "none", "object at the start, with `position_mm` and `yielding`"}};
+}
+
+}  // namespace
+
+const RigKeys& rig_keys() {
+  static const RigKeys keys = [] {
+    RigKeys all;
+    for (const auto declare :
+         {declare_rig, declare_channel, declare_wiring, declare_safety, declare_monitoring, declare_service,
+          declare_gpio, declare_modbus, declare_converters})
+      declare(all);
+    return all;
+  }();
+  return keys;
+}
+
+std::vector<std::pair<std::string, std::vector<KeyFacts>>> rig_tables() {
+  const RigKeys& keys = rig_keys();
+  const auto joined = [](const auto&... parts) {
+    std::vector<KeyFacts> facts;
+    const auto add = [&](const auto& part) {
+      for (const auto& key : part) facts.push_back(key.facts);
+    };
+    (add(parts), ...);
+    return facts;
+  };
+  return {{"rig", joined(keys.rig)},
+          {"timing", joined(keys.exchange, keys.connecting, keys.budget)},
+          {"modbus_tcp",
+           joined(keys.module, keys.tcp, keys.habits, keys.framing, keys.rtu_framing, keys.numbering)},
+          {"modbus_rtu", joined(keys.serial, keys.habits, keys.module)},
+          {"iio", joined(keys.iio)},
+          {"terminal", joined(keys.iio_terminal, keys.iio_output)},
+          {"heartbeat", joined(keys.iio_terminal, keys.heartbeat)},
+          {"simulated", joined(keys.simulated, keys.converters)},
+          {"plant", joined(keys.plant)},
+          {"channel", joined(keys.channel, keys.feedforward, keys.rest_pressure, keys.channel_parts)},
+          {"pid", joined(keys.pid)},
+          {"limits", joined(keys.limits)},
+          {"valve", joined(keys.output, keys.valve)},
+          {"sensor", joined(keys.input)},
+          {"safety", joined(keys.safety, keys.commands)},
+          {"faults", joined(keys.faults)},
+          {"plausibility", joined(keys.plausibility)},
+          {"detection", joined(keys.detection)},
+          {"rest", joined(keys.rest)},
+          {"model_health", joined(keys.model_health)},
+          {"loop", joined(keys.loop)},
+          {"real_time", joined(keys.real_time)},
+          {"recorder", joined(keys.recorder)},
+          {"socket", joined(keys.socket)},
+          {"gpio", joined(keys.gpio)},
+          {"line", joined(keys.gpio_line, keys.gpio_input, keys.gpio_enable)}};
+}
+
+}  // namespace softgrip::rig

@@ -1,0 +1,60 @@
+#pragma once
+// Declares all keys of a rig file: names, permitted values, defaults and meanings. rig_file*.cpp reads the
+// file with these declarations, and docs/reference/rig-file.md contains their tables.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "document/schema.h"
+#include "rig/rig_file.h"
+
+namespace softgrip::rig {
+
+using document::Keys;
+
+/// Largest raw number of a converter of this computer.
+inline constexpr double largest_raw = (1 << 24) - 1;
+
+/// The keys of each map of a rig file; rig_tables() shows the map to which they belong. A key without a
+/// member of the settings is read by the function that reads its map. The conditions that combine several
+/// keys are in this function, too.
+struct RigKeys {
+  Keys<control::RigSettings> rig, rest;
+  Keys<LoopSettings> loop, exchange, commands;
+  Keys<ReconnectSettings> connecting;
+  Keys<RigFile> budget;
+  Keys<drivers::ModbusModuleSettings> module;
+  Keys<drivers::TcpAddress> tcp, framing, rtu_framing, numbering;
+  Keys<drivers::LinkHabits> habits;
+  Keys<drivers::SerialLine> serial;
+  Keys<drivers::IioSettings> iio;
+  Keys<drivers::IioTerminal> iio_terminal, iio_output;
+  Keys<drivers::IioHeartbeat> heartbeat;
+  Keys<simulation::SimulatedBoardSettings> simulated;
+  Keys<simulation::SimulatedChannel> converters;
+  Keys<simulation::PlantSettings> plant;
+  Keys<control::ChannelSettings> channel, channel_parts;
+  Keys<control::FeedforwardSettings> feedforward;
+  Keys<control::LimitSettings> rest_pressure, limits;
+  Keys<control::PidSettings> pid;
+  Keys<ValveFacts> output, valve;
+  Keys<drivers::InputWiring> input;
+  Keys<control::SafetySettings> safety;
+  Keys<control::FaultSettings> faults;
+  Keys<control::PlausibilitySettings> plausibility;
+  Keys<control::DetectionSettings> detection;
+  Keys<control::ModelHealthSettings> model_health;
+  Keys<RealTimeSettings> real_time;
+  Keys<RecorderSettings> recorder;
+  Keys<SocketSettings> socket;
+  Keys<SocketFile> look;
+  Keys<GpioSettings> gpio, gpio_enable;
+  Keys<drivers::GpioLineSettings> gpio_line, gpio_input;
+};
+[[nodiscard]] const RigKeys& rig_keys();
+
+/// The keys of each table of docs/reference/rig-file.md, by the name of the table.
+[[nodiscard]] std::vector<std::pair<std::string, std::vector<document::KeyFacts>>> rig_tables();
+
+}  // namespace softgrip::rig
