@@ -8,14 +8,10 @@
 
 namespace softgrip::rig {
 
+/// The map `gpio` of a rig file. rig/rig_keys.cpp declares the meaning and the range of each member.
 struct GpioSettings {
-  /// An input counts as changed after its new level has been steady for this time [s].
   double debounce_s = 0;
-  /// If no read of the lines succeeds for this time, the lines count as lost. If the loop executes no tick
-  /// for this time, the loop counts as stalled [s].
   double stale_after_s = 0;
-  /// Longest time between two reads of the levels [s]. If an edge is missed, the new level is detected within
-  /// this time.
   double look_interval_s = 0.005;
   /// True: the enable output is switched off while a fault is latched. An emergency stop switches it off in
   /// any case.

@@ -20,17 +20,13 @@ namespace softgrip::rig {
 /// threads has a periodic schedule with absolute times, and both have the same period. The schedule of the
 /// bus thread is `bus_offset` later than the schedule of the loop. Therefore, a command reaches the board
 /// bus_offset plus half an exchange after its tick. When the next tick uses a reading, the age of the reading
-/// is the period minus bus_offset.
+/// is the period minus bus_offset. rig/rig_keys.cpp declares the meaning and the range of each member.
 struct LoopSettings {
-  /// Delay of the bus thread's schedule relative to that of the loop, as a fraction of the period; between 0
-  /// and 1 (both excluded).
   double bus_offset_fraction = 0.25;
   /// Longest duration of one exchange [s]. If the board is slower, the exchange times out and the session is
   /// opened again. The duration may exceed the period. An exchange that takes longer than the period is an
   /// overrun of the bus thread. Its readings are older than usual, and the controller checks their age.
   double exchange_deadline_s = 0.05;
-  /// After this number of exchanges without a new command from the loop, the bus thread writes the safe
-  /// outputs.
   std::uint32_t max_missed_commands = 10;
 };
 

@@ -15,18 +15,14 @@ struct SocketFile {
   std::string group;
 };
 
-/// The socket for clients that may move the gripper, and the settings for both sockets.
+/// The socket for clients that may move the gripper, and the settings for both sockets. rig/rig_keys.cpp
+/// declares the meaning and the range of each member.
 struct SocketSettings : SocketFile {
   SocketSettings() { path = "/run/softgrip/softgripd.sock"; }
   /// The socket for clients that may only read.
   SocketFile look;
-  /// Largest number of clients on each of the two sockets.
   std::size_t max_clients = 16;
-  /// Length of the longest line that a client may send [bytes]. After a longer line, the daemon sends an
-  /// error and disconnects the client.
   std::size_t max_line_bytes = 64 * 1024;
-  /// Largest size of the replies that a client has not read yet [bytes]. A client that exceeds this size is
-  /// disconnected.
   std::size_t max_queue_bytes = 1024 * 1024;
   /// Folder with the sequences that clients can start by name.
   std::string sequence_directory = "/etc/softgrip/sequences";

@@ -59,32 +59,21 @@ struct SafetySettings {
 };
 
 /// Number of cycles for which a condition may last before it is a fault. These numbers determine the
-/// guaranteed reaction times of the rig.
+/// guaranteed reaction times of the rig. docs/reference/rig-file.md states the meaning of each member in the
+/// section `faults`.
 struct FaultSettings {
-  std::uint32_t bus_down_cycles = 5;         ///< number of consecutive cycles without a valid exchange
-  std::uint32_t invalid_reading_cycles = 3;  ///< consecutive cycles in which the reading of a channel is not
-                                             ///< number of consecutive cycles in which the reading of a
-                                             ///< channel is not valid
-  std::uint32_t displacement_cycles = 3;     ///< number of consecutive cycles in which a reading is outside
-                                             ///< the displacement range of the limits
-  std::uint32_t readback_cycles = 5;         ///< number of consecutive cycles in which the read-back differs
-                                             ///< from the commands
-  double readback_tolerance_kpa = 1;         ///< the read-back differs if it is outside the range of the past
-                                             ///< commands by more than this pressure
-  double readback_delay_s = 0.1;             ///< duration of the past commands that are compared with the
-                                             ///< number of consecutive cycles in which the measured pressure
-                                             ///< differs from the commands; 0: the pressure is not checked
-  std::uint32_t pressure_cycles = 0;  ///< consecutive cycles in which the measured pressure differs from the
-                                      ///< commands; 0: the pressure is not checked
-  double pressure_tolerance_kpa = 5;  ///< the pressure differs if it is outside the range of the past
-                                      ///< commands by more than this pressure
-  double pressure_delay_s = 0.5;      ///< duration of the past commands that are compared with the pressure
-  bool model_unfit_is_fault = false;  ///< true: an unfit model is a fault; false: model health is only
-                                      ///< reported
-  bool unsteady_is_fault = false;     ///< true: a sensor that jumps back and forth is a fault; false: such a
-                                      ///< sensor is only reported
-  std::uint32_t overrun_cycles = 0;   ///< a fault occurs if this number of consecutive cycles is missed; 0:
-                                      ///< missed cycles are only counted
+  std::uint32_t bus_down_cycles = 5;
+  std::uint32_t invalid_reading_cycles = 3;
+  std::uint32_t displacement_cycles = 3;
+  std::uint32_t readback_cycles = 5;
+  double readback_tolerance_kpa = 1;
+  double readback_delay_s = 0.1;
+  std::uint32_t pressure_cycles = 0;
+  double pressure_tolerance_kpa = 5;
+  double pressure_delay_s = 0.5;
+  bool model_unfit_is_fault = false;
+  bool unsteady_is_fault = false;
+  std::uint32_t overrun_cycles = 0;
 };
 
 /// All settings of a RigController.
