@@ -68,6 +68,15 @@ void read_keys(MapReader& reader, const Keys<S>& keys, S& settings) {
   for (const Key<S>& key : keys) key.read(reader, key.facts, settings);
 }
 
+/// Appends the descriptions of the keys for a reference page. `map` precedes their names: "listen: port".
+template <class S>
+void append_facts(std::vector<KeyFacts>& facts, const Keys<S>& keys, const std::string& map = "") {
+  for (const Key<S>& key : keys) {
+    facts.push_back(key.facts);
+    facts.back().name.insert(0, map);
+  }
+}
+
 /// Reads the value of a key that is required or present.
 template <class T>
 void read_value(MapReader& reader, std::string_view key, const Allowed& allowed, T& value) {

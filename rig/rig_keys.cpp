@@ -352,10 +352,7 @@ std::vector<std::pair<std::string, std::vector<KeyFacts>>> rig_tables() {
   const RigKeys& keys = rig_keys();
   const auto joined = [](const auto&... parts) {
     std::vector<KeyFacts> facts;
-    const auto add = [&](const auto& part) {
-      for (const auto& key : part) facts.push_back(key.facts);
-    };
-    (add(parts), ...);
+    (append_facts(facts, parts), ...);
     return facts;
   };
   return {{"rig", joined(keys.rig)},

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/net/listener.h"
+#include "document/schema.h"
 
 namespace softgrip::plc {
 
@@ -13,6 +14,40 @@ namespace {
 
 using document::MapReader;
 using document::Node;
+using document::optional;
+using document::required;
+using Keys = document::Keys<Settings>;
+
+struct PlcKeys {
+  Keys file, listen, master;
+  document::Keys<Recipe> recipe;
+};
+
+const PlcKeys& plc_keys() {
+  using S = Settings;
+  static const PlcKeys keys{
+      {required("name", &S::name, {}, "name of this file in messages"),
+       required("socket", &S::socket, {}, "socket of softgripd"),
+       {"listen", "map", "", "address of the server"},
+       {"master", "map", "", "monitoring of the master"},
+       {"recipes", "list", "", "sequences that the master starts by their number"},
+       {"registers", "map", "", "the register map; addresses and units of one count may be changed"}},
+      {required("address", &S::address, {}, "numeric address of the server"),
+       required("port", &S::port, {0, 65535}, "port of the server"),
+       {"allow", "list", "", "numeric addresses of the permitted masters"},
+       optional("max_masters", &S::max_masters, {1, 32}, "largest number of [connections](#connections)"),
+       optional("idle_s", &S::idle_s, {1, 3600}, "a connection without a request for this time is closed")},
+      {required("silence_s", &S::silence_s, {0.05, 60},
+                "time limit of the master's [heartbeat](#heartbeats)"),
+       required("when_silent", &S::when_silent, {"nothing", "stop", "vent", "release"},
+                "reaction if the heartbeat stops")},
+      {required("number", &Recipe::number, {1, 65535}, "number of the recipe"),
+       required("sequence", &Recipe::sequence, {}, "name in the daemon's sequence directory"),
+       optional("squeeze", &Recipe::squeeze, {}, "parameter `..._kpa` that the register `squeeze` sets"),
+       optional("speed", &Recipe::speed, {}, "parameter `..._mm_per_s` that the register `speed` sets"),
+       optional("displacement", &Recipe::displacement, {}, "parameter `..._mm` that `displacement` sets")}};
+  return keys;
+}
 
 constexpr std::string_view numeric_hint = "write an IPv4 or IPv6 address in digits, for example 192.168.1.20";
 
@@ -23,8 +58,7 @@ class SettingsReader {
 
   Settings read() {
     MapReader top(document_, document_.root, problems_, "the file");
-    settings_.name = top.text("name");
-    settings_.socket = top.text("socket");
+    read_keys(top, plc_keys().file, settings_);
     if (const Node* const node = top.child("listen", true)) listen(*node);
     if (const Node* const node = top.child("master", true)) master(*node);
     for (const Node* const node : top.sequence("recipes", true)) recipe(*node);
@@ -36,19 +70,15 @@ class SettingsReader {
  private:
   void listen(const Node& node) {
     MapReader reader(document_, node, problems_, "listen");
-    settings_.address = reader.text("address");
+    read_keys(reader, plc_keys().listen, settings_);
     if (reader.good("address") && !net::is_numeric(settings_.address))
       reader.report("address", "this is not a numeric address", std::string(numeric_hint));
-    settings_.port = static_cast<std::uint16_t>(reader.integer("port", 0, 65535));
     for (const Node* const item : reader.sequence("allow", true)) {
       settings_.allow.push_back(item->scalar);
       if (item->kind != Node::Kind::scalar || !net::is_numeric(item->scalar))
         problems_.add(
             document_.problem(item->at, "this is not a numeric address", std::string(numeric_hint)));
     }
-    settings_.max_masters =
-        static_cast<std::size_t>(reader.optional_integer("max_masters", 1, 32).value_or(4));
-    settings_.idle_s = reader.optional_number("idle_s", {1, 3600}).value_or(60);
     if (reader.good("address") && !net::is_loopback(settings_.address) && settings_.allow.empty()) {
       reader.report("allow", "other machines can reach this address, so the permitted clients must be listed",
                     "allow: [192.168.1.20]");
@@ -57,19 +87,16 @@ class SettingsReader {
 
   void master(const Node& node) {
     MapReader reader(document_, node, problems_, "master");
-    settings_.silence_s = reader.number("silence_s", {0.05, 60});
-    settings_.when_silent =
-        static_cast<Reaction>(reader.choice("when_silent", {"nothing", "stop", "vent", "release"}));
+    read_keys(reader, plc_keys().master, settings_);
   }
 
   void recipe(const Node& node) {
     MapReader reader(document_, node, problems_, "a recipe");
     Recipe recipe;
-    recipe.number = static_cast<std::uint16_t>(reader.integer("number", 1, 65535));
-    recipe.sequence = reader.text("sequence");
-    recipe.squeeze = parameter(reader, "squeeze", "_kpa");
-    recipe.speed = parameter(reader, "speed", "_mm_per_s");
-    recipe.displacement = parameter(reader, "displacement", "_mm");
+    read_keys(reader, plc_keys().recipe, recipe);
+    check_parameter(reader, "squeeze", recipe.squeeze, "_kpa");
+    check_parameter(reader, "speed", recipe.speed, "_mm_per_s");
+    check_parameter(reader, "displacement", recipe.displacement, "_mm");
     const bool twice = std::any_of(settings_.recipes.begin(), settings_.recipes.end(),
                                    [&](const Recipe& other) { return other.number == recipe.number; });
     if (twice)
@@ -77,15 +104,13 @@ class SettingsReader {
     settings_.recipes.push_back(std::move(recipe));
   }
 
-  /// Reads the name of the sequence's parameter that a register sets. This name must end with the unit of the
+  /// Checks that the name of the sequence's parameter that a register sets ends with the unit of the
   /// register.
-  static std::string parameter(MapReader& reader, std::string_view key, std::string_view ending) {
-    std::string name = reader.optional_text(key).value_or("");
-    if (!name.empty() && !name.ends_with(ending)) {
-      reader.report(key,
-                    fmt::format("the name of the parameter that `{}` sets must end with `{}`", key, ending));
-    }
-    return name;
+  static void check_parameter(MapReader& reader, std::string_view key, const std::string& name,
+                              std::string_view ending) {
+    if (name.empty() || name.ends_with(ending)) return;
+    reader.report(key,
+                  fmt::format("the name of the parameter that `{}` sets must end with `{}`", key, ending));
   }
 
   const document::Document& document_;
@@ -94,6 +119,15 @@ class SettingsReader {
 };
 
 }  // namespace
+
+std::vector<document::KeyFacts> file_keys() {
+  std::vector<document::KeyFacts> facts;
+  append_facts(facts, plc_keys().file);
+  append_facts(facts, plc_keys().listen, "listen: ");
+  append_facts(facts, plc_keys().master, "master: ");
+  append_facts(facts, plc_keys().recipe, "recipes: ");
+  return facts;
+}
 
 Settings read_settings(const document::Document& document, document::Problems& problems) {
   return SettingsReader(document, problems).read();

@@ -12,38 +12,42 @@
 #include "document/problem.h"
 #include "rig/plc_file/register_map.h"
 
+namespace softgrip::document {
+struct KeyFacts;
+}
+
 namespace softgrip::plc {
 
-/// A sequence and its parameters, which the PLC selects by a number in the recipe register.
+/// A sequence and its parameters, which the PLC selects by a number in the recipe register. A register has no
+/// effect if its parameter is empty.
 struct Recipe {
-  std::uint16_t number = 0;  ///< number of the recipe in the recipe register, from 1
+  std::uint16_t number = 0;
   std::string sequence;
-  std::string squeeze;       ///< parameter of the sequence that the register `squeeze` sets; empty: the
-                             ///< register has no effect
-  std::string speed;         ///< parameter of the sequence that the register `speed` sets; empty: the
-                             ///< register has no effect
-  std::string displacement;  ///< parameter of the sequence that the register `displacement` sets; empty: the
-                             ///< register has no effect
+  std::string squeeze;
+  std::string speed;
+  std::string displacement;
 };
 
 /// Action of the gateway if the PLC stops responding.
 enum class Reaction : std::uint8_t { nothing, stop, vent, release };
 
+/// The contents of the file. file_keys() describes the members.
 struct Settings {
   std::string name;
-  std::string socket;   ///< path of softgripd's socket
-  std::string address;  ///< numeric IP address on which the gateway listens
+  std::string socket;
+  std::string address;
   std::uint16_t port = 502;
-  std::vector<std::string> allow;  ///< numeric addresses of the Modbus clients (PLCs) that may connect
-  std::size_t max_masters = 4;     ///< largest number of clients that are connected at the same time
-  double idle_s = 60;              ///< a client that has sent no request for this time is disconnected [s]
-  /// If the PLC's heartbeat has not changed for this time, the gateway takes the action `when_silent` [s].
+  std::vector<std::string> allow;
+  std::size_t max_masters = 4;
+  double idle_s = 60;
   double silence_s = 2;
   Reaction when_silent = Reaction::stop;
   std::vector<Recipe> recipes;
   RegisterMap registers;
 };
 
+/// Returns all keys of the file. The name of a key begins with the map that contains it: "listen: port".
+[[nodiscard]] std::vector<document::KeyFacts> file_keys();
 /// Reads the settings from a document, and adds problems of the document to `problems`.
 [[nodiscard]] Settings read_settings(const document::Document& document, document::Problems& problems);
 /// Reads the settings from a file. Adds all problems of the file to `problems`, and returns nothing if there

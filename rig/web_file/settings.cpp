@@ -1,7 +1,7 @@
 #include "rig/web_file/settings.h"
 
 #include "base/net/listener.h"
-#include "document/reader.h"
+#include "document/schema.h"
 
 namespace softgrip::web {
 
@@ -9,25 +9,42 @@ namespace {
 
 using document::MapReader;
 using document::Node;
+using document::optional;
+using document::required;
+using Keys = document::Keys<Settings>;
 
-void read_daemon(const document::Document& document, const Node& node, document::Problems& problems,
-                 Settings& settings) {
-  MapReader reader(document, node, problems, "daemon");
-  settings.look_socket = reader.text("look");
-  settings.operate_socket = reader.optional_text("operate").value_or("");
+struct WebKeys {
+  Keys file, daemon, listen, access;
+};
+
+const WebKeys& web_keys() {
+  using S = Settings;
+  static const WebKeys keys{
+      {required("name", &S::name, {}, "name of this file in messages"),
+       optional("recordings", &S::recordings, {}, "folder of the daemon's recordings, which the page shows"),
+       {"daemon", "map", "", "sockets of the daemon"},
+       {"listen", "map", "", "address of the page"},
+       {"access", "map", "", "permissions of clients"}},
+      {required("look", &S::look_socket, {}, "read-only socket of the daemon, for all values that are shown"),
+       optional("operate", &S::operate_socket, {}, "socket of the daemon for commands")},
+      {required("address", &S::address, {}, "numeric IP address of the web server"),
+       required("port", &S::port, {0, 65535}, "port of the web server"),
+       optional("max_connections", &S::max_connections, {4, 512}, "largest number of connections"),
+       {"hosts", "list", "none", "host names of the page, in addition to `localhost` and numeric addresses"}},
+      {optional("tokens", &S::tokens, {}, "file that contains the tokens"),
+       required("without_token", &S::without_token, {"none", "look", "operate"}, "role without a token"),
+       optional("session_idle_s", &S::session_idle_s, {1, 86400},
+                "a session without requests and without an open page ends after this time"),
+       optional("session_s", &S::session_s, {1, 604800}, "every session ends after this time")}};
+  return keys;
 }
 
-void read_listen(const document::Document& document, const Node& node, document::Problems& problems,
-                 Settings& settings) {
-  MapReader reader(document, node, problems, "listen");
-  settings.address = reader.text("address");
+void check_listen(const document::Document& document, MapReader& reader, document::Problems& problems,
+                  Settings& settings) {
   if (reader.good("address") && !net::is_numeric(settings.address)) {
     reader.report("address", "this is not a numeric address",
                   "write an IPv4 or IPv6 address in digits, for example 192.168.1.20");
   }
-  settings.port = static_cast<std::uint16_t>(reader.integer("port", 0, 65535));
-  settings.max_connections =
-      static_cast<std::size_t>(reader.optional_integer("max_connections", 4, 512).value_or(64));
   for (const Node* const item : reader.sequence("hosts", false)) {
     settings.hosts.push_back(item->scalar);
     if (item->kind != Node::Kind::scalar || item->scalar.find_first_of("/: ") != std::string::npos)
@@ -35,14 +52,8 @@ void read_listen(const document::Document& document, const Node& node, document:
   }
 }
 
-void read_access(const document::Document& document, const Node& node, document::Problems& problems,
-                 Settings& settings) {
-  MapReader reader(document, node, problems, "access");
-  settings.tokens = reader.optional_text("tokens").value_or("");
-  settings.without_token = static_cast<Role>(reader.choice("without_token", {"none", "look", "operate"}));
-  settings.session_idle_s = reader.optional_number("session_idle_s", {1, 86400}).value_or(1800);
-  settings.session_s = reader.optional_number("session_s", {1, 604800}).value_or(43200);
-  // read_listen() has already reported a wrong address.
+void check_access(MapReader& reader, const Settings& settings) {
+  // check_listen() has already reported a wrong address.
   if (!net::is_numeric(settings.address) || net::is_loopback(settings.address)) return;
   if (reader.good("without_token") && settings.without_token != Role::none) {
     reader.report("without_token", "other machines can reach this address, so each client needs a token",
@@ -57,14 +68,30 @@ void read_access(const document::Document& document, const Node& node, document:
 
 }  // namespace
 
+std::vector<document::KeyFacts> file_keys() {
+  std::vector<document::KeyFacts> facts;
+  append_facts(facts, web_keys().file);
+  append_facts(facts, web_keys().daemon, "daemon: ");
+  append_facts(facts, web_keys().listen, "listen: ");
+  append_facts(facts, web_keys().access, "access: ");
+  return facts;
+}
+
 Settings read_settings(const document::Document& document, document::Problems& problems) {
   Settings settings;
   MapReader top(document, document.root, problems, "the file");
-  settings.name = top.text("name");
-  settings.recordings = top.optional_text("recordings").value_or("");
-  if (const Node* const node = top.child("daemon", true)) read_daemon(document, *node, problems, settings);
-  if (const Node* const node = top.child("listen", true)) read_listen(document, *node, problems, settings);
-  if (const Node* const node = top.child("access", true)) read_access(document, *node, problems, settings);
+  read_keys(top, web_keys().file, settings);
+  const auto read = [&](const char* name, const Keys& keys, const auto& check) {
+    const Node* const node = top.child(name, true);
+    if (node == nullptr) return;
+    MapReader reader(document, *node, problems, name);
+    read_keys(reader, keys, settings);
+    check(reader);
+  };
+  read("daemon", web_keys().daemon, [](MapReader&) {});
+  read("listen", web_keys().listen,
+       [&](MapReader& reader) { check_listen(document, reader, problems, settings); });
+  read("access", web_keys().access, [&](MapReader& reader) { check_access(reader, settings); });
   return settings;
 }
 
