@@ -22,6 +22,8 @@ struct ParameterSpec {
   bool whole = false;        ///< true: only integers are permitted (an exponent)
   bool placed = false;       ///< true: the parameter stays fixed while a fit changes the values that depend
                              ///< on it (a threshold)
+  bool latency = false;      ///< true: a dead time, a lag or a period, whose size depends on the kind of rig;
+                             ///< `upper` is a limit for files, and a fit has a lower limit for each log
   /// Neutral value: if all parameters that have a neutral value are set to it, the block has no effect. NaN:
   /// the parameter has no neutral value, because it has no influence while the others are neutral.
   double neutral = std::numeric_limits<double>::quiet_NaN();
@@ -48,6 +50,7 @@ struct IfLeftOut {
 };
 struct Whole {};
 struct Placed {};
+struct Latency {};
 
 namespace declaration {
 constexpr void add(ParameterSpec& spec, Neutral neutral) {
@@ -61,6 +64,9 @@ constexpr void add(ParameterSpec& spec, Whole) {
 }
 constexpr void add(ParameterSpec& spec, Placed) {
   spec.placed = true;
+}
+constexpr void add(ParameterSpec& spec, Latency) {
+  spec.latency = true;
 }
 }  // namespace declaration
 

@@ -15,8 +15,8 @@ class ClockOffset {
       "The clocks of the readings and of the commands differ, so that the readings appear too early.",
       "z = y + lead dy/dt");
   static constexpr std::array parameters{parameter("lead_s", "s", "time by which the reading leads",
-                                                   Typical{0.05}, Within{0.0, 10.0}, Scale{0.02},
-                                                   Neutral{0.0})};
+                                                   Typical{0.05}, Within{0.0, 1000.0}, Scale{0.02},
+                                                   Neutral{0.0}, Latency{})};
 
   ClockOffset(std::span<const T> values, const Preparation&) : lead_s_(values[0]) {}
 

@@ -18,8 +18,8 @@ class Inertia {
                  "Oscillation: a second-order mode of mass and spring.",
                  "z'' + 2 d w z' + w^2 z = w^2 y, w = 2 pi/period");
   static constexpr std::array parameters{
-      parameter("period_s", "s", "period of the undamped mode", Typical{0.1}, Within{0.0, 10.0}, Scale{0.05},
-                Neutral{0.0}),
+      parameter("period_s", "s", "period of the undamped mode", Typical{0.1}, Within{0.0, 1e4}, Scale{0.05},
+                Neutral{0.0}, Latency{}),
       parameter("damping_ratio", "", "damping ratio d; a mode with d of 1 or more does not oscillate",
                 Typical{0.2}, Within{0.005, 0.95}, Scale{0.1})};
 

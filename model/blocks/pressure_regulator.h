@@ -18,9 +18,9 @@ class PressureRegulator {
       "tau p' = v -+ overlap beyond the overlap, else 0; v = u - p + integral of (u - p) / Ti, |v| <= full");
   static constexpr std::array parameters{
       parameter("filling_time_constant_s", "s", "time constant while the pressure rises", Typical{0.03},
-                Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0}),
+                Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}, Latency{}),
       parameter("venting_time_constant_s", "s", "time constant while the pressure falls, at 50 kPa",
-                Typical{0.05}, Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0}),
+                Typical{0.05}, Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}, Latency{}),
       parameter("overlap_kpa", "kPa", "largest pressure error at which no port of the valve opens",
                 Typical{0.5}, Within{0.0, 100.0}, Scale{0.5}, Placed{}, Neutral{0.0}),
       parameter("integral_time_s", "s", "integral time of the regulator; 0: no integral action", Typical{0.4},

@@ -15,7 +15,7 @@ class SensorLag {
       block_info("sensor_lag", Station::sensor, Kind::displacement, Inverse::ignored, "Sensor lag",
                  "The reading lags the displacement.", "tau z' = y - z");
   static constexpr std::array parameters{parameter("time_constant_s", "s", "time constant", Typical{0.02},
-                                                   Within{0.0, 10.0}, Scale{0.02}, Neutral{0.0})};
+                                                   Within{0.0, 1e4}, Scale{0.02}, Neutral{0.0}, Latency{})};
 
   SensorLag(std::span<const T> values, const Preparation& preparation)
       : time_constant_s_(values[0]), weights_(1) {

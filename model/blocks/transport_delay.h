@@ -20,8 +20,8 @@ class TransportDelay {
   static constexpr BlockInfo info =
       block_info("transport_delay", Station::valve, Kind::pressure, Inverse::preview, "Transport delay",
                  "Dead time between command and pressure.", "p(t) = u(t - delay)");
-  static constexpr std::array parameters{
-      parameter("delay_s", "s", "dead time", Typical{0.05}, Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0})};
+  static constexpr std::array parameters{parameter(
+      "delay_s", "s", "dead time", Typical{0.05}, Within{0.0, 1000.0}, Scale{0.05}, Neutral{0.0}, Latency{})};
 
   TransportDelay(std::span<const T> values, const Preparation& preparation)
       : delay_s_(values[0]), line_(initial_size(value_of(values[0]), preparation.sample_time_s)) {

@@ -19,7 +19,10 @@ bool is_logarithmic(const model::ParameterSpec& spec) {
   return spec.lower >= 0 && spec.neutral >= 1e6;
 }
 
-FreeParameter model_parameter(const model::Model& model, std::size_t flat_index) {
+/// Largest dead time, lag or period of a fit, in units of time_unit_s().
+constexpr double largest_latency = 10;
+
+FreeParameter model_parameter(const model::Model& model, std::size_t flat_index, double time_unit_s) {
   const model::ParameterSpec& spec = model::parameter_spec(model, flat_index);
   FreeParameter p;
   p.flat_index = flat_index;
@@ -32,6 +35,10 @@ FreeParameter model_parameter(const model::Model& model, std::size_t flat_index)
   // this parameter would then be 0.
   if (spec.lower == 0 && spec.neutral == 0) p.lower = 1e-6 * spec.scale;
   p.upper = spec.upper;
+  if (spec.latency) {
+    p.scale = spec.scale * time_unit_s;
+    p.upper = std::min(spec.upper, largest_latency * time_unit_s);
+  }
   return p;
 }
 
@@ -66,7 +73,8 @@ double FreeParameter::slope(double z) const {
 FitSpace::FitSpace(const model::Model& model, const std::vector<Record>& records,
                    const std::vector<std::size_t>& free_flat)
     : base_(model), base_starts_(rest_starts(model, records)) {
-  for (const std::size_t index : free_flat) free_.push_back(model_parameter(model, index));
+  const double unit_s = time_unit_s(records);
+  for (const std::size_t index : free_flat) free_.push_back(model_parameter(model, index, unit_s));
   const std::size_t branches = branch_time_constants_s(model).size();
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Record& record = records[r];

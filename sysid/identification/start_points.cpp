@@ -18,7 +18,7 @@ namespace {
 class Drawer {
  public:
   Drawer(const FitSpace& space, const std::vector<Record>& records, std::uint64_t seed)
-      : space_(space), scale_(campaign_size(records)), random_(seed) {}
+      : space_(space), scale_(campaign_size(records)), time_unit_s_(time_unit_s(records)), random_(seed) {}
 
   /// Draws a random point around `given`. A positive value typically changes by a factor of about two.
   /// Another value typically changes by the larger of two amounts: 70 % of the value, or 35 % of its scale in
@@ -52,7 +52,7 @@ class Drawer {
       } else if (model::is<model::KelvinVoigt>(block)) {
         branches(gain, v);
       } else if (model::is<model::TransportDelay>(block) || model::is<model::ValveLag>(block)) {
-        v[0] = uniform(0.005, 0.3);
+        v[0] = time_unit_s_ * uniform(0.005, 0.3);
       }
     }
     // The conversion to the coordinates of the fit and back sets all parameters that are not fitted to their
@@ -71,7 +71,8 @@ class Drawer {
   void branches(double gain, std::vector<double>& v) {
     const std::size_t count = (v.size() - 1) / 2;
     std::vector<double> time_constants;
-    for (std::size_t b = 0; b < count; ++b) time_constants.push_back(between(0.05, scale_.longest_s / 2));
+    for (std::size_t b = 0; b < count; ++b)
+      time_constants.push_back(between(0.05 * time_unit_s_, scale_.longest_s / 2));
     std::sort(time_constants.begin(), time_constants.end(), std::greater<>());
     const bool rising = count > 1 && v[2] / v[1] < v[4] / v[3];
     if (rising) std::reverse(time_constants.begin(), time_constants.end());
@@ -87,6 +88,7 @@ class Drawer {
 
   const FitSpace& space_;
   CampaignSize scale_;
+  double time_unit_s_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
 };

@@ -93,6 +93,18 @@ std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptio
   return records;
 }
 
+double time_unit_s(const std::vector<Record>& records) {
+  constexpr double intervals = 10, share = 0.5;
+  double interval_s = std::numeric_limits<double>::infinity(), length_s = 0;
+  for (const Record& record : records) {
+    if (record.size() < 2 || !(record.finest_interval_s > 0)) continue;
+    interval_s = std::min(interval_s, step_duration_s(record.finest_interval_s));
+    length_s = std::max(length_s, record.length_s());
+  }
+  const bool resolves_1_s = intervals * interval_s <= 1 && share * length_s >= 1;
+  return resolves_1_s || !(length_s > 0) ? 1 : std::sqrt(interval_s * length_s);
+}
+
 void hide_reading(Record& record, std::size_t sample) {
   if (!std::isfinite(record.reading_mm[sample])) return;
   record.reading_mm[sample] = std::numeric_limits<double>::quiet_NaN();

@@ -104,6 +104,12 @@ struct Record {
 /// log must have a pressure_kpa column.
 [[nodiscard]] std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptions& options);
 
+/// Returns the unit of time in which a fit searches for dead times, lags and creep [s]. It is 1 s if the
+/// records resolve 1 s: 10 sampling intervals are at most 1 s, and half of the longest record is at least 1
+/// s. Otherwise it is the geometric mean of sampling interval and length.
+/// @param records  at least one record.
+[[nodiscard]] double time_unit_s(const std::vector<Record>& records);
+
 /// Sets the reading of a sample to NaN and updates the number of readings.
 void hide_reading(Record& record, std::size_t sample);
 

@@ -26,9 +26,10 @@ constexpr std::array damping_ratios{0.1, 0.5};
 /// Shortest period of the search, in sampling intervals. The samples do not determine the amplitude of a sine
 /// with a shorter period.
 constexpr double shortest_in_intervals = 6;
-/// Longest period of the search. It is limited to a share of the longest record and to a number of seconds.
+/// Longest period of the search. It is limited to a share of the longest record and to a number of units of
+/// time_unit_s().
 constexpr double longest_share = 0.1;
-constexpr double longest_s = 10;
+constexpr double longest_in_units = 10;
 
 void put(FitPoint& point, double period_s, double damping_ratio) {
   point.model = model::with_block(
@@ -81,7 +82,8 @@ ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& rec
     length_s = std::max(length_s, record.length_s());
   }
   const double from_s = shortest_in_intervals * interval_s;
-  const double to_s = std::clamp(longest_share * length_s, from_s, longest_s);
+  const double to_s =
+      std::max(from_s, std::min(longest_share * length_s, longest_in_units * time_unit_s(records)));
   // For each damping ratio, the best fit of all start points.
   std::array<ResonantFit, damping_ratios.size()> best;
   for (int i = 0; i < periods; ++i) {

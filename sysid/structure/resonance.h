@@ -22,7 +22,8 @@ enum class ResonanceFit {
 };
 
 /// Adds a resonance to a point and fits it. The search for period and damping ratio starts from several
-/// periods between 6 sampling intervals and 10 % of the longest record (at most 10 s).
+/// periods between 6 sampling intervals and 10 % of the longest record (at most 10 units of
+/// time_unit_s()).
 [[nodiscard]] ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& records,
                                          ResonanceFit fit);
 

@@ -54,6 +54,7 @@ struct BaseStructure {
 /// Parameters of the operators that a fit does not change. These are thresholds, time constants and threshold
 /// pressures of creep (hinges).
 struct StructureGrid {
+  double time_unit_s = 1;  ///< result of time_unit_s() for the records
   double largest_kpa = 0;  ///< largest magnitude of the drive
   double span_mm = 0;      ///< largest magnitude of the readings
   /// Thresholds of the play operators except the elastic one (threshold 0), in increasing order.

@@ -164,13 +164,17 @@ class Search {
 
   void add_coordinates() {
     using N = NonlinearNumbers;
-    if (structure_.delay) add_driving(straight(&N::delay_s, 0.2, 0, 0, 5));
+    const double unit_s = grid_.time_unit_s;
+    const auto lag = [unit_s](double N::*member) {
+      return logarithmic(member, 1.5, 0.1 * unit_s, 1e-4 * unit_s, 10 * unit_s);
+    };
+    if (structure_.delay) add_driving(straight(&N::delay_s, 0.2 * unit_s, 0, 0, 5 * unit_s));
     if (structure_.lag) {
       if (structure_.two_way) {
-        add_driving(logarithmic(&N::filling_s, 1.5, 0.1, 1e-4, 10));
-        add_driving(logarithmic(&N::venting_s, 1.5, 0.1, 1e-4, 10));
+        add_driving(lag(&N::filling_s));
+        add_driving(lag(&N::venting_s));
       } else {
-        Coordinate both = logarithmic(&N::filling_s, 1.5, 0.1, 1e-4, 10);
+        Coordinate both = lag(&N::filling_s);
         const auto set = both.set;
         both.set = [set](N& n, double t) {
           set(n, t);
@@ -179,11 +183,11 @@ class Search {
         add_driving(std::move(both));
       }
     }
-    if (structure_.lag && structure_.second_lag) add_driving(logarithmic(&N::second_s, 1.5, 0.1, 1e-4, 10));
+    if (structure_.lag && structure_.second_lag) add_driving(lag(&N::second_s));
     if (structure_.lag && structure_.rate_limit) {
       for (double N::*s_per_kpa : {&N::filling_s_per_kpa, &N::venting_s_per_kpa})
-        add_driving(logarithmic(s_per_kpa, 1.5, 1 / grid_.largest_kpa, 1e-4 / grid_.largest_kpa,
-                                1e3 / grid_.largest_kpa));
+        add_driving(logarithmic(s_per_kpa, 1.5, unit_s / grid_.largest_kpa, 1e-4 * unit_s / grid_.largest_kpa,
+                                1e3 * unit_s / grid_.largest_kpa));
     }
     if (structure_.lag && structure_.regulator) {
       // A regulator has no wider dead band than this. Otherwise the search would fit a backlash by a dead
@@ -191,7 +195,7 @@ class Search {
       const double widest_kpa = widest_of_a_regulator * grid_.largest_kpa;
       add_driving(straight(&N::pilot_band_kpa, 1, 0, 0, widest_kpa));
       add_driving(straight(&N::overlap_kpa, 1, 0, 0, widest_kpa));
-      add_driving(logarithmic(&N::integral_s, 1.5, 0.5, 0.02, 100));
+      add_driving(logarithmic(&N::integral_s, 1.5, 0.5 * unit_s, 0.02 * unit_s, 100 * unit_s));
       add_driving(logarithmic(&N::full_open_kpa, 1.5, 15, 1, 1000));
     }
     if (structure_.characteristic) coordinates_.push_back(straight(&N::curvature, 1, 0, -4, 4));
@@ -232,9 +236,9 @@ std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, con
   peaks.reserve(records.size());
   for (const Record& record : records) peaks.push_back(record.start_unknown ? record.drive_kpa.front() : 0);
   const auto start = [&](double delay_s, double filling_s, double venting_s, double growing, double trained) {
-    return NonlinearNumbers{.delay_s = delay_s,
-                            .filling_s = filling_s,
-                            .venting_s = venting_s,
+    return NonlinearNumbers{.delay_s = delay_s * grid.time_unit_s,
+                            .filling_s = filling_s * grid.time_unit_s,
+                            .venting_s = venting_s * grid.time_unit_s,
                             .growing_per_kpa = growing / grid.largest_kpa,
                             .trained_kpa = trained * grid.largest_kpa,
                             .peak_before_kpa = peaks};
@@ -266,17 +270,19 @@ std::vector<NonlinearNumbers> with_rate_limits(const std::vector<NonlinearNumber
 }  // namespace
 
 NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureGrid& grid) {
-  numbers.filling_s = std::clamp(numbers.filling_s, 1e-3, 0.03);
-  numbers.venting_s = std::clamp(numbers.venting_s, 1e-3, 0.05);
+  const double unit_s = grid.time_unit_s;
+  numbers.filling_s = std::clamp(numbers.filling_s, 1e-3 * unit_s, 0.03 * unit_s);
+  numbers.venting_s = std::clamp(numbers.venting_s, 1e-3 * unit_s, 0.05 * unit_s);
   numbers.pilot_band_kpa = 0.006 * grid.largest_kpa;
   numbers.overlap_kpa = 0.006 * grid.largest_kpa;
-  numbers.integral_s = 0.4;
+  numbers.integral_s = 0.4 * unit_s;
   numbers.full_open_kpa = 0.2 * grid.largest_kpa;
   return numbers;
 }
 
 StructureGrid grid_for(const std::vector<Record>& records) {
   StructureGrid grid;
+  grid.time_unit_s = time_unit_s(records);
   double longest_s = 0;
   std::size_t cycles = 0;
   for (const Record& record : records) {
@@ -288,11 +294,12 @@ StructureGrid grid_for(const std::vector<Record>& records) {
   const int plays = cycles > 2 ? 12 : 6;
   for (int i = 1; i <= plays; ++i)
     grid.thresholds_kpa.push_back(0.95 * std::pow(static_cast<double>(i) / plays, 1.5) * grid.largest_kpa);
-  for (double tau = 0.05; tau < 3 * longest_s && grid.ladder_s.size() < 10; tau *= ladder_ratio)
+  for (double tau = 0.05 * grid.time_unit_s; tau < 3 * longest_s && grid.ladder_s.size() < 10;
+       tau *= ladder_ratio)
     grid.ladder_s.push_back(tau);
   grid.slow_from_s = longest_s / 10;
   grid.hinges_kpa = {0.25 * grid.largest_kpa, 0.5 * grid.largest_kpa, 0.75 * grid.largest_kpa};
-  for (double tau = 0.25; tau < longest_s && grid.hinge_ladder_s.size() < 5; tau *= 5)
+  for (double tau = 0.25 * grid.time_unit_s; tau < longest_s && grid.hinge_ladder_s.size() < 5; tau *= 5)
     grid.hinge_ladder_s.push_back(tau);
   return grid;
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "model/blocks/prandtl_ishlinskii.h"
+#include "model/blocks/valve_lag.h"
 #include "model/named.h"
 
 namespace softgrip::sysid::fit_space_test {
@@ -25,6 +26,27 @@ TEST(IsMovable, OfTheEnvelopesWhereTheyAreBentAlone) {
     for (const char* placed : {"trained_kpa", "envelope_kpa", "r2_kpa"})
       EXPECT_FALSE(moves(placed)) << placed;
   }
+}
+
+/// Returns a record of 1000 samples.
+Record sampled_every(double interval_s) {
+  Record record;
+  for (int i = 0; i < 1000; ++i) record.time_s.push_back(interval_s * i);
+  record.drive_kpa.assign(1000, 1);
+  record.reading_mm.assign(1000, 1);
+  record.finest_interval_s = interval_s;
+  return record;
+}
+
+TEST(FitSpace, LimitsALagInUnitsOfTheTimeThatTheRecordsResolve) {
+  const model::Model lag = model::with_block({}, {model::block_type<model::ValveLag>(), {0.1}});
+  const auto limit_s = [&](double interval_s) {
+    return FitSpace(lag, {sampled_every(interval_s)}, {0}).free().front().upper;
+  };
+  EXPECT_DOUBLE_EQ(limit_s(0.01), 10);
+  EXPECT_DOUBLE_EQ(limit_s(0.1), 10);
+  EXPECT_NEAR(limit_s(4), 1264, 1);
+  EXPECT_NEAR(limit_s(0.0001), 0.0316, 1e-4);
 }
 
 }  // namespace

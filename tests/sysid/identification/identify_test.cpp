@@ -67,6 +67,18 @@ TEST(Identify, FindsLatencyWhereTheStructureHasIt) {
   expect_truth(*result, truth, 2);
 }
 
+/// In MPa, the same finger moves 1000 times as far per unit of pressure. The limits of the parameters contain
+/// such a gain.
+TEST(Identify, TheUnitOfThePressureDoesNotMatter) {
+  std::vector<Log> logs = two_logs(scattered(loaded("zhang2025"), 0.05, 1));
+  for (Log& log : logs) {
+    for (double& p : log.pressure_command_kpa) p /= 1000;
+  }
+  const auto result = identify(logs, base_model(logs, 2));
+  ASSERT_TRUE(result) << result.error();
+  EXPECT_NEAR(result->rmse_mm, 0.05, 0.02 * 0.05);
+}
+
 /// The central example of the project: if the model structure has no latency, the hysteresis block absorbs
 /// the latency of the rig.
 TEST(Identify, WithoutLatencyTheTwinLooksNotInvertible) {

@@ -100,9 +100,9 @@ std::vector<Bad> bad_logs() {
        }),
        2, 1, "starts at", "subtract"},
       {"TimeInMilliseconds", with_log([](Log& log) {
-         for (double& t : log.time_s) t *= 1000;
+         for (double& t : log.time_s) t *= 1e5;
        }),
-       2, 1, "10 s apart", "milliseconds"},
+       2, 1, "1000 s apart", "milliseconds"},
       {"Hole", with_log([](Log& log) {
          for (std::size_t i = 30; i < 100; ++i) log.time_s[i] += 2;
        }),
@@ -167,6 +167,13 @@ TEST(Log, AGoodOneIsRead) {
   EXPECT_EQ(log->displacement_mm, good_log().displacement_mm);
   EXPECT_EQ(log->sha256.size(), 64U);
   EXPECT_TRUE(log->notes.empty()) << log->notes.front().text;
+}
+
+TEST(Log, OfASlowProcessIsRead) {
+  Log slow = good_log();
+  for (double& t : slow.time_s) t *= 6000;
+  document::Problems problems;
+  EXPECT_TRUE(parse_log("slow.csv", format_log(slow), problems));
 }
 
 TEST(Log, TextAndBackLosesNothing) {

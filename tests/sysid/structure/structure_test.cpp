@@ -110,6 +110,24 @@ TEST(StructureColumns, AreWhatARateLimitOfTheModelDoes) {
   EXPECT_NEAR(rms(left), std::sqrt(fit.mean_square_mm2), 2e-5);
 }
 
+// The times of delay, lags and creep of a slow process exceed every time of a soft finger. The search finds
+// them, because its starting points and limits are in units of time_unit_s().
+TEST(StructureFit, FitsAProcessThatIsAHundredTimesSlowerEquallyWell) {
+  constexpr double slower = 100;
+  Log log = simulated(play_finger(), SignalName::tp1, 100, 0.03, 4);
+  const auto fit_of = [](const Log& each) {
+    const std::vector<Record> records = make_records({each}, {});
+    return fit_form(records, {}, grid_for(records), {});
+  };
+  const FittedStructure usual = fit_of(log);
+  for (double& time_s : log.time_s) time_s *= slower;
+  const FittedStructure slow = fit_of(log);
+  EXPECT_LT(slow.mean_square_mm2, 1.1 * usual.mean_square_mm2);
+  EXPECT_NEAR(slow.numbers.delay_s, slower * usual.numbers.delay_s, 0.02 * slower);
+  EXPECT_NEAR(slow.numbers.filling_s, slower * usual.numbers.filling_s, 0.02 * slower);
+  EXPECT_NEAR(slow.numbers.venting_s, slower * usual.numbers.venting_s, 0.02 * slower);
+}
+
 TEST(StructureColumns, AreBitForBitTheSameOnMoreThreads) {
   const std::vector<Record> records = make_records({simulated(play_finger(), SignalName::tp1, 50, 0.03, 3),
                                                     simulated(play_finger(), SignalName::sp2, 50, 0.03, 4)},
