@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <optional>
 #include <utility>
 
 #include "model/blocks/asymmetric_valve_lag.h"
@@ -35,6 +37,22 @@ void put(FitPoint& point, double period_s, double damping_ratio) {
   point.model = model::with_block(
       std::move(point.model),
       model::block_of<model::Inertia>({{"period_s", period_s}, {"damping_ratio", damping_ratio}}));
+}
+
+/// Returns the point with the dead time added to the lags, less the latency of a mode. The fit without the
+/// mode represents the slow rise of the mode partly by a dead time, and this dead time prevents the search
+/// from finding the mode. Returns nullopt if the model has no dead time or no lag.
+std::optional<FitPoint> with_dead_time_as_lag(FitPoint point, double mode_latency_s) {
+  const auto delay = model::position_of<model::TransportDelay>(point.model);
+  if (!delay) return std::nullopt;
+  const double moved_s = std::exchange(point.model.blocks[*delay].values[0], 0.0) - mode_latency_s;
+  const auto lag = std::find_if(point.model.blocks.begin(), point.model.blocks.end(), [](const auto& block) {
+    return model::is<model::AsymmetricValveLag>(block);
+  });
+  if (lag == point.model.blocks.end()) return std::nullopt;
+  for (double& time_constant_s : lag->values)
+    time_constant_s = std::max(time_constant_s + moved_s, 0.1 * time_constant_s);
+  return point;
 }
 
 /// Returns the indices of the parameters of resonance, delay and lags in the list of all parameters.
@@ -84,15 +102,20 @@ ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& rec
   const double from_s = shortest_in_intervals * interval_s;
   const double to_s =
       std::max(from_s, std::min(longest_share * length_s, longest_in_units * time_unit_s(records)));
-  // For each damping ratio, the best fit of all start points.
-  std::array<ResonantFit, damping_ratios.size()> best;
+  // For each damping ratio and form of the latency, the best start point. The forms are not compared, because
+  // the fit without the mode favours the form that it has.
+  std::array<ResonantFit, 2 * damping_ratios.size()> best;
   for (int i = 0; i < periods; ++i) {
     const double period_s = from_s * std::pow(to_s / from_s, static_cast<double>(i) / (periods - 1));
-    for (std::size_t d = 0; d < damping_ratios.size(); ++d) {
-      ResonantFit start{point, 0};
-      put(start.point, period_s, damping_ratios[d]);
+    for (std::size_t k = 0; k < best.size(); ++k) {
+      const double damping_ratio = damping_ratios[k / 2];
+      const std::optional<FitPoint> from =
+          k % 2 == 0 ? point : with_dead_time_as_lag(point, damping_ratio * period_s / std::numbers::pi);
+      if (!from) continue;
+      ResonantFit start{*from, 0};
+      put(start.point, period_s, damping_ratio);
       start.rmse_mm = rmse_of(start.point.model, start.point.starts, records);
-      if (start.rmse_mm < best[d].rmse_mm) best[d] = std::move(start);
+      if (start.rmse_mm < best[k].rmse_mm) best[k] = std::move(start);
     }
   }
   ResonantFit found;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/inertia.h"
 #include "model/blocks/transport_delay.h"
@@ -49,6 +50,21 @@ TEST(Resonance, PeriodsOverADecadeAreFoundWithTheDelayBesideThem) {
     ASSERT_NE(delay, nullptr);
     EXPECT_NEAR(delay->values[0], 0.06, 0.002) << truth_s;
   }
+}
+
+/// A fit without the resonance represents its slow rise by a dead time that the rig does not have.
+TEST(Resonance, IsFoundBehindADeadTimeThatOnlyReplacedIt) {
+  const auto lagging = [](double delay_s, double lag_s) {
+    return model::with_block(finger(delay_s),
+                             {model::block_type<model::AsymmetricValveLag>(), {lag_s, lag_s}});
+  };
+  const model::Model truth =
+      model::with_block(lagging(1e-6, 0.28), {model::block_type<model::Inertia>(), {0.7, 0.2}});
+  const std::vector<Record> records{steps(truth)};
+  const ResonantFit fit =
+      with_resonance({lagging(0.14, 0.11), {StartState{}}}, records, ResonanceFit::dynamics);
+  EXPECT_NEAR(period_s(fit.point), 0.7, 0.01);
+  EXPECT_LT(fit.rmse_mm, 0.05);
 }
 
 TEST(Resonance, FollowsOtherReadingsFromWhereItWas) {
