@@ -224,11 +224,11 @@ sysid::Page health_page(const FingerHealth& health, const Suspicion& suspicion, 
   page.provenance(
       {{"software", sysid::software_and_version()},
        {"baseline", source.baseline},
-       {"full pressure", significant(source.base.full_kpa, 4) + " kPa, but the baseline reaches only " +
+       {"full pressure", significant(source.base.full_kpa, 4) + " kPa; the baseline model reaches " +
                              significant(source.base.full_mm, 4) + " " +
-                             std::string(name_of(health.output_unit))},
-       {"false alarms", "one in " + significant(source.options.false_alarm_points, 4) +
-                            " points between two false alarms of a healthy finger, over all indicators"},
+                             std::string(name_of(health.output_unit)) + " at this pressure"},
+       {"false alarms", "on average one in " + significant(source.options.false_alarm_points, 4) +
+                            " points of a healthy finger, over all indicators"},
        {"limits", "CUSUM " + significant(limits.cusum, 3) + " with allowance " +
                       significant(limits.allowance, 2) + ", single value " + significant(limits.single, 3) +
                       " standard deviations"}});
