@@ -24,6 +24,9 @@ struct ParameterSpec {
                              ///< on it (a threshold)
   bool latency = false;      ///< true: a dead time, a lag or a period, whose size depends on the kind of rig;
                              ///< `upper` is a limit for files, and a fit has a lower limit for each log
+  bool per_pressure = false;  ///< true: a gain or a rate per kPa, whose size depends on the range of the
+                              ///< pressure; `lower` and `upper` are limits for files, and a fit has narrower
+                              ///< limits for each log
   /// Neutral value: if all parameters that have a neutral value are set to it, the block has no effect. NaN:
   /// the parameter has no neutral value, because it has no influence while the others are neutral.
   double neutral = std::numeric_limits<double>::quiet_NaN();
@@ -51,6 +54,7 @@ struct IfLeftOut {
 struct Whole {};
 struct Placed {};
 struct Latency {};
+struct PerPressure {};
 
 namespace declaration {
 constexpr void add(ParameterSpec& spec, Neutral neutral) {
@@ -67,6 +71,9 @@ constexpr void add(ParameterSpec& spec, Placed) {
 }
 constexpr void add(ParameterSpec& spec, Latency) {
   spec.latency = true;
+}
+constexpr void add(ParameterSpec& spec, PerPressure) {
+  spec.per_pressure = true;
 }
 }  // namespace declaration
 

@@ -22,7 +22,12 @@ bool is_logarithmic(const model::ParameterSpec& spec) {
 /// Largest dead time, lag or period of a fit, in units of time_unit_s().
 constexpr double largest_latency = 10;
 
-FreeParameter model_parameter(const model::Model& model, std::size_t flat_index, double time_unit_s) {
+/// Largest magnitude of a gain or of a rate per kPa in a fit, in units of 1 / pressure_unit_kpa(). A larger
+/// rate describes a jump, which the readings cannot size.
+constexpr double largest_per_pressure = 10;
+
+FreeParameter model_parameter(const model::Model& model, std::size_t flat_index, double time_unit_s,
+                              double pressure_unit_kpa) {
   const model::ParameterSpec& spec = model::parameter_spec(model, flat_index);
   FreeParameter p;
   p.flat_index = flat_index;
@@ -38,6 +43,12 @@ FreeParameter model_parameter(const model::Model& model, std::size_t flat_index,
   if (spec.latency) {
     p.scale = spec.scale * time_unit_s;
     p.upper = std::min(spec.upper, largest_latency * time_unit_s);
+  }
+  if (spec.per_pressure) {
+    const double largest = largest_per_pressure / pressure_unit_kpa;
+    p.scale = spec.scale / pressure_unit_kpa;
+    p.lower = std::max(p.lower, -largest);
+    p.upper = std::min(spec.upper, largest);
   }
   return p;
 }
@@ -73,8 +84,8 @@ double FreeParameter::slope(double z) const {
 FitSpace::FitSpace(const model::Model& model, const std::vector<Record>& records,
                    const std::vector<std::size_t>& free_flat)
     : base_(model), base_starts_(rest_starts(model, records)) {
-  const double unit_s = time_unit_s(records);
-  for (const std::size_t index : free_flat) free_.push_back(model_parameter(model, index, unit_s));
+  const double unit_s = time_unit_s(records), unit_kpa = pressure_unit_kpa(records);
+  for (const std::size_t index : free_flat) free_.push_back(model_parameter(model, index, unit_s, unit_kpa));
   const std::size_t branches = branch_time_constants_s(model).size();
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Record& record = records[r];

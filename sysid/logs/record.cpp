@@ -105,6 +105,13 @@ double time_unit_s(const std::vector<Record>& records) {
   return resolves_1_s || !(length_s > 0) ? 1 : std::sqrt(interval_s * length_s);
 }
 
+double pressure_unit_kpa(const std::vector<Record>& records) {
+  constexpr double least_of_a_finger_kpa = 20;
+  double largest_kpa = 0;
+  for (const Record& record : records) largest_kpa = std::max(largest_kpa, record.largest_kpa);
+  return largest_kpa > 0 ? std::min(1.0, largest_kpa / least_of_a_finger_kpa) : 1;
+}
+
 void hide_reading(Record& record, std::size_t sample) {
   if (!std::isfinite(record.reading_mm[sample])) return;
   record.reading_mm[sample] = std::numeric_limits<double>::quiet_NaN();

@@ -110,6 +110,12 @@ struct Record {
 /// @param records  at least one record.
 [[nodiscard]] double time_unit_s(const std::vector<Record>& records);
 
+/// Returns the unit of pressure in which a fit searches for gains and rates per kPa [kPa]. It is 1 kPa if the
+/// largest pressure is at least 20 kPa, as it is for soft fingers. Otherwise it is a twentieth of the largest
+/// pressure, for example if the pressures of a log are in MPa.
+/// @param records  at least one record.
+[[nodiscard]] double pressure_unit_kpa(const std::vector<Record>& records);
+
 /// Sets the reading of a sample to NaN and updates the number of readings.
 void hide_reading(Record& record, std::size_t sample);
 

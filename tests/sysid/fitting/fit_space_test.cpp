@@ -1,9 +1,11 @@
 #include "sysid/fitting/fit_space.h"
 
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "model/blocks/bouc_wen.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/valve_lag.h"
 #include "model/named.h"
@@ -47,6 +49,22 @@ TEST(FitSpace, LimitsALagInUnitsOfTheTimeThatTheRecordsResolve) {
   EXPECT_DOUBLE_EQ(limit_s(0.1), 10);
   EXPECT_NEAR(limit_s(4), 1264, 1);
   EXPECT_NEAR(limit_s(0.0001), 0.0316, 1e-4);
+}
+
+TEST(FitSpace, LimitsRatesInUnitsOfThePressureOfTheRecords) {
+  const model::Model finger =
+      model::with_block({}, {model::block_type<model::BoucWen>(), {0.35, 0.2, 0.03, 0.03, 1}});
+  const auto limits_of_gamma = [&](double largest_kpa) {
+    Record record = sampled_every(0.01);
+    record.largest_kpa = largest_kpa;
+    const FreeParameter gamma = FitSpace(finger, {record}, {2}).free().front();
+    return std::pair(gamma.lower, gamma.upper);
+  };
+  EXPECT_EQ(limits_of_gamma(100), std::pair(-10.0, 10.0));
+  EXPECT_EQ(limits_of_gamma(20), std::pair(-10.0, 10.0));
+  EXPECT_NEAR(limits_of_gamma(0.6).second, 333.3, 0.1);
+  EXPECT_NEAR(limits_of_gamma(0.6).first, -333.3, 0.1);
+  EXPECT_EQ(limits_of_gamma(1e-9).second, 1e4);
 }
 
 }  // namespace
