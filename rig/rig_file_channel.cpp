@@ -132,6 +132,20 @@ void check_feedforward_exists(Context& context, MapReader& reader, const control
                           : "");
 }
 
+/// Reports each dead time, lag and period of a channel's model that is too long for a controller. A model
+/// file of a slow process may contain larger values.
+void check_model_times(MapReader& reader, const model::Model& model) {
+  constexpr double longest_s = 10;
+  for (std::size_t i = 0; i < model::parameter_count(model); ++i) {
+    const double value = model::flat_values(model)[i];
+    if (!model::parameter_spec(model, i).latency || value <= longest_s) continue;
+    reader.report("model",
+                  "`" + model::parameter_path(model, i) + "` of the model is " + written(value) +
+                      " s, but a controller allows at most " + written(longest_s) + " s",
+                  "check the unit in the model file: 13 ms = 0.013 s");
+  }
+}
+
 void read_channel(Context& context, const Node& node, const Shared& shared, ChannelDefaults& defaults) {
   const std::size_t before = context.problems.size();
   const std::string number = "channel " + std::to_string(context.rig.settings.channels.size() + 1);
@@ -142,7 +156,10 @@ void read_channel(Context& context, const Node& node, const Shared& shared, Chan
   channel.name = read_channel_name(context, reader);
   const std::string who = channel.name.empty() ? number : "channel `" + channel.name + "`";
   const auto model = named_model(context, reader, "model", InputFile::Role::model);
-  if (model) channel.model = *model;
+  if (model) {
+    check_model_times(reader, *model);
+    channel.model = *model;
+  }
   read_feedforward(context, reader, channel);
   read_keys(reader, rig_keys().channel_parts, channel);
   read_map(

@@ -376,6 +376,26 @@ TEST(RestPressure, IsComparedWithTheValveThatHasNoPower) {
       << problems.format();
 }
 
+TEST(RigFile, AModelWithALagBeyondTheLimitOfAControllerIsRefused) {
+  const ScratchFolder folder;
+  const auto problems_with = [&](const std::string& lag_s) {
+    std::ifstream shipped_model(shipped("models/bench_twin.yaml"));
+    std::string text{std::istreambuf_iterator<char>(shipped_model), {}};
+    const std::string lag = "time_constant_s: 0.044";
+    text.replace(text.find(lag), lag.size(), "time_constant_s: " + lag_s);
+    std::ofstream(folder.path() + "/slow.yaml") << text;
+    Problems problems;
+    const std::pair<std::string, std::string> model{"models/bench_twin.yaml", folder.path() + "/slow.yaml"};
+    edited("rig.yaml", {model, model, model}, problems);  // two simulated fingers and the channels
+    return problems.format();
+  };
+  EXPECT_EQ(problems_with("10").find("but a controller allows"), std::string::npos) << problems_with("10");
+  EXPECT_NE(problems_with("44").find("time_constant_s` of the model is 44 s, but a controller allows at most "
+                                     "10 s"),
+            std::string::npos)
+      << problems_with("44");
+}
+
 TEST(RigFile, PathsAreRelativeToTheFile) {
   std::filesystem::current_path("/");
   const rig::RigFile rig = loaded("rig.yaml");

@@ -42,7 +42,8 @@ run_examples() {
     -e "s#sequence_directory: sequences#sequence_directory: $source/config/sequences#" "$source/config/rig.yaml" >rig.yaml
   "$softgripd" --config rig.yaml >daemon.log 2>&1 &
   daemon=$!
-  for _ in $(seq 600); do [ ! -S socket ] || break; sleep 0.05; done
+  # On a busy machine, the daemon has its socket before its first reading.
+  for _ in $(seq 600); do ! "$softgrip" status --socket socket 2>/dev/null | grep -q idle || break; sleep 0.05; done
   says "result: HOLDING" "$examples/grip_and_wait" socket pick_stone
   ! "$examples/grip_and_wait" socket pick_stome 2>output.txt || fail "grip_and_wait started a sequence that does not exist"
   grep -q "cannot be run on this rig" output.txt || { cat output.txt >&2; fail "no reason of the refusal"; }
