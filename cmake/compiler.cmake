@@ -5,8 +5,8 @@ target_include_directories(softgrip_flags INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(softgrip_flags INTERFACE
   -Wall -Wextra -Wpedantic $<$<BOOL:${SOFTGRIP_WERROR}>:-Werror> -Wshadow -Wconversion -Wsign-conversion
   -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Wimplicit-fallthrough
-  # No contraction of a*b+c, because compilers contract it at different places. So runs can be repeated bit
-  # for bit.
+  # Compilers contract a*b+c to one operation, but at different places. Without this contraction, runs can be repeated
+  # bit for bit.
   -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # With -O2, GCC 12 incorrectly reports null dereferences in inlined standard containers.
@@ -20,8 +20,8 @@ if(SOFTGRIP_SANITIZE)
   endif()
 endif()
 if(NOT SOFTGRIP_SANITIZE)
-  # The hardening options of the Debian package. All builds have them, because a user may run another build on
-  # a rig.
+  # The hardening options of the Debian package. All builds have these options, because a user may run any build on a
+  # rig.
   include(CheckCXXCompilerFlag)
   check_cxx_compiler_flag(-fcf-protection SOFTGRIP_HAS_CF_PROTECTION)
   if(NOT CMAKE_BUILD_TYPE STREQUAL "Debug")  # _FORTIFY_SOURCE needs an optimised build
@@ -32,7 +32,7 @@ if(NOT SOFTGRIP_SANITIZE)
   add_link_options(-Wl,-z,relro,-z,now)
 endif()
 if(SOFTGRIP_FUZZERS)
-  # The coverage of all libraries guides the fuzzer. Only the fuzz targets themselves are linked with main()
-  # of libFuzzer.
+  # The fuzzer is guided by the coverage of all libraries, so all are compiled for it. The fuzz targets alone are linked
+  # with main() of libFuzzer.
   add_compile_options(-fsanitize=fuzzer-no-link)
 endif()

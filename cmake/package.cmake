@@ -1,10 +1,10 @@
-# Builds the Debian package with `cpack` in the build folder, or with scripts/package.sh. The package installs
-# the programs to /usr, whatever prefix the build has. The configuration is always in /etc/softgrip.
+# Builds the Debian package with `cpack` in the build folder, or with scripts/package.sh. The package installs the
+# programs to /usr, regardless of the prefix of the build. The configuration is always in /etc/softgrip.
 set(packaging ${PROJECT_SOURCE_DIR}/packaging)
 set(packaged ${CMAKE_CURRENT_BINARY_DIR}/packaging)
 
-# The units and rules contain the full paths of programs. These paths are known only at installation time, so
-# the files are configured then.
+# The units and rules contain the full paths of programs. These paths are not known before the installation, so CMake
+# configures the files at installation time.
 install(CODE "set(CMAKE_INSTALL_FULL_BINDIR \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")
 set(SOFTGRIP_CONFIGURATION \"${SOFTGRIP_CONFIGURATION}\")
 foreach(unit IN ITEMS softgripd softgrip-plc softgrip-web softgrip-health)
@@ -55,7 +55,7 @@ endif()
 
 # The completion scripts of the shells. The program softgrip writes them.
 set(completions "")
-# completion(SHELL FILE FOLDER)  writes and installs the completion script for one shell
+# completion(SHELL FILE FOLDER)  writes the completion script for one shell to FILE and installs it in FOLDER
 function(completion shell file folder)
   set(script ${packaged}/completion/${file})
   add_custom_command(OUTPUT ${script}
@@ -71,7 +71,7 @@ completion(zsh _softgrip zsh/vendor-completions)
 completion(fish softgrip.fish fish/vendor_completions.d)
 add_custom_target(completions ALL DEPENDS ${completions})
 
-# Files that only the package contains: changelog, copyright and the overrides for lintian.
+# Files that a Debian package must contain: changelog, copyright, and the overrides for lintian.
 set(SOFTGRIP_PACKAGE_RELEASE 1 CACHE STRING "Debian revision of the package")
 string(TIMESTAMP SOFTGRIP_PACKAGE_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)
 configure_file(${packaging}/deb/changelog.in ${packaged}/changelog.Debian @ONLY)
@@ -80,7 +80,7 @@ install(FILES ${packaged}/changelog.Debian.gz DESTINATION ${CMAKE_INSTALL_DOCDIR
 install(FILES ${packaging}/deb/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES ${packaging}/deb/lintian-overrides DESTINATION share/lintian/overrides RENAME softgrip)
 
-# All files in /etc are marked as configuration files, so that an upgrade keeps the changes of the user.
+# Mark all files in /etc as configuration files, so that an upgrade keeps the changes of the user.
 file(GLOB_RECURSE conffiles CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/config ${PROJECT_SOURCE_DIR}/config/*)
 list(TRANSFORM conffiles PREPEND ${SOFTGRIP_CONFIGURATION}/)
 list(JOIN conffiles "\n" conffiles)
@@ -95,7 +95,7 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXE
 set(CPACK_PACKAGE_NAME softgrip)
 set(CPACK_PACKAGE_CONTACT "The softgrip developers <developers@softgrip.example>")
 set(CPACK_DEB_COMPONENT_INSTALL OFF)
-# packaging/deb/library.sh builds the packages of the library. This package does not contain the library.
+# packaging/deb/library.sh builds the packages of the library. The package softgrip does not contain the library.
 set(CPACK_INSTALL_CMAKE_PROJECTS "${CMAKE_BINARY_DIR};softgrip;Unspecified;/")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE ${SOFTGRIP_PACKAGE_RELEASE})

@@ -1,6 +1,6 @@
-# Builds the extension module of the Python package if pybind11 and the headers of the system's Python are
-# installed. The folder python/softgrip of the build contains the module and links to the other files of the
-# package, so use PYTHONPATH=BUILD/python. The system's Python is built without sanitizers, so a test preloads
+# Builds the extension module of the Python package if pybind11 and the headers of the system's Python are installed.
+# The folder python/softgrip of the build contains the module and links to the other files of the package. To use it,
+# set PYTHONPATH=BUILD/python. The system's Python is built without sanitizers, so a test with AddressSanitizer preloads
 # the library of AddressSanitizer (tests/python/CMakeLists.txt).
 if(SOFTGRIP_SANITIZE AND (NOT SOFTGRIP_SANITIZE MATCHES "address" OR SOFTGRIP_FUZZERS))
   return()

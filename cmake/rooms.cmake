@@ -10,7 +10,7 @@
 softgrip_room(base LIBRARIES Threads::Threads)
 target_sources(softgrip_base PRIVATE ${version_file})
 add_dependencies(softgrip_base softgrip_version_file)
-# Sockets of servers. Every server of the project uses this room.
+# Sockets of servers. All servers of the project use this room.
 softgrip_room(base/net USES base)
 # The results of commands as text, JSON and HTML.
 softgrip_room(base/result USES base LIBRARIES nlohmann_json::nlohmann_json)
@@ -20,11 +20,11 @@ softgrip_room(document USES base LIBRARIES yaml-cpp)
 softgrip_room(model FOLDERS model/blocks USES base)
 softgrip_room(model/file USES base document model)
 
-# The code that runs in every control cycle.
+# The code that is executed in every control cycle.
 softgrip_room(control/elements USES base model)
 softgrip_room(control/feedforward USES base model control/elements)
 softgrip_room(control/tick USES document model control/elements control/feedforward)
-# Computations before the control cycles start: sequences and tuning.
+# Computations that are made before the control cycles start: sequences and tuning.
 softgrip_room(control/sequences USES base document model control/elements control/feedforward control/tick
   LIBRARIES Eigen3::Eigen)
 softgrip_room(control/tuning USES base model control/elements control/feedforward control/tick control/sequences)
@@ -73,7 +73,7 @@ softgrip_room(sysid/limits)
 softgrip_room(sysid/logs USES base document model)
 softgrip_room(sysid/recordings USES base document sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(sysid/import USES base document model sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
-# These libraries are linked PRIVATE, so that no other room is compiled against them.
+# These libraries are linked PRIVATE, so other rooms are not compiled with their headers.
 target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio PkgConfig::hdf5 PkgConfig::libzip PkgConfig::pugixml)
 softgrip_room(sysid/pages USES base base/result model model/file sysid/logs)
 softgrip_room(sysid/fitting USES base model sysid/limits sysid/logs LIBRARIES Eigen3::Eigen Ceres::ceres)
@@ -117,8 +117,8 @@ softgrip_room(sysid/health
   USES base base/result document model model/file control/elements sysid/limits sysid/logs sysid/recordings sysid/pages sysid/fitting sysid/diagnosis/causes
        sysid/changes sysid/diagnosis/experiments
   LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
-# These files contain the innermost loops of a fit and are compiled with -O3. With -O3 and a sanitizer, GCC 12
-# fails.
+# These files contain the innermost loops of a fit, so they are compiled with -O3. GCC 12 fails if -O3 is combined with
+# a sanitizer.
 if(NOT SOFTGRIP_SANITIZE)
   softgrip_flags_of(sysid/fitting -O3 chain_residuals.cpp separable.cpp separable_pressure.cpp separable_search.cpp)
 endif()
@@ -139,12 +139,12 @@ softgrip_page_files(tools/web/page)
 if(httplib_VERSION VERSION_GREATER_EQUAL 0.18)
   target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_HTTPLIB_ADDRESSES=1)
 endif()
-# This room is separate from tools/command_line. So the gateways, which are reachable from a network, do not
-# link the readers of external files.
+# This room is separate from tools/command_line. A network can reach the gateways, so they must not link the readers of
+# external files.
 softgrip_room(tools/log_input USES base document model sysid/logs sysid/import sysid/diagnosis/gauge tools/command_line
   LIBRARIES CLI11::CLI11)
 softgrip_room(tools/recordings USES base sysid/logs sysid/recordings sysid/pages)
-# This room has its own precompiled headers. librsvg needs -pthread, and the headers that the other rooms
+# This room has precompiled headers of its own. librsvg needs -pthread, but the precompiled headers that the other rooms
 # share are compiled without it.
 softgrip_room(tools/figures USES base sysid/pages PRECOMPILE <string> <vector>)
 target_link_libraries(${softgrip_room_target} PRIVATE PkgConfig::librsvg)
@@ -165,9 +165,9 @@ softgrip_room(tools/investigation
        daemon/service daemon/socket sysid/logs sysid/recordings sysid/pages sysid/identification sysid/diagnosis/causes
        sysid/diagnosis/verdict sysid/diagnosis/experiments sysid/diagnosis/report
   LIBRARIES nlohmann_json::nlohmann_json)
-# Computes the values of a report a second time.
+# Computes the values of a report independently, to verify the report.
 softgrip_room(tools/verification USES base document model model/file sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
-# The studies of the paper. `softgrip study` runs them.
+# Studies of the paper, which `softgrip study` runs.
 softgrip_room(bench/studies
   USES base base/result model control/elements control/feedforward control/tuning sysid/logs sysid/pages sysid/fitting
        sysid/identification)

@@ -51,8 +51,8 @@ function(softgrip_room folder)
   set(softgrip_room_target ${target} PARENT_SCOPE)
 endfunction()
 
-# The shared library consists of the same objects as the programs. The names that the library does not export are hidden,
-# so that calls within the library are direct, as in a program.
+# The shared library consists of the same object files as the programs. Names that the library does not export are
+# hidden. Calls within the library are therefore direct, as in a program.
 function(softgrip_for_shared_library target)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON)
@@ -70,7 +70,8 @@ function(softgrip_target_of folder variable)
   set(${variable} ${name} PARENT_SCOPE)
 endfunction()
 
-# Before a room is compiled, checks that its files include only headers of rooms that the room may use.
+# Before a room is compiled, checks the includes of its files. A file may include only headers of rooms that its room
+# may use.
 function(softgrip_arrows target folders uses)
   set(stamp ${CMAKE_BINARY_DIR}/arrows/${target}.checked)
   string(REPLACE ";" "," folders "${folders}")
@@ -98,7 +99,7 @@ function(softgrip_page_files folder)
   target_sources(${softgrip_room_target} PRIVATE ${CMAKE_BINARY_DIR}/page_files.cpp)
 endfunction()
 
-# softgrip_flags_of(ROOM FLAG FILES...)  sets a compile option for some files of a room
+# softgrip_flags_of(ROOM FLAG FILES...)  sets the compile option FLAG for some files of a room
 function(softgrip_flags_of folder flag)
   list(TRANSFORM ARGN PREPEND ${PROJECT_SOURCE_DIR}/${folder}/)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS ${flag})
@@ -117,14 +118,14 @@ function(softgrip_program name files output)
   target_link_libraries(${name} PRIVATE softgrip_flags ${arg_LIBRARIES})
   softgrip_compile_together(${name})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${output})
-  # All symbols are bound when the program starts, so that no first call in the control loop has to look one
-  # up. The program loads only libraries from which it calls a function.
+  # All symbols are resolved when the program starts. Otherwise, the first call of a function in the control loop would
+  # have to look up its symbol. The program loads only libraries from which it calls a function.
   target_link_options(${name} PRIVATE -Wl,-z,relro,-z,now,--as-needed)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
-# Clang requires the same definitions in every source that uses a precompiled header. ccache finds no cached
-# objects for sources with precompiled headers.
+# If a source uses a precompiled header, Clang requires the same definitions for both. ccache finds no cached objects
+# for such sources.
 function(softgrip_may_precompile variable)
   if(SOFTGRIP_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     set(${variable} TRUE PARENT_SCOPE)
@@ -132,12 +133,12 @@ function(softgrip_may_precompile variable)
     set(${variable} FALSE PARENT_SCOPE)
   endif()
 endfunction()
-# GCC 12 incorrectly warns about accesses to the inner buffer of a short std::string. In a system header, the
-# warning is normally hidden. It appears if the header is precompiled or if several files are compiled as one.
+# GCC 12 incorrectly warns about accesses to the inner buffer of a short std::string. The warning is hidden in system
+# headers. It appears if the header is precompiled or if several files are compiled as one.
 set(softgrip_misread_strings -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
 
-# Compiles up to 32 files of a target as one file, which takes 1.4 GB of memory. The files are combined only
-# if headers may be precompiled, that is, in builds that are made once and not debugged.
+# Compiles up to 32 files of a target as one file, which takes 1.4 GB of memory. Files are combined in builds with
+# precompiled headers only. These builds are made once and are not used for debugging.
 function(softgrip_compile_together target)
   softgrip_may_precompile(may)
   if(may)
@@ -149,8 +150,8 @@ function(softgrip_compile_together target)
   endif()
 endfunction()
 
-# Compiles the headers that most rooms include once for all rooms. A room that precompiles its own library
-# headers does not use them.
+# Compiles the headers that most rooms include, once for all rooms. A room that precompiles headers of its own libraries
+# does not use this result.
 function(softgrip_precompile_for_rooms target own)
   if(own)
     target_precompile_headers(${target} PRIVATE ${own})
@@ -178,8 +179,8 @@ function(softgrip_rooms variable)
   set(${variable} ${targets} PARENT_SCOPE)
 endfunction()
 
-# Compile options of all tests. The tests are most of a build, and they check results, not speed, so they are
-# compiled with little optimisation. The headers that all tests include are compiled once.
+# Compile options of all tests. The tests take most of the build time, and they check results instead of speed.
+# Therefore they are compiled with little optimisation. The headers that all tests include are compiled once.
 add_library(softgrip_test_flags INTERFACE)
 if(NOT SOFTGRIP_SANITIZE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
   target_compile_options(softgrip_test_flags INTERFACE -Og -g1)
@@ -234,8 +235,8 @@ function(softgrip_test name)
   softgrip_discover(${name} "${long}" long COST 10 ${arg_PROPERTIES})
   softgrip_discover(${name} "${campaign}" campaign COST 10 ${arg_PROPERTIES})
 endfunction()
-# Every parameter of a test has its own name. So CTest does not need the value of the parameter in the name.
-# Such a value may contain memory addresses, which differ between builds.
+# Every parameter of a test has a name. The name of the CTest test therefore does not contain the value of the
+# parameter, which could contain memory addresses that differ between builds.
 function(softgrip_discover name filter label)
   if(filter AND NOT filter STREQUAL "*:-*")
     if(label)

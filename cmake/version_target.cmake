@@ -1,4 +1,4 @@
-# softgrip_version_file: a target that writes version.cpp in each build. version.cpp belongs to the room base.
+# softgrip_version_file: a target that updates version.cpp in each build. version.cpp belongs to the room base.
 set(version_file ${CMAKE_BINARY_DIR}/version.cpp)
 add_custom_target(softgrip_version_file BYPRODUCTS ${version_file}
   COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}

@@ -23,7 +23,7 @@ command -v abidiff abidw >/dev/null || { echo "abi.sh: abidiff is missing: Debia
 describe() {
   abidw --suppr "$here/library/libsoftgrip.abignore" --exported-interfaces-only --no-corpus-path --no-comp-dir-path \
     --no-show-locs --no-elf-needed --no-parameter-names --type-id-style hash "$library" |
-    # Replaces the path of the checkout, so that the text does not depend on the folder of the sources.
+    # Replaces the path of the checkout, so that the stored text does not depend on the folder of the sources.
     sed -E "s#(<abi-instr .*path=')[^']*/(library/[^']*')#\1\2#"
 }
 soname_of() { sed -n "s/^<abi-corpus .*soname='\([^']*\)'.*/\1/p" "$1"; }

@@ -2,9 +2,9 @@
 """Measures the response time of softgripd's socket while other clients load it: answer_times.py [--seconds S]
 
 A daemon runs on the emulated rig at 1 kHz. One client sends a command every 5 ms. In every second turn, other clients
-load the socket: watchers, floods of requests, and subscribers that never read. All turns have the same length. The
-script prints the response times [ms], the wake-up latency of the loop and its overruns. Needs a release build
-(SOFTGRIP_BUILD).
+load the socket: watchers, clients that send floods of requests, and subscribers that never read. All turns have the
+same length. The script prints the response times [ms], and the wake-up latency and the overruns of the loop. Needs a
+release build (SOFTGRIP_BUILD).
 """
 
 import argparse

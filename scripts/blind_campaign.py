@@ -6,10 +6,9 @@ outcomes.
                               [--strengths 8 2] [--causes ID ...] [--first-seed 1000] [--workers 1]
                               [--variation X] [--closed-loop] [--page docs/results/blind-campaign.md]
 
---variation X lets the runs vary (tests/blind/variation.h). The page states it.
-The campaign can be resumed: the outcome of every world is one line of DIR/results.jsonl, and worlds in this file are
-not run again.
---page writes the table, and the pictures next to it.
+--variation X sets the strength of the run-to-run variation (tests/blind/variation.h). The page states the strength.
+The campaign can be resumed: the outcome of every world is one line of DIR/results.jsonl, and the script skips worlds
+in this file. --page writes the page with the table. It also writes the pictures to the folder of the page.
 """
 import argparse
 import itertools
@@ -28,7 +27,7 @@ import judging  # noqa: E402
 import varying  # noqa: E402
 from ledger import Ledger  # noqa: E402
 
-# Pairs of causes whose readings are almost equal for every command. If both causes of a pair are hidden, no
+# Pairs of causes whose readings are almost equal for every command. If both causes of a pair are hidden in a world, no
 # data can separate them.
 TWINS = [{"valve_lag", "sensor_lag", "transport_delay"}, {"stiffening", "sensor_nonlinearity"},
          {"pressure_saturation", "sensor_saturation", "contact"}, {"thermal_gain", "ageing"}]

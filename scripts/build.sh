@@ -1,5 +1,5 @@
-# A file to source. Its function builds and prints the last line of the output, or the error messages if the
-# build fails.
+# A file for other scripts. Its function builds targets. It prints the last line of the output, or the error messages if
+# the build fails.
 
 # build PRESET [TARGET ...]  builds the targets
 build() {

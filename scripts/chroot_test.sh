@@ -43,10 +43,10 @@ git -C "$root/softgrip" remote remove origin
 mkdir -p "$root/softgrip/build"
 find build -maxdepth 1 -name '*.deb' -exec cp -p {} "$root/softgrip/build" \;
 cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
-# Keeps the packages that apt downloads, for the next run.
+# Keeps the downloaded packages of apt for the next run.
 echo 'Binary::apt::APT::Keep-Downloaded-Packages "true"; APT::Keep-Downloaded-Packages "true";' \
   >"$root/etc/apt/apt.conf.d/98softgrip"
-# Dpkg need not write safely, because each run creates the folder from scratch.
+# dpkg may omit its safe writes (fsync), because each run creates the folder from scratch.
 echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/softgrip"
 mount --bind "$store/$release.packages" "$root/var/cache/apt/archives"
 mount -t proc proc "$root/proc"

@@ -67,8 +67,8 @@ def block_ids(sources):
 
 
 def block_names(sources):
-    """Returns (file, id) for each string literal that contains the id of a block. Files that may name a block are
-    left out."""
+    """Returns (file, id) for each string literal that contains the id of a block. Omits the files
+    that may name a block."""
     ids = block_ids(sources)
     return sorted((name, one) for name, text in sources.items() if not name.startswith(AT_HOME)
                   for one in re.findall(r'"(\w+)"', re.sub(r"//.*", "", text)) if one in ids)

@@ -12,13 +12,13 @@ cmake -S . -B $build -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS="--cove
   -DSOFTGRIP_BENCHMARKS=OFF -DSOFTGRIP_PRECOMPILE=ON >/dev/null
 cmake --build $build --target control_test daemon_test softgrip-world >$build/build.log || { tail -n 30 $build/build.log; exit 1; }
 find $build -name '*.gcda' -delete
-# Tests that count allocations or system calls fail in this build, because its counters allocate memory and
-# make system calls.
+# This build has counters that allocate memory and make system calls. Tests that count allocations or system calls
+# therefore fail in this build.
 $build/tests/control_test --gtest_brief=1 >$build/control.log 2>&1 || tail -n 5 $build/control.log
 $build/tests/daemon_test --gtest_brief=1 >$build/daemon.log 2>&1 || tail -n 5 $build/daemon.log
 $build/tests/world/softgrip-world --count 100 | tail -n 2
-# Two kinds of branches are not counted: branches for exceptions that the compiler adds to a call, and further
-# copies of a header's function in other object files.
+# Two kinds of branches are not counted: branches that the compiler adds to a call for exceptions, and additional copies
+# of an inline function in other object files.
 gcovr -r . $build --branches --exclude-throw-branches --exclude-unreachable-branches --sort-percentage \
   --filter 'control/' --filter 'daemon/loop/(bus|loop|heartbeat)' --exclude '.*\.h$' \
   --txt $build/branches.txt --csv $build/branches.csv

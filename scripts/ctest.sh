@@ -1,9 +1,10 @@
-# A file to source. Its functions run the tests. Only tests that measure real time on a shared computer get a
-# second attempt (label `realtime` in tests/CMakeLists.txt). For other tests, a second attempt would hide a
-# defect that occurs in 1 of 10 runs. Tests with this label mostly wait, so three per processor run at a time.
+# A file for other scripts. Its functions run the tests. Tests with the label `realtime` (tests/CMakeLists.txt) measure
+# real time on a shared computer, so they get a second attempt. All other tests get one attempt, because a second
+# attempt would hide a defect that occurs in 1 of 10 runs. The real-time tests mostly wait, so three of them run per
+# processor at the same time.
 
-# Tests that compute run at the same time as the real-time tests. They run in the idle scheduling class, so
-# they yield the processor immediately.
+# Tests that compute run at the same time as the real-time tests. They run in the idle scheduling class, so the
+# real-time tests get the processor immediately.
 
 # start_computing_tests PRESET LABELS [CTEST OPTION ...]  starts all tests that have none of the LABELS
 # (a|b|c, or empty)
@@ -15,7 +16,8 @@ start_computing_tests() {
   computing=$!
 }
 
-# end_computing_tests PRESET  waits for these tests, prints their results and returns their exit status
+# end_computing_tests PRESET  waits for the end of the computing tests, prints their results and returns their exit
+# status
 end_computing_tests() {
   local failed=0
   wait "$computing" || failed=1

@@ -4,8 +4,8 @@
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 out=$(realpath -m "${1:-demo-output}")
-# Updates an existing build. Without an existing build, builds only the four programs that the demo needs,
-# without debug information.
+# Updates an existing build. If no build exists, builds the four programs that the demo needs, without debug
+# information.
 build=build/release
 [ -f "$build/CMakeCache.txt" ] || build=build/demo
 
@@ -88,7 +88,7 @@ for grip in $(seq -w 30); do
   "$softgrip" run config/sequences/pick_stone.yaml --rig "$work/worn_rig.yaml" --virtual-time --seed "$((10#$grip))" \
     --record "$out/grips/grip-$grip" --quiet --no-socket >/dev/null
 done
-# Exit code 6 means that an alarm is active.
+# Exit code 6 of the command means that an alarm is active.
 "$softgrip" health "$out/grips" --baseline "$out/baseline" --out "$out/health" || [ $? -eq 6 ]
 
 say "All fingers are vented and all programs have stopped. Results in $out:"

@@ -13,7 +13,7 @@ set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 home=build/fuzz
 
-# Columns: target | corpus in the repository | additional inputs to start with | dictionary | longest input
+# Columns of the table: target | corpus in the repository | additional inputs to start with | dictionary | longest input
 # [bytes]
 targets() {
   cat <<'TABLE'
@@ -85,7 +85,7 @@ minimise() {
   [ ! -d "$corpus" ] || folders+=("$corpus")
   "${priority[@]}" "$(program_of "$target")" -merge=1 "-max_len=$longest" -timeout=20 "$kept" "${folders[@]}" >/dev/null 2>&1
   mkdir -p "$corpus"
-  # Passes the short inputs first to the fuzzer, because a person can read short inputs.
+  # Passes short inputs to the fuzzer before long ones, because a person can read short inputs.
   find "$kept" -type f -size -9 -printf '%s %p\n' | sort -n | head -n 100 | while read -r _ file; do
     cp "$file" "$corpus/"
   done

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Measures how long softgrip takes for large logs: 40,000 rows with `diagnose`, 600,000 rows with `identify
+"""Measures the run time of softgrip for large logs: 40,000 rows with `diagnose`, and 600,000 rows with `identify
 --structure auto`.
 
     scripts/large_logs.py [--build build/release] [--threads 2] [--only CASE ...] [--page docs/results/large-logs.md]
 
 The commands are ramps to random pressures (the seeds are in this file), and the fingers are models of config/models.
-The cases run one after the other with everything that a user gets: reading the files, closed loop and report. Run
+The cases run one after the other and include all steps of the command: reading the files, closed loop and report. Run
 nothing else at the same time.
 """
 import argparse
@@ -80,7 +80,7 @@ class Logs:
 
 
 def cases(logs):
-    """Returns {name: (program, arguments)} of the cases. The files of a case are written when the case is needed."""
+    """Returns {name: (program, arguments)} of the cases. The files of a case are written when the case is run."""
     def diagnose(given, data, healthy=()):
         return "diagnose", ["--model", given, "--data", *data, *(["--healthy", *healthy] if healthy else [])]
 

@@ -20,8 +20,8 @@ finish() {
 trap finish EXIT
 command -v cyclictest >/dev/null || { echo "latency.sh: cyclictest is missing (package rt-tests)" >&2; exit 1; }
 
-# The example rig runs at 1 kHz. If a busy computer delays an exchange, this counts as an overrun of the bus
-# and does not end the run.
+# The example rig runs at 1 kHz. If a busy computer delays an exchange, the delay must count as an overrun of the bus
+# and must not end the run.
 sed -e 's/^rate_hz: .*/rate_hz: 1000/' -e "s|models/|$root/config/models/|; s|boards/|$root/config/boards/|" \
   -e "s|sequence_directory: .*|sequence_directory: $root/config/sequences}|" \
   -e 's/^  bus_down_cycles: .*/  bus_down_cycles: 100/' -e 's/^  invalid_reading_cycles: .*/  invalid_reading_cycles: 100/' \
@@ -44,8 +44,8 @@ sed -i "s/^    port: .*/    port: $port/" "$work/rig.yaml"
 bins_of() {
   awk -v title="# Histogram ($2, us)" '$0 == title {inside = 1; next} /^#/ {inside = 0} inside {print $1 + 0, $2 + 0}' "$1"
 }
-# Reads lines "microseconds count" from several histograms. Prints p50, p99, p99.9, the maximum and the number
-# of samples of all together.
+# Reads lines "microseconds count" from several histograms. Prints p50, p99, p99.9, the maximum and the number of
+# samples of all histograms together.
 quantiles() {
   sort -n | awk '
     {us[NR] = $1; count[NR] = $2; total += $2}

@@ -13,8 +13,8 @@ if [ -d "$folder/node_modules/@mcap/core" ] && cmp -s "$pinned/package-lock.json
   exit 0
 fi
 rm -rf "$folder/node_modules"
-# node uses its own list of certificates. A network with its own certificate authority has installed this
-# authority in the certificates of the system, so node must use them.
+# node uses its own list of certificates. Some networks have a certificate authority of their own, which is installed in
+# the certificates of the system. Therefore node must use the certificates of the system.
 system_authorities=/etc/ssl/certs/ca-certificates.crt
 [ ! -r $system_authorities ] || export NODE_EXTRA_CA_CERTS=${NODE_EXTRA_CA_CERTS:-$system_authorities}
 cp "$pinned/package.json" "$pinned/package-lock.json" "$folder/"

@@ -2,13 +2,12 @@
 
     scripts/mutate.py [--per-file N] [--seed S] [--jobs J] [--out FILE] [--again REPORT] [FILE ...]
 
-Without files, it uses the sources of control/, the bus and the loop. A mutant inverts a comparison, a sign, a logical
-connective, a constant or a condition. A mutant is the code with one defect. The seed selects the places of the
-defects. The script builds each mutant in a copy of the sources in build/mutants, and runs the tests of its folder
-until one fails. It prints the share of detected mutants for each folder, and every mutant that no test has detected
-(a survivor) with its line. For a survivor, a test is missing, or the change has no effect.
-docs/results/mutants-and-branches.md lists the survivors of both kinds. --again judges only the survivors of an
-earlier report, with the tests that were added since.
+Without files, it uses the sources of control/, the bus and the loop. A mutant is the code with one defect: an inverted
+comparison, sign, logical connective, constant or condition. The seed selects the places of the defects. The script
+builds each mutant in a copy of the sources in build/mutants, and runs the tests of its folder until one fails. It
+prints the share of detected mutants for each folder, and every mutant that no test has detected (a survivor) with its
+line. For a survivor, a test is missing, or the change has no effect. docs/results/mutants-and-branches.md lists the
+survivors of both kinds. --again judges only the survivors of an earlier report, with the tests that were added since.
 """
 
 import argparse
@@ -34,8 +33,7 @@ FITTING = (
      (("tests/daemon_test", "--gtest_fail_fast", "--gtest_filter=*Bus*:*Loop*:*Heartbeat*:*Ring*:*TripleBuffer*:*Histogram*"),
       ("tests/world/softgrip-world", "--count", "150", "--stop"))),
 )
-#: Further test commands for a folder. They run the simulated worlds if the unit tests have not detected a
-# defect.
+#: Additional test commands for a folder. They run the simulated worlds if the unit tests have not detected the defect.
 LAST = {"control/tick/": ("softgrip-world", ("tests/world/softgrip-world", "--count", "150", "--stop"))}
 OPERATORS = (
     (r"(?<![<>=!-])<(?![<=])(?= )", "<="), (r"(?<=\s)<=(?= )", "<"), (r"(?<=\s)>(?= )", ">="), (r"(?<=\s)>=(?= )", ">"),
@@ -67,7 +65,7 @@ def mutants_of(name):
         for pattern, replacement in OPERATORS:
             for match in re.finditer(pattern, code):
                 new = code[:match.start()] + replacement + code[match.end():]
-                if replacement == "!(":  # for if (...) on one line, the defect inverts the whole condition
+                if replacement == "!(":  # in an `if (...)` on one line, the defect inverts the whole condition
                     end = closing(code, match.start())
                     if end is None:
                         continue
@@ -78,7 +76,7 @@ def mutants_of(name):
 
 
 def closing(code, begin):
-    """Returns the position of the closing bracket that belongs to the opening bracket before `begin`."""
+    """Returns the position of the bracket that closes the opening bracket before `begin`."""
     depth = 1
     for at in range(begin, len(code)):
         depth += {"(": 1, ")": -1}.get(code[at], 0)
@@ -132,7 +130,7 @@ class Copy:
         try:
             return self.run([self.root / "build/release" / command[0], *command[1:]], timeout=TIMEOUT_S).returncode != 0
         except subprocess.TimeoutExpired:
-            return True  # a test that hangs has detected the defect
+            return True  # a test that does not end has detected the defect
 
 
 def survivors_of(report):

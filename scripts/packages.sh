@@ -15,7 +15,8 @@ for section in "$@"; do
   wanted+=("${names[@]}")
 done
 
-# Counts packages that another package provides. For example, nodejs from other archives provides npm.
+# Also counts a package as installed if another package provides it. For example, nodejs from other archives provides
+# npm.
 provided=" $(dpkg-query -W -f='${Status} ${Provides}\n' | sed -n 's/^install ok installed //p' | sed 's/([^)]*)//g' |
   tr ',\n' '  ') "
 missing=()

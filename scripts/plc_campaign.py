@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Grips through softgrip-plc while client, gateway and daemon are killed at random: plc_campaign.py [--grips N] [--seed S]
+"""Grips through softgrip-plc while client, gateway and daemon are killed at random: plc_campaign.py [--grips N]
+[--seed S]
 
 The script counts every execution of a command in the daemon's events and on the emulated board. The exit code is 6 in
 three cases: a command was executed twice, an accepted command was not executed, or a refused command was executed.
@@ -23,7 +24,7 @@ OUTCOMES = {plc.ACCEPTED: "accepted", plc.REFUSED: "refused", plc.UNKNOWN: "unkn
 ERROR = 5
 RESULTS = {plc.HOLDING: "HOLDING", plc.NO_PART: "NO PART", plc.PART_LOST: "PART LOST", ERROR: "ERROR"}
 FREE_STROKE = 4  # number of the recipe free_stroke
-# Share of the grips that are disturbed: one in three.
+# Fraction of the grips that are disturbed: one of three.
 DISTURBED = 1 / 3
 
 
@@ -33,8 +34,8 @@ class Campaign(bench.BenchTest):
     def setUp(self):
         super().setUp()
         self.random = random.Random(self.seed)
-        # After a kill during a grip, the finger creeps. Without this change of the model, the finger would
-        # need one or two minutes to come to rest.
+        # After a kill during a grip, the finger creeps for one or two minutes until it is at rest. This change of the
+        # model shortens the creep.
         self.creep_faster()
         self.board = self.emulator("--object", "stone")
         self.rig_path = self.rig(self.board.port)
@@ -72,8 +73,8 @@ class Campaign(bench.BenchTest):
             self.gateway.kill()
             self.start_gateway()
         if victim in ("master", "gateway"):
-            # A PLC writes its registers in every cycle. A restarted client begins with the counter of the
-            # gateway and gives no command.
+            # A PLC writes its registers in every cycle. After a restart, the client begins with the counter of the
+            # gateway and sends no command.
             self.start_master(synchronise=victim == "master")
         return victim
 
@@ -93,8 +94,8 @@ class Campaign(bench.BenchTest):
             time.sleep(self.random.choice((0, 0, 0.002, 0.01, 0.05, 0.5, 3)))
             victim = self.disturb()
         if victim in ("master", "gateway"):
-            # A restarted client does not repeat its command. If the gateway has restarted, too, the outcome
-            # of the command is unknown.
+            # A restarted client does not repeat its command. If the gateway has restarted as well, the outcome of the
+            # command is unknown.
             bench.wait_for("a daemon", lambda: self.master.read("state") != plc.NO_DAEMON_STATE)
         outcome = self.outcome_of(counter, victim)
         # The sequences of a daemon that was killed cannot be counted.
@@ -104,8 +105,8 @@ class Campaign(bench.BenchTest):
 
     def outcome_of(self, counter, victim):
         if victim == "gateway":
-            # The restarted gateway cannot know if the previous gateway has executed the command. Therefore
-            # the restarted gateway must not execute this command.
+            # The restarted gateway does not know if the previous gateway has executed the command. Therefore it must
+            # not execute this command.
             for _ in range(5):
                 self.master.write("command_counter", counter, plc.START, 1)
             if self.master.done(counter) != (plc.REFUSED, plc.FIRST_AFTER_START):
@@ -129,8 +130,8 @@ class Campaign(bench.BenchTest):
             self.wrong.append(f"refused and carried out ({victim})")
 
     def wait_for_result(self):
-        """Waits for the result of a grip. Before the fingers move, the gateway still has the result of the previous
-        grip. If the fingers are not at rest, the grip never begins."""
+        """Waits for the result of a grip. Before the fingers move, the gateway shows the result of the previous
+        grip. If the fingers are not at rest, the grip does not begin."""
         self.master.wait("state", plc.RESYNCHRONISING, plc.RUNNING)
         self.master.wait("state", plc.RUNNING, plc.IDLE, plc.FAULTED)
         self.master.wait("result", *RESULTS)
@@ -139,8 +140,8 @@ class Campaign(bench.BenchTest):
         return result
 
     def stroke(self):
-        """Runs a stroke without a part. A daemon that was restarted after a kill during a grip learns the state of
-        the finger from this stroke."""
+        """Runs a stroke without a part. After a kill during a grip, the restarted daemon uses this stroke to determine
+        the state of the finger."""
         self.counts["free strokes"] += 1
         self.master.command(plc.START, recipe=FREE_STROKE)
         self.master.wait("state", plc.RESYNCHRONISING, plc.RUNNING)

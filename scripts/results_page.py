@@ -1,5 +1,5 @@
-"""Writes the beginning of a page in docs/results: the meaning of the result for a user, then a table of version,
-date, command and conditions. tests/repository/results.py checks that each page has this beginning."""
+"""Writes the beginning of a page in docs/results: the meaning of the result for a user, and a table of version, date,
+command and conditions. tests/repository/results.py checks that each page has this beginning."""
 import datetime
 import os
 import pathlib

@@ -17,10 +17,10 @@ start_rig() {
   [ -n "$port" ] || { echo "softgrip-rig did not start:" >&2; cat "$work/rig.log" >&2; return 1; }
 }
 
-# start_daemon [SED_EXPRESSION ...]  starts the daemon with the example rig file on this port; the sed
-# expressions change the rig file. softgrip-rig is an ordinary process and may respond late on a busy
-# computer. Therefore this rig file allows 0.28 s without a response, which is shorter than the time-out of
-# the board's watchdog. The example rig file allows 25 ms.
+# start_daemon [SED_EXPRESSION ...]  starts the daemon with the example rig file on this port; the sed expressions
+# change the rig file. softgrip-rig is an ordinary process and may respond late on a busy computer. Therefore this rig
+# file permits 0.28 s without a response instead of the 25 ms of the example rig file. 0.28 s are shorter than the
+# time-out of the board's watchdog.
 start_daemon() {
   cp -r config/boards config/models config/sequences "$work/"
   local edits=(-e "s#port: 1502#port: $port#" -e "s#directory: /tmp/softgrip-runs#directory: $runs#"

@@ -44,7 +44,7 @@ for side in other this; do
     "${build[$side]}/tools/softgrip" diagnose --model "$config/models/zhang2025.yaml" --data "${logs[@]}" \
       --out "$hidden" --no-closed-loop --json >"$hidden.json" 2>"$hidden.err" || true
   done
-  # Removes the first line, because its text differs between versions although the results are the same.
+  # Removes the first line, because its text differs between versions even if the results are the same.
   "${build[$side]}/bench/tracking_study" | tail -n +2 >study.txt
 done
 

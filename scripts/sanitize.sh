@@ -37,7 +37,7 @@ case ${1:-} in
   "" | build)
     [ -z "${1:-}" ] || only_build=true
     sanitized asan-ubsan base_test drivers_test emulator_test
-    # Other tests are left out here, because the drivers start no threads.
+    # Omit the other tests of the drivers, because the drivers start no threads.
     sanitized tsan base_test daemon_test daemon_process_test
     ;;
   all)

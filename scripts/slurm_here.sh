@@ -14,14 +14,14 @@ shift
 rm -rf "$dir"
 mkdir -p "$dir/state" "$dir/spool"
 chmod 755 "$dir"
-# munged refuses a key file that other users can read, and a folder that other users can write.
+# munged refuses a key file that other users can read, and a folder in which other users can write.
 install -d -o munge -g munge -m 711 "$dir/munge"
 dd if=/dev/urandom of="$dir/munge/key" bs=128 count=1 status=none
 chown munge:munge "$dir/munge/key"
 chmod 400 "$dir/munge/key"
 
 host=$(hostname -s)
-# Asks the kernel for two free ports.
+# Requests two free ports from the kernel.
 read -r ctld_port slurmd_port < <(python3 -c '
 import socket
 held = [socket.create_server(("127.0.0.1", 0)) for _ in range(2)]
@@ -56,7 +56,7 @@ MinJobAge=60
 NodeName=$host NodeAddr=127.0.0.1 CPUs=$cores RealMemory=$memory_mb State=UNKNOWN
 PartitionName=here Nodes=$host Default=YES MaxTime=INFINITE State=UP OverSubscribe=NO
 END
-# Slurm 22.05 (Debian 12) cannot run without a cgroup version. So version 1 is set, but no plugin uses it.
+# Slurm 22.05 (Debian 12) needs a cgroup version. Therefore version 1 is set, although no plugin uses it.
 case $(slurmd -V) in
   *\ 2[0-2].*) cgroups=cgroup/v1 ;;
   *) cgroups=disabled ;;

@@ -1,5 +1,4 @@
-"""Copies the sources for a separate build. Copies the files that git tracks, and new files that git does not
-ignore."""
+"""Copies the sources for a separate build: the files that git tracks, and new files that git does not ignore."""
 
 import pathlib
 import shutil

@@ -28,14 +28,14 @@ $quick || bash scripts/mcap_reader.sh
 . scripts/ctest.sh
 started=$SECONDS
 say() { printf '\n== %s (%d s)\n' "$*" $((SECONDS - started)); }
-# Prints the last lines of the output, which contain the skipped tests.
+# Prints the last lines of the output. They list the skipped tests.
 end() {
   if [ -s build/mcap/unreachable ]; then printf '\nNOT TESTED: MCAP by its own reader, for %s\n' "$(cat build/mcap/unreachable)"; fi
   say "done"
   exit 0
 }
 
-# Other versions of clang-format interpret .clang-format differently.
+# clang-format must be version 14, because other versions interpret .clang-format differently.
 if clang-format --version 2>/dev/null | grep -q 'version 14\.'; then
   say "format"
   git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
@@ -52,11 +52,11 @@ if $quick; then
   exit 0
 fi
 
-# The sanitizer build runs at the same time as the tests, because most tests wait.
+# Most tests mostly wait, so the build with the sanitizers runs at the same time.
 mkdir -p build
 without='recipe|campaign'
 if $all; then without=''; fi
-set -m  # starts each job in a separate process group, so that a signal can end the whole group
+set -m  # starts each job in a process group of its own, so that a signal can end the whole group
 chrt --idle 0 bash scripts/sanitize.sh build </dev/null >build/sanitize.log 2>&1 &
 sanitized=$!
 start_computing_tests release "$without"
@@ -65,7 +65,7 @@ trap 'kill -- -$sanitized -$computing 2>/dev/null || true' EXIT
 say "test: in real time"
 failed=false
 run_real_time_tests release "$without" || failed=true
-# The package is built at the same time as the remaining tests that compute.
+# The Debian package is built while the rest of the computing tests run.
 say "package"
 bash scripts/package.sh | tail -n 1
 say "sanitizers"

@@ -8,10 +8,11 @@ or do not have a hidden effect.
                                  [--page docs/results/textbook-campaign.md]
 
 --seeds counts per cause, strength and kind of columns; --clean, --pairs and --triples count per kind of columns. The
-campaign can be resumed: the outcome of every world is one line of DIR/textbook.jsonl, and worlds in this file are not
-run again. At any time, the finished worlds are a fair sample of all planned worlds. --page writes the tables, and the
-pictures next to them; --most-minutes 0 writes it from the finished worlds. --variation X lets the runs vary
-(tests/blind/variation.h). The page states it.
+campaign can be resumed: the outcome of every world is one line of DIR/textbook.jsonl, and the script skips worlds
+in this file. At any time, the finished worlds are a fair sample of all planned worlds. --page writes the page with the
+tables, and the pictures to the folder of the page. With --most-minutes 0, the page is written from the finished worlds
+alone. --variation X sets the strength of the run-to-run variation (tests/blind/variation.h). The page states the
+strength.
 """
 import argparse
 import itertools
@@ -46,7 +47,7 @@ def worlds(args, ids, makes):
     world does not depend on the other worlds."""
     planned = []
     for columns in args.columns:
-        # Without a measured pressure, a leak looks like a smaller gain of the finger.
+        # If the pressure is not measured, a leak looks like a smaller gain of the finger.
         visible = [cause for cause in ids if cause != "leak" or columns == "pressure"]
         kinds = [([], 0, args.clean)]
         kinds += [([cause], strength, args.seeds)

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Measures how long `softgrip diagnose` takes for three logs of 8,000 to 13,000 samples each.
+"""Measures the run time of `softgrip diagnose` for three logs of 8,000 to 13,000 samples each.
 
     scripts/textbook_times.py [--build build/release] [--worlds 24] [--threads 2] [--first-seed 1000] [--page PAGE.md]
 
 The worlds are the first worlds of a campaign of scripts/textbook_campaign.py, sampled at 200 Hz. They contain every
 make. Half of them have a recorded pressure (`--drive measured`). They have zero to three hidden effects. The
-diagnoses run one after the other with everything that a user gets: refit, search, held-out logs, intervals, the
+diagnoses run one after the other and include all steps of the command: refit, search, held-out logs, intervals, the
 closed loop and the report. Run nothing else at the same time.
 """
 import argparse
@@ -42,7 +42,8 @@ def processor_s():
 
 
 def timed(build, threads, world):
-    """Returns a copy of the world with wall_s, processor_s, samples and the duration [s] of each stage."""
+    """Returns a copy of the world to which wall_s, processor_s, samples and the duration [s] of each stage are
+    added."""
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         logs, _ = trial.make_logs(build, work, world, "--rate-hz", "200", *trial.hiding(world))
@@ -68,7 +69,7 @@ def summary(rows):
 
 
 def shares(rows):
-    """Returns the share of each stage in the total duration."""
+    """Returns the duration of each stage as a fraction of the total duration."""
     stages = {stage for row in rows for stage in row["stages_s"]}
     total = sum(r["wall_s"] for r in rows)
     took = {stage: sum(r["stages_s"].get(stage, 0) for r in rows) for stage in stages}

@@ -6,8 +6,8 @@
 
 build/tidy remembers the result of a clean source until the source, a header of the project that it includes, its
 compiler command, .clang-tidy or the version of clang-tidy changes. If the build compiles the files of a folder as one
-and more than a few of them are due, clang-tidy also checks them as one, in a tenth of the time. The compiler then
-checks one by one that each file includes the headers that it needs. The environment may set JOBS and BUILD_DIR
+file and many of them must be checked, clang-tidy also checks them as one file, in a tenth of the time. The compiler
+then checks one by one that each file includes the headers that it needs. The environment may set JOBS and BUILD_DIR
 (default: all cores, build/release). The exit code is 1 if there are findings.
 """
 
@@ -26,8 +26,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 BUILD = ROOT / os.environ.get("BUILD_DIR", "build/release")
 CACHE = ROOT / "build/tidy"
 FEW = 3
-# The clang-tidy checks that are switched off for tests. A test may copy objects, and it may count from 0 to 1
-# in steps of 0.1.
+# clang-tidy checks that are switched off for tests. A test may copy objects, and it may use a floating-point loop
+# counter.
 OFF_IN_TESTS = "-performance-*", "-clang-analyzer-security.FloatLoopCounter"
 
 
@@ -37,8 +37,8 @@ def sources(places):
 
 
 def commands():
-    """Returns the compiler arguments of each source. Precompiled headers and the GCC warnings that clang does not
-    know are removed."""
+    """Returns the compiler arguments of each source. Removes precompiled headers and the GCC warnings that
+    clang does not know."""
     if not (BUILD / "compile_commands.json").exists():
         subprocess.run(["cmake", "--preset", "release", "-B", BUILD], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     found = {}
@@ -54,8 +54,8 @@ def commands():
     for room, files in rooms.items():
         for name in files:
             found[name] = alike(found[room], name)
-    # A source that this build does not compile, such as a fuzz target, gets the compiler arguments of a
-    # source in the same folder.
+    # Some sources, such as fuzz targets, are not compiled by this build. Such a source gets the compiler arguments of
+    # another source in the same folder.
     for name in sources(["."]):
         if name not in found and not other_library(name, found):
             near = max(found, key=lambda other: len(os.path.commonprefix([name, other])))
@@ -115,8 +115,8 @@ class Keys:
 
 def run_clang_tidy(source, in_tests, *off):
     off += OFF_IN_TESTS if in_tests else ()
-    # The configuration file is named explicitly, because clang-tidy does not find it for a source outside the
-    # project folder.
+    # The configuration file is named explicitly, because clang-tidy would not find it for a source outside the project
+    # folder.
     options = [f"--config-file={ROOT / '.clang-tidy'}", *([f"--checks={','.join(off)}"] if off else [])]
     run = subprocess.run(["clang-tidy", "-p", CACHE, "--quiet", *options, source], cwd=ROOT, capture_output=True, text=True)
     return run.returncode == 0, run.stdout + ("" if run.returncode == 0 else run.stderr)
@@ -175,8 +175,8 @@ def main():
                     due[name].touch()
                 continue
             failed += 1
-            # A finding in a header occurs once for each source that includes the header. Each such finding is
-            # reported only once.
+            # A finding in a header occurs once for each source that includes the header. Report each of these findings
+            # once.
             findings = re.split(r"\n(?=\S+:\d+:\d+: (?:error|warning): )", "\n" + text)
             print("\n".join(one for one in findings if one not in told).strip() or names[0], flush=True)
             told |= set(findings)

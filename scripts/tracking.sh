@@ -25,8 +25,8 @@ for feedforward in none bouc_wen full_model; do
   "$softgrip" start --wait "$work/track.yaml" >"$work/start.log" 2>&1 || { cat "$work/start.log" >&2; exit 1; }
   stop_daemon
   stop_rig
-  # Finds the positions of the columns by their names. Selects the rows of the track step (index 1) that have
-  # a reference.
+  # Finds the positions of the columns by their names. Selects those rows of the track step (index 1) that have a
+  # reference.
   awk -F, -v name="$feedforward" '
     NR == 1 {for (i = 1; i <= NF; ++i) at[$i] = i; next}
     $at["step"] == 1 && $at["state"] == "running" && $at["reference_mm"] != "" && $at["displacement_mm"] != "" {

@@ -29,7 +29,7 @@ WIDTH, HEIGHT, LEFT, TOP, BOTTOM = 1500, 520, 60, 150, 40
 
 class Day(test_vacuum.Vacuum):
     def runTest(self):
-        """Exists only to replace the base class, which must not run as a test."""
+        """Replaces a test of the base class, which must not run here."""
 
     def begin(self):
         self.setUp()
@@ -102,7 +102,7 @@ class Day(test_vacuum.Vacuum):
         self.mark(kind)
         self.ask(f"fault {kind}")
         if kind == "ignored_write":
-            time.sleep(1)  # while the vacuum is held, the daemon writes no outputs, so it does not notice the fault
+            time.sleep(1)  # while the vacuum is held, the daemon writes no outputs, so it does not detect the fault
             self.softgripd.ask("vent")
             self.softgripd.wait_for_state("faulted")
             self.ask(f"clear {kind}")
@@ -166,7 +166,7 @@ class Day(test_vacuum.Vacuum):
 
 
 def labels(marks):
-    """Joins labels that are closer together than 1.3 s. Starts get no label, because they are visible in the
+    """Joins labels whose times differ by less than 1.3 s. Starts get no label, because they are visible in the
     curve."""
     found = []
     for at, text in marks:

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Measures how long a vent takes under attack by hostile clients: vent_times.py [--times 20] [--page] [--only WORD]
+"""Measures the duration of a vent under attack by hostile clients: vent_times.py [--times 20] [--page] [--only WORD]
 
-Repeats every test of Hearing (tests/system/test_hearing.py) that vents during an attack, each time with its own rig and
-daemon. Prints the longest and the median time from the client's line to outputs below 1 kPa. --page writes the table
-into docs/results/vents-under-attack.md. Needs a release build (SOFTGRIP_BUILD). The test with a full disk needs the right to mount
-one.
+Repeats every test of Hearing (tests/system/test_hearing.py) that vents during an attack, each time with its own rig
+and daemon. Prints the longest and the median time from the line of the client until the outputs are below 1 kPa.
+--page writes the table into docs/results/vents-under-attack.md. Needs a release build (SOFTGRIP_BUILD). The test with
+a full disk needs the right to mount one.
 """
 
 import argparse

@@ -25,7 +25,7 @@ COLOURS = {"default": INK, "green": "#57c785", "brown": "#e0af4f", "red": "#ff6b
 
 
 def runs(row, columns):
-    """Joins neighbouring cells with the same style. Returns (column, text, colour, bold) of each group."""
+    """Joins neighbouring cells with the same style to groups. Returns (column, text, colour, bold) of each group."""
     found = []
     for column in range(columns):
         cell = row[column]
@@ -49,8 +49,7 @@ def svg(screen, title):
         for column, text, colour, bold in runs(screen.buffer[number], screen.columns):
             kept = text.rstrip()
             x = MARGIN_PX + column * CELL_PX[0]
-            # The SVG states the width of every group of cells, so that another font does not shift the
-            # columns.
+            # The SVG states the width of every group of cells, so that a different font does not shift the columns.
             lines.append(f'<text x="{x:g}" y="{y:g}" fill="{colour}" textLength="{len(kept) * CELL_PX[0]:g}" '
                          f'lengthAdjust="spacingAndGlyphs"{" font-weight=" + chr(34) + "bold" + chr(34) if bold else ""}>'
                          f"{html.escape(kept)}</text>")

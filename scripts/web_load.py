@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Checks that browsers do not slow down the control loop. Compares minutes with and without many clients of
-softgrip-web.
+"""Checks that browsers do not slow down the control loop. Compares minutes with many clients of softgrip-web with
+minutes without clients.
 
     scripts/web_load.py [--build build/release] [--pairs 5] [--seconds 60] [--rate-hz 1000] [--browsers 30] [--slow 16]
 
 Starts softgripd on the simulated rig of config/rig.yaml at the given rate, and softgrip-web. In a loaded minute,
---browsers pages read the stream and are loaded again every 5 s, and --slow sockets read a stream or send a request at 1
-byte per second. For every minute, it prints the wake-up latency and the overruns of the loop (from the daemon's own
-histogram) and the resources that softgrip-web uses. The order within a pair of minutes alternates.
+--browsers pages read the stream and are loaded again every 5 s, and --slow sockets read a stream or send a request at
+1 byte per second. For every minute, the script prints the wake-up latency and the overruns of the loop (from the
+daemon's own histogram) and the resources that softgrip-web uses. Loaded and unloaded minutes form pairs, whose order
+alternates.
 """
 
 import argparse

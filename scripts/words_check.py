@@ -14,9 +14,9 @@ number of sentences per channel).
 
 The script reads every .cpp, .h and .md file of the project. It splits a file into four channels: comments, string
 literals, code and prose. A rule applies to the channels that it names. Block comments and adjacent string literals are
-joined before the search, so that a phrase that crosses a line break is found. A line that contains "words-ok" is exempt,
-and so is a public name (PUBLIC_NAMES).
-Exit status: 0 done, 1 a finding against the budgets or in a commit message, 2 usage.
+joined before the search, so that a phrase that crosses a line break is found. A line that contains "words-ok" is
+exempt, and so is a public name (PUBLIC_NAMES). Exit status: 0 done, 1 a finding against the budgets or in a commit
+message, 2 usage.
 """
 
 import argparse
@@ -41,8 +41,8 @@ TEXT = (COMMENT, STRING, PROSE)
 WRITTEN = (COMMENT, PROSE)
 EVERYWHERE = (COMMENT, STRING, CODE, PROSE)
 
-# Finite verbs that mark a sentence as complete. The list may be short, because the check only uses it to
-# decide if a sentence that begins with "Of" is a fragment.
+# Finite verbs that mark a sentence as complete. The list is incomplete: it only serves to decide if a sentence that
+# begins with "Of" is a fragment.
 VERB = re.compile(r"\b(is|are|was|were|has|have|had|does|do|did|can|could|may|might|must|will|would|should|shall)\b")
 LONGEST_SENTENCE = 35  # longest sentence [words]
 SAMPLE = 60
@@ -215,7 +215,7 @@ RULES = [
 # files
 
 class Text:
-    """A piece of text of one channel. The class knows the source line of each character."""
+    """A piece of text of one channel. The class stores the source line of each character."""
 
     def __init__(self, channel, text, lines):
         # `lines` is a sorted list of (offset, line number).
@@ -226,7 +226,7 @@ class Text:
 
 
 class Joiner:
-    """Joins pieces of text to one Text and keeps their line numbers."""
+    """Joins pieces of text to one Text. Each character keeps its line number."""
 
     def __init__(self, channel):
         self.channel, self.parts, self.starts, self.size = channel, [], [], 0
@@ -287,8 +287,8 @@ def cpp_texts(source):
 
 
 def markdown_texts(source):
-    """Yields the texts of a Markdown file: paragraphs, list items, table cells and headings. Code in fences and
-    inline code are left out."""
+    """Yields the texts of a Markdown file: paragraphs, list items, table cells and headings. Omits code in
+    fences and inline code."""
     texts, prose, fenced = [], Joiner(PROSE), False
     for number, row in enumerate(source.splitlines(), 1):
         if row.lstrip().startswith("```"):
@@ -333,15 +333,15 @@ def room_of(name):
 
 
 def word_at(text, offset):
-    """Returns the name in the code that contains a character, or "" if the word is part of a sentence."""
+    """Returns the code name that contains the character at an offset. Returns "" if the word at the offset is a normal
+    word of a sentence."""
     start = re.search(r"\w*$", text[:offset]).start()
     name = re.match(r"\w*", text[start:]).group(0)
     rest = text[start + len(name):]
     return name if "_" in name or name == text.strip() or rest.startswith(('"', ":", "[", "`")) else ""
 
 
-# ----------------------------------------------------------------------------------------- Reporting the
-# findings
+# ---------------------------------------------------------------------------------------- Reporting the findings
 
 def check(rules, rooms):
     """Returns the findings (path, line, rule, excerpt) and the number of sentences per room and channel."""
@@ -433,8 +433,8 @@ def against_budgets(counts, budgets):
 
 
 def write_budgets(counts, file):
-    """Refuses counts with a larger sum than the stored budgets. A single room may have a larger count, because a file
-    can move to another room."""
+    """Refuses counts whose sum exceeds the sum of the stored budgets. The count of a single room may increase,
+    because a file can move to this room from another one."""
     total, budget = sum(counts.values()), sum(json.loads(file.read_text()).values()) if file.exists() else math.inf
     if total > budget:
         return [f"{file}: not written. {total} findings, but the sum of the budgets is {budget} and must not rise."]
@@ -501,7 +501,7 @@ def main():
 
 
 if __name__ == "__main__":
-    # If the reader of the output ends early, as in `words_check.py | head`, the program ends without an error
-    # message.
+    # If the reader of the output ends early, as `head` in `words_check.py | head` does, the program ends without an
+    # error message.
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     sys.exit(main())

@@ -17,9 +17,9 @@ GAP_OF_BUS = ("daemon/loop/bus.cpp", "if (watchdog_ == 0 ||", "if (watchdog_ >= 
 GAP_BY_HAND = ("tools/commissioning/motion_session.cpp", "if (fault == control::FaultCode::board_watchdog_tripped) {",
                "if (fault == control::FaultCode::board_watchdog_tripped) return std::nullopt;\n  if (false) {")
 
-# Each fault has a description, a file, the text to replace (which must occur once) and its replacement.
-# Optional values are the simulated time of a world [s] and the tool that it runs. The default is the daemon
-# alone for 60 s.
+# Each fault has a description, a file, the text to replace (which must occur exactly once) and its replacement. Two
+# values are optional: the simulated time of a world [s] and the tool that runs in the world. By default, the daemon
+# runs alone for 60 s.
 FAULTS = (
     ("the duration of a gap in the communication is not compared with the board's watchdog time", *GAP_OF_BUS),
     ("when a stalled loop continues, its commands are written immediately", "daemon/loop/bus.cpp",
@@ -97,7 +97,7 @@ def build():
 
 
 def seeds_until_found(seconds, tool):
-    """Returns the first seed that detects the fault, and the property that is violated. Returns None if no seed
+    """Returns the first seed whose simulation detects the fault, and the violated property. Returns None if no seed
     detects the fault."""
     first, count = 1, 20
     while first <= MOST_SEEDS:

@@ -1,4 +1,4 @@
-"""Provides one interface for pymodbus 3.0 of Debian 12 and pymodbus 3.8 of Debian 13."""
+"""Provides the same interface for pymodbus 3.0 of Debian 12 and for pymodbus 3.8 of Debian 13."""
 
 import asyncio
 
@@ -14,7 +14,7 @@ except ModuleNotFoundError:
 
     OLD = False
 
-#: First address of a data block. Since pymodbus 3.8, data blocks begin at 1.
+#: First address of a data block. In pymodbus 3.8 and later, data blocks begin at 1.
 FIRST_REGISTER = 0 if OLD else 1
 
 __all__ = [
@@ -29,7 +29,7 @@ __all__ = [
 
 
 class ModbusSlaveContext(datastore.ModbusSlaveContext):
-    """A server context whose registers have the addresses of the Modbus messages, which begin at 0."""
+    """A server context. Its registers have the addresses that Modbus messages contain, which begin at 0."""
 
     def __init__(self, **blocks):
         super().__init__(**blocks, **({"zero_mode": True} if OLD else {}))
@@ -41,7 +41,7 @@ def block():
 
 
 async def serve(server):
-    """Serves in the background; returns the listening socket of a TCP server."""
+    """Starts a server in the background. Returns the listening socket if it is a TCP server."""
     if not OLD:
         await server.serve_forever(background=True)
         return server.transport.sockets[0] if isinstance(server, ModbusTcpServer) else None

@@ -13,8 +13,8 @@ folder=usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)
 install -d "$work/run/$folder" "$work/run/DEBIAN"
 mv "$work/dev/$folder"/libsoftgrip.so.* "$work/run/$folder"
 libraries=$(libraries_of "$work/run/$folder/libsoftgrip.so.0")
-# Before version 1.0.0, each minor version may change the interface. So other packages depend on this version
-# or a later one.
+# Before version 1.0.0, each minor version may change the interface. Packages that use the library therefore depend on
+# this minor version or a later one.
 echo "libsoftgrip 0 libsoftgrip0 (>= ${version%%[+-]*})" >"$work/run/DEBIAN/shlibs"
 echo "activate-noawait ldconfig" >"$work/run/DEBIAN/triggers"
 packed "$work/run" libsoftgrip0 "$architecture"

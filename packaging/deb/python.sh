@@ -11,7 +11,7 @@ DESTDIR=$tree cmake --install "$build" --component python --prefix /usr --strip 
 install -d "$examples"
 install -m 644 "$source"/python/softgrip/*.py "$source"/python/softgrip/*.pyi "$source/python/softgrip/py.typed" "$package"
 install -m 644 "$source"/python/examples/*.py "$source"/examples/python/*.py "$examples"
-# The module works only with one version of Python and with one version of libsoftgrip.
+# The module works with exactly one version of Python and exactly one version of libsoftgrip.
 found=$(/usr/bin/python3 -c 'import sys; print("{0}.{1} {0}.{2}".format(*sys.version_info[:2], sys.version_info[1] + 1))')
 libraries="python3 (>= ${found% *}), python3 (<< ${found#* }), libsoftgrip0 (= $version), $(libraries_of "$package"/_core.*.so "$build/library")"
 packed "$tree" python3-softgrip "$(dpkg --print-architecture)"

@@ -1,4 +1,4 @@
-# Functions to source. They build a Debian package from a folder tree.
+# Functions for other scripts. They build a Debian package from a folder tree.
 
 # packed TREE NAME ARCHITECTURE  builds a package from TREE and prints its path. Before that, it adds the
 # copyright, the changelog, the overrides, the control file (from NAME.control) and the checksums. The calling
@@ -18,8 +18,8 @@ packed() {
   echo "$package"
 }
 
-# libraries_of FILE [FOLDER]  prints the packages on which a package with FILE depends. FOLDER contains
-# further libraries that FILE needs.
+# libraries_of FILE [FOLDER]  prints the packages on which a package that contains FILE depends. FOLDER contains
+# additional libraries that FILE needs.
 libraries_of() {
   local file folder=${2:+$(realpath "$2")} work
   file=$(realpath "$1")

@@ -27,7 +27,7 @@ body() {
   printf '.SH DESCRIPTION\n'
   body "$reference"
 } | awk '
-  # Leaves out empty paragraphs before and after a heading.
+  # Removes empty paragraphs before and after a heading.
   $0 == ".PP" {held = before !~ /^\.(SH|SS)/; next}
   {if (held && $0 !~ /^\.(SH|SS|TP)/) print ".PP"; held = 0; print; before = $0}' >"$work/page"
 gzip -9n <"$work/page" >"$out"

@@ -16,8 +16,8 @@ namespace {
 
 constexpr int no_such_namespace = 77;
 
-/// Runs `body` in a time namespace in which the machine has slept for a day since it was booted. Returns the
-/// exit code of `body`.
+/// Runs `body` in a time namespace in which the machine has slept for a day since boot. Returns the exit code
+/// of `body`.
 int after_a_day_asleep(int (*body)()) {
   std::fflush(nullptr);
   const pid_t outer = fork();
@@ -27,7 +27,8 @@ int after_a_day_asleep(int (*body)()) {
     const std::string text = "boottime 86400 0\n";
     if (offsets < 0 || write(offsets, text.data(), text.size()) < 0) _exit(no_such_namespace);
     close(offsets);
-    // Only the children of this process are in the new time namespace, so the test runs in a child process.
+    // unshare() moves the child processes of this process, but not this process, to the new time namespace.
+    // The test therefore runs in a child process.
     const pid_t inner = fork();
     if (inner == 0) _exit(body());
     int status = 0;
@@ -52,7 +53,7 @@ TEST(MonotonicClock, GoesOnWhileTheMachineSleeps) {
     const Nanoseconds ahead = clock.now() - monotonic();
     if (ahead < day - ns_per_s || ahead > day + ns_per_s) return 1;
     if (time_asleep() != day) return 2;
-    alarm(10);  // With CLOCK_MONOTONIC, sleep_until() would sleep for a day.
+    alarm(10);  // With CLOCK_MONOTONIC, sleep_until() would sleep for one day.
     const Nanoseconds due = clock.now() + ns_per_s / 50;
     clock.sleep_until(due);
     return clock.now() >= due ? 0 : 3;

@@ -11,8 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder tree like /sys. Each device has its own folder below the folder of its bus, and a second folder
-/// has a symbolic link to every device.
+/// Simulates the folder tree /sys of a computer. Each device has its own folder below the folder of its bus.
+/// A second folder contains one symbolic link to each device.
 class ComputerDeviceTest : public testing::Test {
  protected:
   void add(const std::string& node, const std::string& place) {

@@ -85,8 +85,8 @@ TEST_F(FileWritingTest, ANewFileHasThePermissionsThatTheUmaskLeaves) {
   EXPECT_EQ(now.st_mode & 07777U, 0640U);
 }
 
-/// In a shared folder, another user could create a symbolic link with the name of the result. The link could
-/// point to a file of this user.
+/// In a shared folder, another user can create a symbolic link with the name of the result file. The link can
+/// point to a file of the user who runs the test.
 TEST_F(FileWritingTest, ALinkInThePlaceOfAResultIsReplacedAndNotFollowed) {
   const fs::path link = folder_ / "result.csv";
   fs::create_symlink("rig.yaml", link);
@@ -122,7 +122,7 @@ TEST_F(FileWritingTest, AFolderInThePlaceOfTheFileIsAnError) {
   EXPECT_EQ(count(), 2U);
 }
 
-/// Limits the size of files to 1000 bytes. A larger write then fails, like on a full disk.
+/// Limits the file size to 1000 bytes, so that a larger write fails as it does on a full disk.
 class SmallFiles {
  public:
   explicit SmallFiles(void (*handler)(int)) : handler_(std::signal(SIGXFSZ, handler)) {

@@ -45,7 +45,7 @@ TEST_F(FilesTest, AFileThatGivesNoSizeIsReadToItsEndAndWithinTheBound) {
 }
 
 /// A named pipe must be refused. If the function waited for a process that writes to the pipe, this test
-/// would not end.
+/// would never end.
 TEST_F(FilesTest, APipeIsRefusedWithoutWaiting) {
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
   const auto text = read_file(at("pipe"), 100);
@@ -65,7 +65,7 @@ TEST_F(FilesTest, DevicesSocketsAndFoldersAreRefused) {
   EXPECT_EQ(open_regular(scratch_.path()).error(), "Is a directory");
 }
 
-/// While a process has a lease on a file, every blocking open() of this file waits.
+/// While a process has a lease on a file, every blocking open() of the same file waits.
 TEST_F(FilesTest, AFileThatAnotherProcessHasLeasedIsRefusedWithoutWaiting) {
   const std::string path = file("leased", "text");
   auto* const before = std::signal(SIGIO, SIG_IGN);

@@ -25,8 +25,8 @@ TEST(ParseJson, WhatIsNotJsonIsDiscarded) {
     EXPECT_TRUE(parse_json<Json>(text).is_discarded()) << text;
 }
 
-/// The reader must limit the number of nested levels. Otherwise, a copy or a print of deeply nested JSON
-/// would overflow the stack.
+/// The reader must limit the number of nested levels. Otherwise, copying or printing deeply nested JSON would
+/// overflow the stack.
 TEST(ParseJson, ManyLevelsAreCutOff) {
   const Json json = parse_json<Json>(nested(1'000'000));
   const Json copy = json;  // NOLINT(performance-unnecessary-copy-initialization): the copy is the test

@@ -79,12 +79,12 @@ TEST(ParallelFor, LoopsWithinALoopShareItsThreads) {
     });
   }
   EXPECT_EQ(leaves, 15);
-  // While a thread waits in the inner loop, a third thread may take its place. The waiting thread continues
-  // before the third thread has ended, so three threads can run for a moment.
+  // While a thread waits in the inner loop, a third thread may start in place of the waiting one. When the
+  // wait ends, the waiting thread continues immediately, so three threads can run for a short time.
   EXPECT_LE(crowd.most(), 3);
 }
 
-/// Returns true if two items of a parallel loop run at the same time.
+/// Runs a parallel loop of two items. Returns true if the two items run at the same time.
 bool side_by_side() {
   std::atomic<int> inside{0};
   std::atomic<bool> met{false};
@@ -135,7 +135,8 @@ TEST(ParallelFor, PassesAnExceptionOnWhenAllIsDone) {
                  std::runtime_error);
     ASSERT_EQ(done, 7);
   }
-  // The loop has returned its additional thread to the budget, so this thread can be taken.
+  // The loop has returned its helper thread to the thread budget, so the test can take this thread from the
+  // budget.
   EXPECT_EQ(ThreadBudget::current()->take(5), 1U);
   ThreadBudget::current()->give_back(1);
 }

@@ -57,7 +57,7 @@ TEST(PeriodicSchedule, SleepsToATimeNotForADuration) {
   clock_gettime(CLOCK_BOOTTIME, &time);
   const Nanoseconds begin = time.tv_sec * ns_per_s + time.tv_nsec;
   sleep_until(begin + 3 * period);
-  sleep_until(begin + 3 * period);  // this time has already passed, so the call returns immediately
+  sleep_until(begin + 3 * period);  // this time has already passed, so the call must return immediately
   clock_gettime(CLOCK_BOOTTIME, &time);
   EXPECT_GE(time.tv_sec * ns_per_s + time.tv_nsec, begin + 3 * period);
 }

@@ -5,7 +5,7 @@
 namespace softgrip::document::sha256_test {
 namespace {
 
-// The expected digests were computed with `printf ... | sha256sum`.
+// The command `printf ... | sha256sum` computed the expected digests.
 TEST(Sha256, OfNothing) {
   EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }

@@ -9,7 +9,7 @@
 namespace softgrip::shell_word_test {
 namespace {
 
-/// Returns the words into which the shell splits `text`, each between brackets.
+/// Splits `text` into words as the shell does. Returns the words, each in square brackets.
 std::string words_of(const std::string& text) {
   FILE* const shell = popen(("printf '[%s]' " + text).c_str(), "r");
   std::string words;

@@ -11,8 +11,8 @@
 namespace softgrip::standard_output_test {
 namespace {
 
-/// Prints a line to the file `path` and returns the exit code of with_output_checked(). Must be called in a
-/// child process, because the function redirects the standard output.
+/// Redirects the standard output to the file `path` and prints a line. Returns the exit code of
+/// with_output_checked(). Call this function in a child process, because the redirection remains.
 int end_of_a_program_that_prints_to(const char* path, ExitCode code) {
   const Descriptor target(::open(path, O_WRONLY | O_CLOEXEC));
   ::dup2(target.get(), STDOUT_FILENO);

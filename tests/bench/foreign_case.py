@@ -24,7 +24,7 @@ def mm(i):
 
 
 def log_text(head, row, samples=SAMPLES):
-    """Returns the text of a log. The first line is `head`; row(i) returns the line of sample i."""
+    """Returns the text of a log. The first line of the log is `head`. row(i) returns the line of sample i."""
     return "\n".join([head, *(row(i) for i in range(samples))]) + "\n"
 
 
@@ -56,7 +56,7 @@ class ForeignCase(unittest.TestCase):
         return log_table.read_table(self.table_path(text), self.data)
 
     def read(self, keys):
-        """Returns the first log of a table. `keys` are the lines of YAML of its table entry."""
+        """Returns the first log of a table. `keys` contains the YAML lines of the table entry of this log."""
         entry = self.table("logs:\n- file: a.csv\n" + textwrap.indent(textwrap.dedent(keys), "  ")).logs[0]
         return log_reading.read_log(entry, self.data)
 

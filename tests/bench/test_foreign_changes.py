@@ -1,5 +1,5 @@
-"""Tests bench/foreign/judge_changes.py: how it judges a diagnosis of a change, and how it computes the spread between
-runs."""
+"""Tests bench/foreign/judge_changes.py: how the program judges a diagnosis of a change, and how it computes the spread
+between runs."""
 import importlib.util
 import random
 import unittest

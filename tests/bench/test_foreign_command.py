@@ -11,8 +11,8 @@ from foreign_case import ForeignCase
 if importlib.util.find_spec("scipy"):
     import foreign
 
-# This program replaces softgrip. It records its arguments, writes a model, and prints an answer from a file.
-# It refuses the log whose name is in the file `refuse`.
+# This program replaces softgrip. It records its arguments, writes a model, and prints an answer that it reads from a
+# file. It refuses the log whose name is in the file `refuse`.
 PROGRAM = """#!/usr/bin/python3
 import json, pathlib, sys
 folder, words = pathlib.Path("{folder}"), sys.argv[1:]
@@ -123,7 +123,7 @@ class Command(ForeignCase):
         first, second = (case["rows"][0]["methods"] for case in self.results()["cases"])
         self.assertEqual((first["auto"]["held_out_mm"], second["plain"]["held_out_mm"]), (0.001, 0.9))
         for methods in (first, second):
-            # The readings are 0.25 mm/kPa times the pressure, plus a sawtooth of 0.01 mm.
+            # The readings are the pressure times 0.25 mm/kPa, plus a sawtooth with an amplitude of 0.01 mm.
             self.assertLess(methods["output_error"]["held_out_mm"], 0.02)
             self.assertLess(methods["scipy"]["held_out_mm"], 0.05)
         self.assertEqual(self.results()["summary"]["identification"]["linear_better"], {"plain": 1, "auto": 1})

@@ -1,5 +1,5 @@
-"""Tests bench/foreign/insert_effects.py, which adds simulated effects to the readings of real runs, and the results
-table of the data sets."""
+"""Tests bench/foreign/insert_effects.py, which adds simulated effects to the readings of real runs. Also tests the
+results table of the data sets."""
 import unittest
 
 import numpy as np

@@ -1,4 +1,5 @@
-"""Tests bench/foreign/set_table.py: how it reads data sets, and its messages about mistakes in their tables."""
+"""Tests bench/foreign/set_table.py: how the program reads tables of data sets, and which messages it prints about
+mistakes in these tables."""
 import pathlib
 
 from foreign_case import BENCH, ForeignCase

@@ -1,5 +1,5 @@
-"""Tests bench/foreign/horch.py on simulated control loops, and the judgement of a diagnosis of a loop whose fault is
-known."""
+"""Tests bench/foreign/horch.py on simulated control loops. Also tests how a diagnosis is judged if the fault of the
+loop is known."""
 import importlib.util
 import math
 import random
@@ -60,8 +60,8 @@ class Phase(unittest.TestCase):
         self.assertNotIn("free", verdicts)
 
     def test_oscillating_disturbances_are_no_stiction(self):
-        # The reset time is longer than the period / (2 pi), so the integral part shifts the phase by less
-        # than 30 degrees.
+        # The reset time of 20 s is more than twice the longest period divided by 2 pi. The integral part of the
+        # controller therefore shifts the phase by less than 30 degrees.
         verdicts = [horch.verdict(*loop(seed, disturbance=0.5, reset_s=20))[0] for seed in range(20)]
         self.assertEqual(verdicts.count("sticks"), 0)
         self.assertGreaterEqual(verdicts.count("free"), 18)

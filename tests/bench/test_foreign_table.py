@@ -1,5 +1,5 @@
-"""Tests bench/foreign/log_table.py: the values that it reads from a table, and its messages about mistakes in a
-table."""
+"""Tests bench/foreign/log_table.py: the values that the program reads from a table, and its messages about mistakes in
+the table."""
 from foreign_case import BENCH, ForeignCase
 
 import log_table

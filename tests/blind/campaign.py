@@ -1,6 +1,6 @@
 """Runs a campaign of diagnoses of simulated worlds. The workflow in workflows/ simulates and diagnoses several worlds
-in parallel. It runs only worlds that have no result yet, and stops when all worlds are done or the time limit is
-reached. The module also returns the command that repeats a campaign, for its page."""
+in parallel. It runs the worlds that have no result yet. It stops when all worlds are done or the time limit is
+reached. The module also returns the command that repeats a campaign, for the page of the campaign."""
 import csv
 import hashlib
 import json
@@ -25,7 +25,7 @@ def write_table(path, worlds, judge):
 
 
 def collect(ledger, worlds, out, planned, told):
-    """Adds the results of the workflow to the ledger. Returns one line for each world that failed."""
+    """Adds the results of the workflow to the ledger. Returns one text line for each world whose run failed."""
     wrong = []
     for world in worlds:
         row = out / "world" / name_of(world) / "row.json"
@@ -43,7 +43,7 @@ def collect(ledger, worlds, out, planned, told):
 def run(ledger, planned, judge, args, told):
     """Runs all planned worlds that are not in the ledger, and adds the results of `judge`.run_world(build, folder,
     world) to the ledger. told(world, result) returns the line that is printed for a result. After args.most_minutes,
-    no further world is started; with None, all worlds are run."""
+    starts no other world. If args.most_minutes is None, runs all worlds."""
     left = list({name_of(world): world for world in planned if world not in ledger}.values())
     if not left or args.most_minutes == 0:
         return
@@ -60,8 +60,8 @@ def run(ledger, planned, judge, args, told):
 
 
 def command(script, parser, args, options):
-    """Returns the command line that repeats a campaign. It contains each of the `options` whose value is not the
-    default, `--work DIR` if the script has this option, and the page."""
+    """Returns the command line that repeats a campaign. The line contains each of the `options` whose value is not the
+    default. It also contains the page, and `--work DIR` if the script has this option."""
     line = f"{script} --work DIR" if hasattr(args, "work") else script
     for option in options:
         value = getattr(args, option)

@@ -3,7 +3,7 @@ the test suite and the campaign use this module.
 
 A world has these keys: family (`textbook` or `first`), cause (or `none`), strength (1: the option `--strength 8` of
 the generator), seed, columns (`pressure` or `command`), and zero_mm and warmer_c of the later logs. The healthy logs
-are campaign 0 of the finger. The later logs are campaign 1, with different waveforms and different noise. The
+are campaign 0 of the finger. The later logs are campaign 1, with other waveforms and other noise than campaign 0. The
 diagnosis is called as a user calls it. A world may also have the keys of varying.py. If `closed_loop` is true, the
 later logs are recorded in closed loop.
 """
@@ -19,13 +19,14 @@ import varying
 GIVEN = {"textbook": pathlib.Path(__file__).resolve().parent / "textbook/given.yaml", "first": judging.GIVEN}
 PROGRAM = {"textbook": "tests/blind/textbook/textbook-world", "first": "tests/blind/blind-world"}
 USUAL = 8
-# Maps a cause to the causes that change the readings in the same way, so that no log can distinguish them.
+# Maps a cause to the indistinguishable causes: they change the readings in the same way, so that no log can distinguish
+# them from the cause.
 TWINS = {"stiffening": {"sensor_nonlinearity"}, "sensor_nonlinearity": {"stiffening"}}
 
 
-# Maps the name of a parameter in a world to the name of this parameter in a diagnosis. Only parameters with
-# the same meaning in both are listed. In the textbook family, valve lag and sensor lag have a different
-# meaning. The band of a dead band is not listed, because it can be a band of stiction or of drag.
+# Maps the name of a parameter in a simulated world to its name in a diagnosis. The table contains only parameters with
+# the same meaning in both. In the textbook family, valve lag and sensor lag have a different meaning. The band of a
+# dead band is omitted, because it can be a band of stiction or of drag.
 SAME_NUMBERS = {"transport_delay": {"delay_s": "delay_s"}, "valve_lag": {"time_constant_s": "time_constant_s"},
                 "pressure_saturation": {"limit_kpa": "limit_kpa"}, "actuator_threshold": {"threshold_kpa": "threshold_kpa"},
                 "sensor_lag": {"time_constant_s": "time_constant_s"},
@@ -38,9 +39,9 @@ OTHERWISE_IN_TEXTBOOKS = {"valve_lag", "sensor_lag"}
 
 
 def intervals(family, cause, diagnosis, truth):
-    """Compares the parameters of the first reported cause with the truth, if this cause is the true change. Returns,
-    for each parameter that has the same meaning in both, the true value, the reported value, its interval, and
-    whether the interval covers the true value."""
+    """If the first reported cause is the true change, compares its parameters with the true values. Returns a list
+    with one entry per parameter that has the same meaning in the diagnosis and in the world. An entry contains the
+    true value, the reported value and its interval. It also states if the interval covers the true value."""
     if not diagnosis["causes"] or diagnosis["causes"][0]["id"] != cause:
         return []
     if family == "textbook" and cause in OTHERWISE_IN_TEXTBOOKS:
@@ -57,9 +58,9 @@ def intervals(family, cause, diagnosis, truth):
 
 def judge(cause, diagnosis):
     """Returns the judgement of a diagnosis. If the finger has not changed, the judgement is unchanged, false_alarm or
-    unexplained. Otherwise it is one of these: first (the true cause is first), twin (an indistinguishable cause is
-    first), listed (the true cause is a later cause or an alternative), missed (no change reported), unnamed (a change
-    without a cause) or wrong."""
+    unexplained. If the finger has changed, it is one of these: first (the true cause is reported first), twin (an
+    indistinguishable cause is reported first), listed (the true cause is reported later or as an alternative), missed
+    (no change is reported), unnamed (a change is reported without a cause) or wrong."""
     named = [c["id"] for c in diagnosis["causes"]]
     if cause == "none":
         return "false_alarm" if named else diagnosis["verdict"]

@@ -1,4 +1,4 @@
-// The list of the effects that a world can hide, with the largest physical size of each effect.
+// The effects that can be hidden in a world, with the largest physical size of each effect.
 #include <algorithm>
 #include <random>
 #include <stdexcept>

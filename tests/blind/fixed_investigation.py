@@ -3,7 +3,7 @@
 
     fixed_investigation.py --build BUILD CAUSE[+CAUSE]:STRENGTH:SEED:EXPERIMENT ...
 
-EXPERIMENT is the experiment that must resolve the ambiguity, or `none` if the logs alone must show the true cause.
+EXPERIMENT is the experiment that must separate the true cause from the others, or `none` if the logs alone must do so.
 The exit code is 0 if the true cause of every world is found.
 """
 import argparse

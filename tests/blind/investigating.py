@@ -10,8 +10,8 @@ import tempfile
 import judging
 
 HERE = pathlib.Path(__file__).resolve().parent
-# Sets of causes that no command and no gauge check can separate. A valve lag and a sensor lag are equal if
-# the pressure is not recorded.
+# Sets of causes that neither a command nor a gauge check can separate. A valve lag and a sensor lag have the same
+# effect on the readings if the pressure is not recorded.
 INDISTINGUISHABLE = [{"valve_lag", "sensor_lag"}]
 
 
@@ -25,8 +25,9 @@ def outcome_of(hidden, step):
 
 
 def investigate_world(build, folder, world, gauge=True):
-    """Investigates a simulated world. Returns `before` and `outcome`, the judgements (judging.judge) of the first and
-    of the last verdict. `resolved_by` is the experiment after which the verdict contained only the true cause."""
+    """Investigates a simulated world. The result contains `before` and `outcome`, the judgements (judging.judge) of
+    the first and of the last verdict. It also contains `resolved_by`, the experiment after which the true cause was
+    the only cause in the verdict."""
     build = pathlib.Path(build).resolve()
     with tempfile.TemporaryDirectory(dir=folder) as name:
         work = pathlib.Path(name)
@@ -59,7 +60,7 @@ def investigate_world(build, folder, world, gauge=True):
 
 
 def is_indistinguishable(result):
-    """Returns True if sets of several causes remain, and no command and no gauge check can separate the causes of any
-    set."""
+    """Returns True if sets of several causes remain and neither a command nor a gauge check can separate the causes of
+    any of these sets."""
     left = [set(one) for one in result.get("after", []) if len(one) > 1]
     return bool(left) and all(any(one <= twins for twins in INDISTINGUISHABLE) for one in left)

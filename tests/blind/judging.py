@@ -14,8 +14,9 @@ import varying
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 GIVEN = ROOT / "tests/blind/given.yaml"
 
-# Maps an effect to its parameters with the same meaning in the diagnosis and in the world. Each entry maps
-# the name in the diagnosis to a function that computes the value from the parameters of the world.
+# Maps an effect to those of its parameters that have the same meaning in the diagnosis and in the world. Each entry
+# maps the name of the parameter in the diagnosis to a function. The function computes the true value from the
+# parameters of the world.
 SAME_MEANING = {
     "transport_delay": {"delay_s": lambda n: n["delay_s"]},
     "valve_lag": {"time_constant_s": lambda n: n["time_constant_s"]},
@@ -36,9 +37,8 @@ SAME_MEANING = {
     "outliers": {"size_mm": lambda n: n["size_mm"], "probability": lambda n: n["share"]},
 }
 
-# Effects that are not in the catalogue of causes, and the causes of the catalogue that describe them
-# correctly. The two effects are a lag that differs between filling and venting, and a hysteresis of a
-# different shape.
+# Two effects that are not in the catalogue of causes: a lag that differs between filling and venting, and a hysteresis
+# of a different shape. The table maps each effect to the causes of the catalogue that describe it correctly.
 STRUCTURE_OF = {"outside_fill_vent_lag": {"valve_lag"}, "outside_stop_operators": {"hysteresis_shape"}}
 
 
@@ -68,8 +68,8 @@ def judge(hidden, diagnosis):
         return "missed"
     if verdict == "cause_found" and set(named) == set(hidden):
         return "right"
-    # Each reported set of a cause and its alternatives must contain a hidden cause that no other set
-    # contains.
+    # A reported cause and its alternatives form a set. Each set must contain a hidden cause that is not already
+    # assigned to another set.
     left = list(hidden)
     for one in sorted(sets, key=len):
         held = [cause for cause in left if cause in one]
@@ -80,8 +80,8 @@ def judge(hidden, diagnosis):
 
 
 def covered(hidden, truth, diagnosis):
-    """Returns True or False for each parameter that has an interval and a corresponding true value. True: the
-    interval covers the true value."""
+    """Compares each parameter that has an interval with its true value, if the world has this parameter. Returns True
+    for a parameter if the interval covers the true value, otherwise False."""
     found = {}
     for cause in diagnosis["causes"]:
         if cause["id"] not in hidden:
@@ -130,8 +130,8 @@ def run_world(build, folder, world):
 
 
 def library(build):
-    """Returns two lists of the effects that a world can hide: the ids in the catalogue of causes, and the ids outside
-    of it."""
+    """Returns two lists of ids of the effects that a world can hide. The effects of the first list are in the
+    catalogue of causes, and the effects of the second list are not."""
     ids = subprocess.run([pathlib.Path(build) / "tests/blind/blind-world", "--list"], check=True, capture_output=True,
                          text=True).stdout.split()
     return [i for i in ids if not is_outside(i)], [i for i in ids if is_outside(i)]

@@ -3,8 +3,8 @@ import json
 
 
 class Ledger:
-    """The results in a file. `rows` contains the rows of the file. A world counts as done if a row has the same
-    values of `keys`. A missing key counts as None, so that files of earlier versions stay valid."""
+    """The results in a file. `rows` contains the rows of the file. A world counts as done if a row and the world
+    have the same values of `keys`. A missing key counts as None, so that files of earlier versions stay valid."""
 
     def __init__(self, path, keys):
         self.path, self.keys = path, keys

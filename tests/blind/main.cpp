@@ -108,8 +108,8 @@ blind::Base scattered(std::uint64_t seed) {
   return base;
 }
 
-// Converts the commands of a log to references of a controller. `zero_mm` is the zero offset of the
-// controller's sensor.
+// Converts the commands of a log to references of a controller, for a log in closed loop. `zero_mm` is the
+// zero offset of the controller's sensor.
 void close_loop(blind::LogInput& log, const blind::Sensor& sensor, double mm_per_kpa, double zero_mm,
                 std::uint64_t seed) {
   log.offset_mm += zero_mm;
@@ -195,8 +195,8 @@ double duration_s(const std::vector<blind::LogInput>& logs) {
 void write_truth(const std::string& path, const Arguments& a, const blind::Effects& effects,
                  const std::map<std::string, blind::Scaled>& scaled, const blind::Sensor& sensor) {
   std::ofstream file(path);
-  // The truth is written with all digits. With six digits, the rounding error of a frequency would exceed the
-  // error of an estimate from ten minutes of logs.
+  // Write the true values with all digits. With six digits, the rounding error of a frequency would exceed
+  // the error of an estimate from ten minutes of logs.
   file.precision(std::numeric_limits<double>::max_digits10);
   file << "{\"seed\": " << a.seed << ", \"strength\": " << a.strength << ", \"noise_mm\": " << sensor.noise_mm
        << ", \"effects\": {";

@@ -3,8 +3,8 @@
 
     rig.py BLIND_WORLD FOLDER [option of blind-world ...] COMMAND_CSV LOG_OUT
 
-The state of the world continues from call to call, because each call stores its command in FOLDER and plays all
-earlier commands first.
+The state of the world continues from call to call: each call stores its command in FOLDER and plays all earlier
+commands before its own command.
 """
 import pathlib
 import shutil

@@ -7,8 +7,8 @@
 namespace blind {
 namespace {
 
-constexpr double coarse_step_s = 0.0025;  // accurate enough to scale an effect; the logs are simulated with a
-                                          // finer step
+constexpr double coarse_step_s = 0.0025;  // sufficient to scale an effect; the logs are simulated with a
+                                          // smaller time step
 
 std::vector<double> flat(const Base& base, const Effects& effects, const std::vector<LogInput>& logs,
                          std::uint64_t seed) {
@@ -47,7 +47,7 @@ void subtract(std::vector<double>& from, const std::vector<double>& direction, d
   for (std::size_t k = 0; k < from.size(); ++k) from[k] -= factor * direction[k];
 }
 
-// Runs the Gram-Schmidt orthonormalisation twice, because rounding errors make the vectors of a single run
+// Runs the Gram-Schmidt orthonormalisation twice. After a single run, rounding errors leave the vectors
 // slightly non-orthogonal.
 void orthonormalise(std::vector<std::vector<double>>& directions) {
   for (std::size_t i = 0; i < directions.size(); ++i) {

@@ -1,5 +1,6 @@
 #pragma once
-// Scales a hidden effect until a refitted model without this effect has a requested error.
+// Scales a hidden effect. After the scaling, a model that is refitted without this effect has a requested RMS
+// error.
 
 #include <string>
 #include <vector>
@@ -8,20 +9,21 @@
 
 namespace blind {
 
-/// Computes the change of the displacement that an effect causes, and removes the part that small changes of
-/// the actuator parameters and of the zero can explain. Returns the RMS [mm] of the rest over the campaign.
-/// The explainable part is a linear projection on finite differences.
+/// Computes the change of the displacement that an effect causes. Removes the part of this change that small
+/// changes of the actuator parameters and of the zero can explain. Returns the RMS [mm] of the remaining
+/// change over the campaign. The removed part is a linear projection on finite differences.
 double excess_mm(const Base& base, const Effects& effects, const std::vector<LogInput>& logs,
                  std::uint64_t seed);
 
 struct Scaled {
   Effect effect;
-  double excess_mm = 0;   ///< RMS error [mm] of a refitted model without the scaled effect
+  double excess_mm = 0;   ///< RMS error [mm] of a model that is refitted without the scaled effect
   bool reachable = true;  ///< false: even the largest physical size of the effect causes less than the
                           ///< requested error
 };
 
-/// Returns the effect `id`, scaled so that a refitted model without the effect has the RMS error `target_mm`.
+/// Returns the effect `id`. It is scaled so that a model that is refitted without the effect has the RMS
+/// error `target_mm`.
 Scaled scale_to(const std::string& id, double target_mm, const Base& base, const std::vector<LogInput>& logs,
                 std::uint64_t seed);
 

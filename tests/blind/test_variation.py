@@ -17,7 +17,7 @@ import unittest
 BLIND, TEXTBOOK = sys.argv.pop(1), sys.argv.pop(1)
 PROGRAMS = {"blind": BLIND, "textbook": TEXTBOOK}
 
-# SHA-256 of all logs of a call, recorded before the programs had the option --variation.
+# SHA-256 of all logs of a call. The hashes were recorded before the programs had the option --variation.
 GOLDEN = {
     ("--seed", "1"): ("e20640d7e0299022", "db8a9764eacf24ad"),
     ("--seed", "7", "--poor", "--pressure"): ("1d9d11191617df3b", "d956ade25f225e8d"),
@@ -76,7 +76,7 @@ class Drawn(unittest.TestCase):
 
     def assert_spread(self, values, mean, deviation):
         self.assertAlmostEqual(statistics.mean(values), mean, delta=4 * deviation / RUNS ** 0.5)
-        # The tolerance is 4 times the standard error of the standard deviation.
+        # The tolerance is 4 times the standard error of an estimated standard deviation.
         self.assertAlmostEqual(statistics.stdev(values) / deviation, 1, delta=4 / (2 * RUNS) ** 0.5)
 
     def test_offset_gain_temperature_and_supply(self):
@@ -112,7 +112,7 @@ class Drawn(unittest.TestCase):
 
 
 class Logs(unittest.TestCase):
-    """Tests that the logs of the programs have the variation that --list-runs prints."""
+    """Tests that the logs of the programs contain the variation that --list-runs prints."""
 
     def test_1_3_and_6_runs(self):
         for name, program in PROGRAMS.items():
@@ -132,8 +132,8 @@ class Logs(unittest.TestCase):
                 settled = columns(logs(program, "--runs", "1")[0])["displacement_mm"]
                 varied = [columns(log)["displacement_mm"] for log in logs(program, "--variation", "1", "--runs", "4")]
                 self.assertLess(abs(settled[0]), 0.2)
-                # The pulse before the recording leaves creep and hysteresis, so the first reading is above
-                # 0.2 mm.
+                # The pulse before the recording leaves creep and hysteresis in the finger, so the first reading is
+                # above 0.2 mm.
                 self.assertGreater(min(y[0] for y in varied), 0.2)
 
     def test_the_size_of_the_variation_scales_with_its_strength(self):

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double ramp_s = 1;
 constexpr double proportional = 0.4,
-                 integral_per_s = 0.8;  // controller gain, multiplied by the gain of the finger
+                 integral_per_s = 0.8;  // integral gain of the controller times the gain of the finger [1/s]
 
 std::mt19937_64 generator(std::uint64_t seed, std::size_t run) {
   return std::mt19937_64((seed * 0x9E3779B97F4A7C15ULL) ^ (run * 0xBF58476D1CE4E5B9ULL + 77));

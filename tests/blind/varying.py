@@ -1,5 +1,5 @@
 """Handles the run-to-run variation (variation.h): the options of a campaign, the keys of a world, the options of the
-generator program, and the text of the page."""
+generator program, and the text for the page of the campaign."""
 
 KEYS = ("variation", "closed_loop", "baseline_runs")  # keys of a world; worlds of earlier versions do not have them
 BASELINE_RUNS = 3
@@ -26,20 +26,21 @@ def of_world(args, baseline_runs=BASELINE_RUNS):
 
 
 def belongs(row, args):
-    """Returns True if a row of the ledger has the same variation and closed-loop setting as this campaign."""
+    """Returns True if a row of the ledger and this campaign have the same variation and the same closed-loop
+    setting."""
     own = of_world(args)
     return all(row.get(key) == own.get(key) for key in ("variation", "closed_loop"))
 
 
 def of_generator(world, closed_loop=True):
-    """Returns the options of the program that writes the logs of a world. `closed_loop`: pass the setting for the
-    closed loop, too."""
+    """Returns the options of the program that writes the logs of a world. If `closed_loop` is True, the options
+    include the closed-loop setting of the world."""
     options = ["--variation", str(world["variation"])] if "variation" in world else []
     return [*options, "--closed-loop"] if closed_loop and world.get("closed_loop") else options
 
 
 def text(args):
-    """Returns the sentences of a page that describe the variation."""
+    """Returns the sentences that describe the variation on the page of the campaign."""
     closed = " A controller plays the commands of the logs (closed loop)." if getattr(args, "closed_loop", False) else ""
     strength = getattr(args, "variation", 0)
     if not strength:

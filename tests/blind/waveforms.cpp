@@ -14,7 +14,7 @@ constexpr double log_s = 80;
 constexpr double working_kpa = 58;
 constexpr double pi = std::numbers::pi;
 
-// Appends segments to a sampled command.
+// Appends segments to a command that is stored as samples.
 class Pen {
  public:
   explicit Pen(std::vector<double>& out) : out_(out) { out_.push_back(0); }
@@ -45,7 +45,7 @@ std::vector<double> triangles(std::mt19937_64& random) {
   Pen pen(out);
   std::uniform_real_distribution<double> unit(0, 1);
   pen.hold(1.5);
-  // The amplitudes increase. So each triangle has a higher peak pressure than all earlier triangles.
+  // The amplitudes increase, so each triangle has a higher peak pressure than all earlier triangles.
   for (const double peak : {14.0, 25.0, 36.0, 47.0}) {
     pen.line(peak * (1 + 0.1 * (unit(random) - 0.5)), 1.5);
     pen.line(0, 1.5);
@@ -128,7 +128,8 @@ LogInput surrounded(std::vector<double> command_kpa, double rate, double campaig
 
 namespace {
 
-// Returns the log of a run at the sample rate of the run. The unrecorded pulse precedes the command.
+// Returns the log of a run at the sample rate of the run. The pulse that is not recorded precedes the
+// command.
 LogInput varied(std::vector<double> command, const variation::Run& run, double start_s,
                 const Campaign& campaign) {
   const double rate = run.rate_hz > 0 ? run.rate_hz : rate_hz;

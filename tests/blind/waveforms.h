@@ -21,8 +21,8 @@ struct Campaign {
 /// consists of sines over a decade of rates, sharp steps, a rest and a repetition.
 std::vector<LogInput> draw_campaign(const Campaign& campaign);
 
-/// Returns a log with a given command. Its temperature and supply pressure continue from their values at the
-/// end of the campaign.
+/// Returns a log with a given command. The temperature and the supply pressure continue from their values at
+/// the end of the campaign.
 LogInput surrounded(std::vector<double> command_kpa, double rate_hz, double campaign_start_s,
                     std::uint64_t seed);
 

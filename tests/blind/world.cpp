@@ -25,7 +25,8 @@ double sign(double x) {
   return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
-// All parameters that the integration needs. They are looked up once per simulation, not in every step.
+// All parameters that the integration needs. They are read from the map once per simulation, not in every
+// step.
 struct Numbers {
   explicit Numbers(const Effects& e)
       : delay_s(number(e, "transport_delay", "delay_s", 0)),
@@ -75,14 +76,14 @@ struct Numbers {
       modulation, modulation_hz, stops_mm, crosstalk_mm, recovery;
 };
 
-// The state of the finger that continues from one log to the next.
+// State of the finger that continues from one log to the next.
 struct Memory {
   double largest_kpa = 0;
   double campaign_s = 0;
 };
 
-// Returns x after one step of the classical Runge-Kutta method. x relaxes towards a target that changes
-// linearly.
+// Returns the state x after one step of the classical Runge-Kutta method. The state relaxes towards a target
+// that changes linearly during the step.
 double relax(double x, double from, double to, double tau, double dt) {
   const auto f = [&](double share, double value) { return (from + share * (to - from) - value) / tau; };
   const double k1 = f(0, x), k2 = f(0.5, x + 0.5 * dt * k1), k3 = f(0.5, x + 0.5 * dt * k2),
@@ -114,8 +115,8 @@ class Rig {
 
   double pressure() const { return pressure_; }
 
-  // Simulates a gauge check: the target of the sensor is removed from the finger and held at this position.
-  // All transients of the sensor have decayed.
+  // Simulates one position of a gauge check. The target of the sensor is removed from the finger and held at
+  // this position until all transients of the sensor have decayed.
   void hold_target(double position_mm) { seen_mm_ = position_mm; }
   void wait(double duration_s) { memory_.campaign_s += duration_s; }
 
@@ -223,8 +224,8 @@ class Rig {
     moved_mm_ = y;
   }
 
-  // Simulates a person who touches the finger at random times. Each touch changes the displacement by a step
-  // of random size, which then decays.
+  // Simulates a person who touches the finger at random times. Each touch changes the displacement by a
+  // random amount, which then decays.
   double bumps() {
     if (memory_.campaign_s >= next_bump_s_) {
       next_bump_s_ = memory_.campaign_s + 4 + 10 * uniform_(random_);
@@ -247,8 +248,8 @@ class Rig {
          mode_v_ = 0, mode_target_ = 0, played_ = 0, bump_ = 0, next_bump_s_ = 3;
 };
 
-// Runs the controller that follows the reference of a log. If the log has no reference, the commands stay
-// unchanged.
+// Runs the controller that follows the reference of a log in closed loop. If a log has no reference, its
+// commands stay unchanged.
 class Follower {
  public:
   Follower(const Base& base, const LogInput& log) : log_(log) {

@@ -1,7 +1,7 @@
 #pragma once
-// A simulated world that may contain a hidden effect. It has its own model of the actuator and its own
-// integration with a fine step, and links no code of the project. The equations implement the definitions of
-// the causes, not the code of the blocks.
+// Simulates a world that may contain a hidden effect. The simulation has its own model of the actuator and
+// its own integration with a fine step. It links no code of the project. Its equations follow the definitions
+// of the causes, not the code of the blocks.
 
 #include <cstdint>
 #include <map>
@@ -10,8 +10,7 @@
 
 namespace blind {
 
-/// The parameters of the actuator without hidden effects. Pressures are in kPa, displacements in mm, times in
-/// s.
+/// Parameters of the actuator without hidden effects. Pressures are in kPa, displacements in mm, times in s.
 struct Base {
   double alpha = 0.35;           // mm/kPa
   double beta = 0.20;            // mm/kPa
@@ -22,8 +21,8 @@ struct Base {
   double slow_gain = 0.056, slow_tau = 13.7;
 };
 
-/// The parameters of a hidden effect by name. The map Effects contains them by the id of the effect. The id
-/// of an effect is the id of a cause in the catalogue or one of outside_ids().
+/// Parameters of a hidden effect by name. The map Effects contains the parameters of each effect by its id.
+/// The id of an effect is the id of a cause in the catalogue, or one of outside_ids().
 using Effect = std::map<std::string, double>;
 using Effects = std::map<std::string, Effect>;
 
@@ -33,24 +32,25 @@ struct Sensor {
   double pressure_noise_kpa = 0.05;
 };
 
-/// The inputs of one log, one value per sample of the command.
+/// Inputs of one log, one value per sample of the command.
 struct LogInput {
   double rate_hz = 100;
   std::vector<double> command_kpa;  // command [kPa], linear between samples
   std::vector<double> temperature_c;
   std::vector<double> supply_kpa;
-  // Variation of this run, see variation.h.
+  // Run-to-run variation of this log, see variation.h.
   double gain = 1, offset_mm = 0;
-  std::size_t unrecorded = 0;  // number of samples at the start that are not recorded
-  // Closed loop: from the first recorded sample on, a controller follows the reference. `noise_mm` is the
-  // noise of the controller's sensor, one value per recorded sample.
+  std::size_t unrecorded = 0;  // number of samples at the start that are simulated but not recorded
+  // Only in closed loop: a controller follows this reference from the first recorded sample on. `noise_mm` is
+  // the noise of the controller's sensor, one value per recorded sample.
   std::vector<double> reference_mm, noise_mm;
 };
 
 struct LogOutput {
-  std::vector<double> command_kpa;      // the command that was played [kPa]
-  std::vector<double> pressure_kpa;     // true pressure at the actuator
-  std::vector<double> displacement_mm;  // displacement before noise and quantisation [mm]
+  std::vector<double> command_kpa;      // command that was played [kPa]; in closed loop, the command of the
+                                        // controller
+  std::vector<double> pressure_kpa;     // true pressure at the actuator [kPa]
+  std::vector<double> displacement_mm;  // displacement [mm], without noise and quantisation
 };
 
 /// Simulates the logs of one campaign in order. Every log starts at rest. The largest load, the age and the
@@ -59,25 +59,25 @@ struct LogOutput {
 std::vector<LogOutput> simulate(const Base& base, const Effects& effects, const std::vector<LogInput>& logs,
                                 std::uint64_t seed, double step_s = 0.0005);
 
-/// Settings of a gauge check. An operator holds the target of the sensor at known positions, one after the
-/// other, and averages the readings of the sensor.
+/// Settings of a gauge check. An operator holds the target of the sensor at one known position after the
+/// other. At each position, the operator averages the readings of the sensor.
 struct GaugeWork {
   double placing_mm = 0.01;  // standard deviation of the true target position [mm]
   double every_s = 20;       // time between two positions of the gauge check [s]
   double rate_hz = 100;
-  std::size_t samples = 200;  // number of readings that are averaged at each position
+  std::size_t samples = 200;  // number of readings to average at each position
 };
 
-/// Returns the readings at each position [mm], before noise and quantisation. `start_s` is the time of the
-/// campaign at the start of the check. Drift, disturbances and wrong samples continue during the check.
+/// Returns the readings at each position [mm], before noise and quantisation. `start_s` is the time in the
+/// campaign at which the check begins. Drift, disturbances and wrong samples continue during the check.
 std::vector<std::vector<double>> held_at(const Effects& effects, const std::vector<double>& positions_mm,
                                          double start_s, std::uint64_t seed, const GaugeWork& work);
 
-/// Removes the samples of a log that are not recorded.
+/// Removes the samples of a log that are not recorded, from the inputs and the outputs.
 void drop_unrecorded(LogInput& in, LogOutput& out);
 
-/// Returns the largest displacement of the actuator without effects during a pressure rise to `pressure_kpa`
-/// and the following fall.
+/// Simulates the actuator without effects while the pressure rises to `pressure_kpa` and then falls. Returns
+/// the largest displacement.
 double span_mm(const Base& base, double pressure_kpa);
 
 /// Returns white noise. The seed determines the values.

@@ -1,6 +1,6 @@
-// Tests broken configurations. The name of each file broken/NAME.yaml describes its error. NAME.expected
-// contains all messages that the check of this file must print. If NAME.also exists, it lists the files that
-// are checked together with NAME.yaml.
+// Tests configurations that contain errors. The name of each file broken/NAME.yaml describes the error in the
+// file. NAME.expected contains all messages that the check of this file must print. If NAME.also exists, it
+// lists the files that are checked together with NAME.yaml.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ std::vector<std::string> names() {
   return result;
 }
 
-/// Runs the check with tests/config as the working directory, so that the messages contain short paths.
+/// Runs the check in the working directory tests/config, so that the messages contain short paths.
 rig::CheckReport check(const std::string& name) {
   std::filesystem::current_path(folder);
   std::vector<std::string> paths{"broken/" + name + ".yaml"};

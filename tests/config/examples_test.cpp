@@ -1,5 +1,5 @@
-// Tests that the check accepts the shipped configurations without a warning, and that these configurations
-// are consistent with each other.
+// Tests that the check accepts the shipped configurations without a warning. Also tests that these
+// configurations are consistent with each other.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -19,8 +19,8 @@ std::vector<std::string> shipped() {
   std::vector<std::string> paths;
   const std::filesystem::path config = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "config";
   for (const auto& entry : std::filesystem::recursive_directory_iterator(config)) {
-    // The sequence in config/vacuum needs a vacuum. The other rigs have no vacuum, so they refuse this
-    // sequence.
+    // The sequence in config/vacuum needs a vacuum. The rigs outside config/vacuum refuse this sequence,
+    // because they have no vacuum.
     const bool vacuum = entry.path().string().find("/config/vacuum/") != std::string::npos;
     if (!vacuum && entry.path().extension() == ".yaml") paths.push_back(entry.path().string());
   }
@@ -56,7 +56,8 @@ TEST(Examples, OfEveryKindAreThere) {
   }
 }
 
-/// Collects all keys below a node, except the channel names that the author of the file has chosen.
+/// Collects the keys of `node` and of all nodes below it. Omits the channel names, because the author of the
+/// file chooses them.
 void collect_keys(const document::Node& node, std::set<std::string>& keys) {
   for (const document::Node::Entry& entry : node.entries) {
     if (entry.key != "left" && entry.key != "right") keys.insert(entry.key);
@@ -109,14 +110,14 @@ TEST(Check, AFolderIsAllThatIsInItAndEachFileOnce) {
   EXPECT_FALSE(report.has_rig);
 }
 
-/// A temporary folder with the given files. The destructor removes the folder.
+/// A temporary folder that contains the given files. The destructor removes the folder.
 class CheckFolder : public ::testing::Test {
  protected:
   CheckFolder() { std::filesystem::create_directories(folder_ / "sub/.hidden"); }
   ~CheckFolder() override { std::filesystem::remove_all(folder_); }
   void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
   using Changes = std::vector<std::pair<std::string, std::string>>;
-  /// Writes a copy of the shipped simulated rig in which the given texts are replaced.
+  /// Replaces the given texts in a copy of the shipped simulated rig and writes the copy to a file.
   void write_rig(Changes changes) {
     std::ostringstream read;
     read << std::ifstream(config_ / "rig.yaml").rdbuf();

@@ -1,5 +1,5 @@
-// Reads the shipped rig files and compares the values with the expected ones. Tests that a missing or wrong
-// key causes an error.
+// Tests the values that are read from the shipped rig files. Also tests that a missing or wrong key causes an
+// error.
 
 #include "rig/rig_file.h"
 
@@ -140,8 +140,8 @@ TEST(RigFile, AVacuumIsSimulatedWithinTheValvesRange) {
       << simulated.detail();
 }
 
-/// Replaces the given texts in a shipped rig file and reads the result. Relative paths refer to the folder of
-/// the shipped file.
+/// Replaces the given texts in a copy of a shipped rig file and reads the copy. Relative paths in the copy
+/// refer to the folder of the shipped file.
 rig::RigReading edited(const std::string& name, const std::vector<std::pair<std::string, std::string>>& edits,
                        Problems& problems) {
   Problems parsing;
@@ -154,7 +154,8 @@ rig::RigReading edited(const std::string& name, const std::vector<std::pair<std:
   return rig::read_rig_so_far(document::parse(shipped(name), text, problems), problems);
 }
 
-/// A folder tree like /sys that contains three converters. Two of them have the same name.
+/// A folder tree with the layout of /sys that contains three converters. Two of the converters have the same
+/// name.
 class Converters : public ::testing::Test {
  protected:
   Converters() {
@@ -168,8 +169,8 @@ class Converters : public ::testing::Test {
     std::filesystem::create_directory_symlink(folder, root_ / node);
     std::ofstream(folder / "name") << name << "\n";
   }
-  /// Returns the problems of the shipped rig file. The converters of its two valves are renamed to `first`
-  /// and `second`.
+  /// Sets the devices of the two valves in a copy of the shipped rig file to `first` and `second`. Returns
+  /// the problems of the copy.
   [[nodiscard]] std::string problems_of(const std::string& first, const std::string& second) const {
     Problems problems;
     const auto reading = edited("rig_iio.yaml",
@@ -291,7 +292,7 @@ TEST(RestPressure, BeyondTheLimitsIsRefusedWithTheRange) {
 TEST(RestPressure, OfTheBoardsWatchdogIsThatOfTheChannel) {
   const std::string asked = "this board does not vent by itself when softgripd dies";
   for (const auto& [old, now, said] :
-       std::vector<std::array<std::string, 3>>{// on this board an output of 0 V means full vacuum
+       std::vector<std::array<std::string, 3>>{// an output of 0 V of this board sets full vacuum
                                                {"map: board.yaml", "map: ../boards/softgrip-sim.yaml",
                                                 "the watchdog of the board sets channel `left` to -100 kPa, "
                                                 "but the rest pressure of this channel is 0 kPa"},
@@ -310,8 +311,8 @@ TEST(RestPressure, OfTheBoardsWatchdogIsThatOfTheChannel) {
       << problems.format();
 }
 
-// The limits of the channel apply to the daemon only. The board itself can set a pressure beyond these
-// limits, up to the range of the valve.
+// The limits of the channel apply to the daemon, but not to the board. The board can therefore set a pressure
+// beyond these limits, up to the range of the valve.
 TEST(RestPressure, OfTheBoardsWatchdogIsNotBeyondTheLimits) {
   using Edits = std::vector<std::pair<std::string, std::string>>;
   const auto with = [](Edits edits, const Edits& more) {
@@ -321,8 +322,7 @@ TEST(RestPressure, OfTheBoardsWatchdogIsNotBeyondTheLimits) {
   const Edits vacuum{{"pressure_min_kpa: -40", "pressure_min_kpa: -80"},
                      {"pressure_max_kpa: 60", "pressure_max_kpa: -10"},
                      {"  rest_kpa: 0 ", "  rest_kpa: -10 "}};
-  const Edits inflates{{"valve: {at_v: [0, 10]", "valve: {at_v: [0, 5]"}};  // the valve reaches 100 kPa at 5
-                                                                            // V
+  const Edits inflates{{"valve: {at_v: [0, 10]", "valve: {at_v: [0, 5]"}};  // 5 V set the valve to 100 kPa
   const Edits no_pressure{{"range_kpa: [-100, 100]", "range_kpa: [-100, 0]"}};
   for (const Edits& edits : {with(vacuum, inflates), with({{"rest_kpa: 0", "rest_kpa: 60"}}, inflates)}) {
     Problems problems;
@@ -429,7 +429,8 @@ TEST(RigFile, ARateBeyondTheBusBudgetIsRefusedUnlessAccepted) {
   EXPECT_TRUE(rig->accept_over_budget);
 }
 
-/// Calls `use(owner, index, path)` for each entry of all maps below `node`.
+/// Function type for for_each_entry(). That function calls `use(owner, index, path)` for each entry of `node`
+/// and of all maps below it.
 using Use = std::function<void(Node&, std::size_t, const std::string&)>;
 void for_each_entry(Node& node, const std::string& path, const Use& use) {
   for (std::size_t i = 0; i < node.entries.size(); ++i) {
@@ -440,15 +441,15 @@ void for_each_entry(Node& node, const std::string& path, const Use& use) {
   for (Node& item : node.items) for_each_entry(item, path + "-.", use);
 }
 
-/// Returns the problems of a document that is refused, or nullopt if the document is accepted.
+/// Reads a document. Returns the problems if the document is refused, and nullopt if it is accepted.
 std::optional<std::string> refusal(const Document& document) {
   Problems problems;
   if (rig::read_rig(document, problems)) return std::nullopt;
   return problems.format();
 }
 
-/// Returns true if the text of a problem names the key. If channels share the entry, the text may name a key
-/// below the entry instead.
+/// Returns true if the text of a problem names the key of the entry or a key below the entry. A key below the
+/// entry suffices because several channels can share the entry.
 bool is_named(const Node::Entry& entry, const std::string& text) {
   return text.find("`" + entry.key + "`") != std::string::npos ||
          std::any_of(entry.value.entries.begin(), entry.value.entries.end(),
@@ -491,7 +492,7 @@ TEST_P(EveryKey, IsRefusedWhenItsValueIsNonsense) {
     nonsense.kind = Node::Kind::scalar;
     nonsense.at = taken.at;
     nonsense.scalar = "non sense/..";
-    // These keys accept every text, so the test uses an empty text for them.
+    // A key in this list accepts every text except an empty one, so its test uses an empty text.
     const std::set<std::string> free{"recorder.directory", "socket.path", "socket.sequence_directory"};
     if (free.contains(path)) nonsense.scalar.clear();
     owner.entries[index].value = nonsense;

@@ -100,8 +100,8 @@ const TickOutput& SimulatedRig::tick() {
   return output_;
 }
 
-/// Checks two rules in every tick. Each command is inside its pressure range and its slew limits. It moves
-/// away from the rest pressure only while a sequence may move the finger.
+/// Checks two rules in every tick. Each command must stay within its pressure range and its slew limits. A
+/// command may move away from the rest pressure only while a sequence is allowed to move the finger.
 void SimulatedRig::check_commands(const TickOutput& before) {
   constexpr double rounding = 1e-9;
   for (std::size_t i = 0; i < settings_.channels.size(); ++i) {
@@ -112,8 +112,8 @@ void SimulatedRig::check_commands(const TickOutput& before) {
     EXPECT_LE(command, limits.pressure_max_kpa);
     const double rest = resting_kpa(limits);
     const double from = first_ ? rest : before.channels[i].command_kpa;
-    // During a bus fault, a command may go towards rest faster than its slew limit, because the board may
-    // already have vented.
+    // During a bus fault, the board may already have vented. A command may then approach the rest pressure
+    // faster than its slew limit.
     const bool toward_rest = no_further(rest, command, from) == command;
     if (!inhibits(bus_fault) || !toward_rest) {
       EXPECT_LE(command - from, limits.slew_up_kpa_per_s / settings_.rate_hz + rounding) << "at " << time_s();

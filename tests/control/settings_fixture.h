@@ -9,11 +9,11 @@
 
 namespace softgrip::control {
 
-/// Returns the model config/models/bench_twin.yaml, which is read once.
+/// Returns the model config/models/bench_twin.yaml. The file is read once.
 const model::Model& twin();
 
-/// Returns settings with two channels, left and right, with the full_model feedforward and low PID gains. The
-/// safe action is hold in the phase holding and vent in all other phases.
+/// Returns settings with two channels, left and right, the full_model feedforward and low PID gains. The safe
+/// action is hold in the phase holding, and vent in all other phases.
 RigSettings two_finger_settings();
 /// Returns two_finger_settings() with a pressure range from -40 to 60 kPa, the rest pressure 0 kPa, and
 /// displacements down to -30 mm.

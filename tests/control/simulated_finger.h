@@ -1,6 +1,6 @@
 #pragma once
-// Simulates a finger with its own model, whose time step is smaller than the tick of the controller. The
-// controller reads and writes the finger as it reads and writes a board.
+// Simulates a finger with a model of its own and with a time step that is smaller than the tick of the
+// controller. The controller sends commands to this finger and reads its sensor, as it does with a board.
 
 #include <cmath>
 #include <cstdint>
@@ -38,14 +38,14 @@ inline ChannelSettings twin_settings() {
   return settings;
 }
 
-/// The board and the finger together. write() sends a command and reads the sensor, as an exchange does. The
-/// next tick uses this reading, which is then one tick old.
+/// Simulates the board and the finger together. write() sends a command and reads the sensor, as an exchange
+/// with a board does. The controller uses this reading in the next tick, when the reading is one tick old.
 class SimulatedFinger {
  public:
   SimulatedFinger(const model::Model& model, double noise_mm, std::uint64_t seed)
       : chain_(model, {}, tick_s / sub_steps), noise_mm_(noise_mm), random_(seed) {}
 
-  /// Simulates one tick in which the command is held. Returns the reading at the beginning of the tick.
+  /// Simulates one tick in which the command is constant. Returns the reading at the beginning of the tick.
   model::Reading write(double command_kpa, Nanoseconds now) {
     chain_.step(0, command_kpa);
     model::Reading reading;

@@ -1,5 +1,6 @@
 #pragma once
-// A board that stores the written values and whose responses the test specifies.
+// A board for tests. The board stores the values that the daemon writes. The test specifies the responses of
+// the board.
 
 #include <algorithm>
 #include <functional>
@@ -18,16 +19,17 @@ class ScriptedBoard final : public drivers::Board {
 
   drivers::BusStatus next_connect = drivers::BusStatus::ok;
   drivers::BusStatus next_exchange = drivers::BusStatus::ok;
-  std::vector<std::vector<double>> written;  ///< values that good exchanges wrote, one element per exchange
+  std::vector<std::vector<double>> written;  ///< values that successful exchanges wrote, one element per
+                                             ///< exchange
   std::chrono::nanoseconds watchdog{0};
   bool readers_feed = false;
   unsigned counted_clients = 0;
   const char* said = "scripted";
-  double found = std::numeric_limits<double>::quiet_NaN();  ///< outputs that the board has after a refused
-                                                            ///< write [kPa]
-  std::function<void()> on_connect;                         ///< function that is called during each connect()
-  std::function<void()> on_exchange;  ///< function that is called before the request of an exchange reaches
-                                      ///< the board
+  double found = std::numeric_limits<double>::quiet_NaN();  ///< outputs that the board reports after a
+                                                            ///< refused write [kPa]
+  std::function<void()> on_connect;                         ///< function to call during each connect()
+  std::function<void()> on_exchange;  ///< function to call before the request of an exchange reaches the
+                                      ///< board
   std::vector<Nanoseconds> connect_attempts;  ///< times at which connect() was called
 
   [[nodiscard]] std::size_t channels() const noexcept override { return channels_; }

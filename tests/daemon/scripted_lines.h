@@ -17,11 +17,11 @@
 
 namespace softgrip::daemon::testing {
 
-/// The levels at the terminals of the digital lines. They outlive the lines, which the panel owns and
-/// destroys. Any thread may call the functions.
+/// The levels at the terminals of the digital lines. The panel owns and destroys the lines; the terminals
+/// exist longer. Any thread may call the functions.
 class Terminals {
  public:
-  /// Sets the logical level of an input. If the level changes and `with_edge` is true, reports an edge.
+  /// Sets the logical level of an input. If the level changes and `with_edge` is true, also reports an edge.
   void set(drivers::GpioRole role, bool active, bool with_edge = true) {
     const std::scoped_lock lock(mutex_);
     bool& level = levels_[index(role)];
@@ -29,7 +29,7 @@ class Terminals {
     level = active;
     changed_.notify_all();
   }
-  /// Makes all later calls fail, as if the GPIO chip were removed.
+  /// Makes all later calls fail, as if the GPIO chip had been removed.
   void fail() {
     const std::scoped_lock lock(mutex_);
     failed_ = true;
@@ -39,7 +39,7 @@ class Terminals {
     const std::scoped_lock lock(mutex_);
     return levels_[index(role)];
   }
-  /// Returns the values that were written to an output, in order.
+  /// Returns the values that were written to an output, oldest first.
   [[nodiscard]] std::vector<bool> written(drivers::GpioRole role) const {
     const std::scoped_lock lock(mutex_);
     return written_[index(role)];

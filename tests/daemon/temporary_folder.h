@@ -1,5 +1,5 @@
 #pragma once
-// A folder for one test, which is removed at the end of the test.
+// A temporary folder for one test. The folder is removed at the end of the test.
 
 #include <cstdlib>
 #include <filesystem>

@@ -7,8 +7,8 @@
 namespace softgrip::document::brackets_test {
 namespace {
 
-/// Returns the brackets that are not closed at the end of a text, each with line and column. An example is
-/// "[1:5 {2:3".
+/// Returns the brackets that are still open at the end of a text. Each bracket is followed by its line and
+/// column, for example "[1:5 {2:3".
 std::string open_at_end(const std::string& text) {
   std::string out;
   for (const Bracket& bracket : open_brackets(text, {100, 1})) {

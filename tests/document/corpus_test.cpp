@@ -1,4 +1,5 @@
-// Passes every file of the fuzz corpus to the parser, in every build. No input may crash the parser.
+// Passes every file of the fuzz corpus to the parser. The test is a part of every build. No file may crash
+// the parser.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +21,7 @@ TEST(Corpus, IsHarmless) {
     std::ifstream file(entry.path(), std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     const std::string whole =
-        text + text;  // the second copy is a second document or continues the last line of the first copy
+        text + text;  // the second copy begins a second document or continues the last line of the first copy
     for (const std::string& input : {text, whole, text.substr(text.size() / 2)}) {
       LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
     }

@@ -1,4 +1,5 @@
-// Tests which texts the parser accepts. For each error, tests the line and the column in the message.
+// Tests which texts the parser accepts. If the parser refuses a text, tests the line and the column in the
+// error message.
 
 #include <gtest/gtest.h>
 #include <pthread.h>
@@ -61,7 +62,7 @@ TEST(Parse, AnEmptyValueStandsWhereItIsMissing) {
   const Document document = parse("a.yaml", "a:\n\n# comment below\nb: 1\nc:\n  -\n  - 2\n", problems);
   EXPECT_TRUE(problems.empty()) << problems.format();
   EXPECT_EQ(value_of(document.root, "a").at.line,
-            3);  // line 3, because the parser cannot see the colon in line 1 behind the comment
+            3);  // line 3: the comment hides the colon in line 1 from the parser
   EXPECT_EQ(value_of(document.root, "c").items[0].at, (Location{6, 3}));
 }
 
@@ -109,15 +110,16 @@ TEST(Parse, BytesMustBeUtf8AndPrintable) {
             (Lines{"1:4: the byte \\xff is not UTF-8 (and 1 more such bytes)"}));
   EXPECT_EQ(problems_of("a: \xc0\x80\n"),
             (Lines{"1:4: the byte \\xc0 is not UTF-8 (and 1 more such bytes)"}));
-  EXPECT_EQ(problems_of("a: \xed\xa0\x80\n").size(), 1U);      // an encoded surrogate, which UTF-8 does not
-                                                               // allow
+  EXPECT_EQ(problems_of("a: \xed\xa0\x80\n").size(), 1U);      // an encoded surrogate, which is invalid in
+                                                               // UTF-8
   EXPECT_EQ(problems_of("a: \xf4\x90\x80\x80\n").size(), 1U);  // a code above U+10FFFF, which Unicode does
                                                                // not define
   EXPECT_EQ(problems_of("a: \xc3"), (Lines{"1:4: the byte \\xc3 is not UTF-8"}));
   EXPECT_EQ(problems_of(std::string("a: \0b\n", 6)),
             (Lines{"1:4: the text contains the control character \\x00"}));
   EXPECT_EQ(problems_of("a: \x1b[31m\n"), (Lines{"1:4: the text contains the control character \\x1b"}));
-  // The YAML parser treats U+0004 as the end of the file, so it would ignore the text after this character.
+  // The YAML parser treats the character U+0004 as the end of the file and would therefore ignore the text
+  // after it.
   EXPECT_EQ(problems_of("a: 1\n\x04: 2\n"), (Lines{"2:1: the text contains the control character \\x04"}));
   EXPECT_EQ(problems_of("\xEF\xBB\xBF"
                         "a: 1\n"),
@@ -151,7 +153,7 @@ TEST(Parse, SyntaxErrorsSayWhatWasOpen) {
 }
 
 TEST(Parse, AnOpenQuoteDoesNotSwallowTheRestOfTheFile) {
-  // The YAML parser accepts a quoted text without a closing quote if the file ends with a line break. The
+  // If a file ends with a line break, the YAML parser accepts a quoted text without a closing quote. The
   // check of the project must refuse this text.
   for (const char* const text : {"a: 'open\n", "a: \"open\nb: 2\n\n", "a: \"open \\\"\n", "a: 'it''s\n"}) {
     EXPECT_EQ(problems_of(text), (Lines{"1:4: the quotation mark that opens here is never closed"})) << text;
@@ -185,12 +187,11 @@ TEST(Parse, BoundsAreExact) {
   EXPECT_EQ(problems_of("a: 1\nb: 2\nc: 3\n", bounds), (Lines{"3:1: the document has more than 5 values"}));
 }
 
-/// Runs `text` through parse() on a thread with a small stack.
+/// Calls parse() with `text` on a thread with a small stack.
 void parse_on_small_stack(const std::string& text) {
   pthread_attr_t attributes;
   ASSERT_EQ(pthread_attr_init(&attributes), 0);
-  // The size is 512 KiB, because sanitizers enlarge the stack frames and need stack memory for their own
-  // thread data.
+  // The stack has 512 KiB, because sanitizers enlarge the stack frames and store thread data on the stack.
   ASSERT_EQ(pthread_attr_setstacksize(&attributes, 512 * 1024), 0);
   pthread_t thread{};
   auto run = [](void* argument) -> void* {
@@ -258,8 +259,8 @@ TEST(ParseFile, StopsReadingAtTheBound) {
   const ScratchFolder scratch;
   const std::string path = scratch.path() + "/large.yaml";
   std::ofstream(path) << "a: 1\n";
-  std::filesystem::resize_file(path, std::uintmax_t{1} << 40U);  // a sparse file that is larger than any
-                                                                 // memory
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 40U);  // a sparse file of 1 TiB, which is larger
+                                                                 // than the memory
   Problems problems;
   static_cast<void>(parse_file(path, problems));
   EXPECT_EQ(

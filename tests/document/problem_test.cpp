@@ -72,7 +72,8 @@ TEST(Problems, RepetitionsGo) {
   EXPECT_EQ(problems.without_repeats().size(), 2U);
 }
 
-/// Returns two lines of the message for a problem: the quoted line of the file and the line with the caret.
+/// Returns two lines of the message for a problem. The first line quotes the file, and the second line
+/// contains the caret.
 std::pair<std::string, std::string> shown_line(const Problem& problem) {
   Problems problems;
   problems.add(problem);

@@ -1,5 +1,5 @@
 #pragma once
-// Lists the problems that the parser finds in a text, for the tests of documents.
+// Lists the problems that the parser finds in a text. Used by the tests of documents.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 namespace softgrip::document {
 
-/// Returns the problems of a text, each as "line:column: message". An example is "2:10: message".
+/// Returns the problems of a text, each as "line:column: message", for example "2:10: message".
 inline std::vector<std::string> lines_of(const Problems& problems) {
   std::vector<std::string> lines;
   for (const Problem& problem : problems.list()) {

@@ -1,4 +1,4 @@
-// Tests every getter of MapReader with every type of mistake. One pass must report all mistakes of a
+// Tests every getter of MapReader with every type of mistake. One reading must report all mistakes of a
 // document.
 
 #include "document/reader.h"
@@ -14,7 +14,7 @@ namespace {
 
 using Use = std::function<void(MapReader&)>;
 
-/// Reads `text` with `use` and returns the problems, each as "line:column: message hint".
+/// Reads `text` with the function `use`. Returns the problems, each as "line:column: message hint".
 Lines reported(const std::string& text, const Use& use) {
   Problems problems;
   const Document document = parse("test.yaml", text, problems);
@@ -196,7 +196,7 @@ TEST(Reader, ADocumentCutShortLacksNothing) {
 }
 
 TEST(Reader, AWordThatTheSyntaxErrorAddedToTheLastValueIsNotJudged) {
-  // For the YAML parser, the value of `delay_s` is "1 name", because it ends at the second colon.
+  // The value of `delay_s` ends at the second colon, so the YAML parser returns the value "1 name".
   EXPECT_EQ(reported("delay_s: 1\n  name: x\n", use_delay).size(), 1U);
 }
 

@@ -1,5 +1,5 @@
-// Fuzz target: parses arbitrary bytes, calls every getter and formats every message. The arguments are
-// -dict=yaml.dict corpus/.
+// Fuzz target: parses arbitrary bytes, calls every getter and formats every message. Start it with the
+// arguments -dict=yaml.dict corpus/.
 
 #include <cstddef>
 #include <cstdint>
@@ -32,7 +32,7 @@ void check(const Node& node, int depth, std::size_t& nodes) {
   }
 }
 
-/// Reads a number of keys of each map, so that every type of hint occurs.
+/// Reads a number for each of several keys of each map, so that every type of hint occurs.
 void read(const Document& document, const Node& node, Problems& problems) {
   {
     MapReader reader(document, node, problems, "the map");

@@ -35,7 +35,7 @@ WRITTEN_BY = {5: "coil", 15: "coil", 6: "holding", 16: "holding", 22: "holding",
 
 
 class Board(ModbusSlaveContext):
-    """Registers of a board, with a record of all writes of clients."""
+    """The registers of a board. Records all writes of clients."""
 
     def __init__(self):
         super().__init__(di=block(), co=block(), hr=block(), ir=block())

@@ -1,5 +1,5 @@
-// Tests that the library and the command line give identical results. Each result of `softgrip` is compared
-// bit for bit with the result of the library for the same logs.
+// Tests that the library and the command line give identical results. For the same logs, each result of
+// `softgrip` must equal the result of the library bit for bit.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -29,7 +29,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Logs of the model bench_twin and of a model with a different gain. `softgrip simulate` writes them.
+/// Logs that `softgrip simulate` writes, from the model bench_twin and from a model with a different gain.
 class LibraryAndCommand : public testing::Test {
  protected:
   LibraryAndCommand() {
@@ -45,7 +45,7 @@ class LibraryAndCommand : public testing::Test {
   ~LibraryAndCommand() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  /// Runs `softgrip` and returns its output. The test fails if the exit code of the program is not 0.
+  /// Runs `softgrip` and returns its output. The test fails if the exit code of `softgrip` is not 0.
   std::string run(const std::string& arguments) const {
     const std::string output = path("output");
     const std::string command =
@@ -54,7 +54,8 @@ class LibraryAndCommand : public testing::Test {
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text_of(path("errors"));
     return text_of(output);
   }
-  /// Returns the JSON after removing the keys `without`, because their values differ from call to call.
+  /// Removes the keys `without` from the JSON and returns the result. The values of these keys differ from
+  /// call to call.
   static Json plain(const std::string& text, std::initializer_list<const char*> without) {
     Json json = Json::parse(text);
     for (const char* key : without) json.erase(key);
@@ -153,8 +154,8 @@ TEST_F(LibraryAndCommand, DiagnoseAChange) {
   EXPECT_NE(found.verdict, "unchanged");
 }
 
-/// Starts `work` and requests its stop after the time `after`. Returns the time [s] from the request to the
-/// exception. If `work` ends without an exception, the test fails.
+/// Starts `work` and requests its stop after the duration `after`. Returns the time [s] from the request to
+/// the end of `work`. The test fails if `work` does not end with the exception Cancelled.
 template <class Work>
 double time_to_stop_s(std::chrono::milliseconds after, Work work) {
   std::stop_source stop;

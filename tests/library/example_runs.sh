@@ -1,4 +1,4 @@
-# Functions to source: they run the programs of examples/cpp and compare the output of these programs.
+# Functions for other scripts: they run the programs of examples/cpp and check the output of these programs.
 source=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")
 model=$source/config/models/bench_twin.yaml
 daemon=
@@ -25,7 +25,8 @@ run_examples() {
 
   "$softgrip" simulate --model "$model" --input tp1 --rate-hz 20 --noise-mm 0.05 --out one.csv >/dev/null
   "$softgrip" simulate --model "$model" --input tp2 --rate-hz 20 --noise-mm 0.05 --seed 2 --out other.csv >/dev/null
-  # A log file of another program, with other column names, the unit bar, and semicolons between the columns.
+  # A log file as another program writes it, with other column names, pressures in bar, and semicolons between the
+  # columns.
   awk -F, 'BEGIN {print "Time [s];Pressure setpoint [bar];Displacement [mm]"}
     NR > 1 {printf "%s;%.8f;%s\n", $1, $2 / 100, $3}' one.csv >external.csv
   says "transport_delay" "$examples/diagnose_csv" external.csv report.html
@@ -37,7 +38,7 @@ run_examples() {
   says "too few grips" "$examples/nightly_health" recordings/one.csv baseline night
   grep -q "<html" night/health-.html && [ -s night/health-scores.jsonl ] || fail "no page or no scores of the health"
 
-  # A daemon that simulates its board.
+  # A daemon with a simulated board.
   sed -e "s#/tmp/softgrip.sock#$PWD/socket#; s#/tmp/softgrip-runs#$PWD/runs#; s#models/bench_twin.yaml#$model#" \
     -e "s#sequence_directory: sequences#sequence_directory: $source/config/sequences#" "$source/config/rig.yaml" >rig.yaml
   "$softgripd" --config rig.yaml >daemon.log 2>&1 &

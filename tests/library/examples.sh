@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the library into a folder and moves the folder. Then builds examples/cpp with find_package and one
-# example with pkg-config, and runs the examples: examples.sh BUILD
+# Installs the library into a folder and moves the folder. Builds examples/cpp with find_package, and one example with
+# pkg-config. Then runs the examples. Usage: examples.sh BUILD
 set -euo pipefail
 build=$(realpath "$1")
 . "$(dirname "$0")/example_runs.sh"

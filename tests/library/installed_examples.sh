@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # Installs the packages that scripts/package.sh has built. Builds the C++ examples with the commands of
-# docs/how-to/library-cpp.md, and runs the C++ and Python examples. Needs a machine without any other part of
-# softgrip, such as a chroot:
-#   scripts/chroot_test.sh bookworm bash tests/library/installed_examples.sh
+# docs/how-to/library-cpp.md. Then runs the C++ and Python examples. The machine must have no other files of softgrip,
+# so use a chroot: scripts/chroot_test.sh bookworm bash tests/library/installed_examples.sh
 set -euo pipefail
 . "$(dirname "$0")/example_runs.sh"
 work=$(mktemp -d) && trap 'end_daemon; rm -rf "$work"' EXIT
@@ -18,7 +17,7 @@ apt-get -q update >"$work/apt.log"
 apt-get -q install -y --no-install-recommends "${packages[@]}" >>"$work/apt.log" 2>&1 || { cat "$work/apt.log" >&2; fail "apt-get"; }
 
 cd "$work"
-# Takes from the page the commands that copy and build the examples.
+# Extracts from docs/how-to/library-cpp.md the commands that copy and build the examples.
 sed -n '/^ *cp -r \/usr\/share\/doc\/libsoftgrip-dev/,/```/p' "$source/docs/how-to/library-cpp.md" | grep -v '```' >lines.sh
 [ "$(wc -l <lines.sh)" -eq 3 ] || fail "docs/how-to/library-cpp.md has no 3 lines that build the examples"
 bash -eu lines.sh >build.log 2>&1 || { cat build.log >&2; fail "build"; }

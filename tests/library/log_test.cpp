@@ -41,7 +41,7 @@ class LibraryLog : public testing::Test {
       ("library_log_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
-/// Applies `change` to a valid log and returns the message with which check() refuses the log.
+/// Makes a change to a valid log. Returns the message with which check() refuses the changed log.
 template <class Change>
 std::string refusal(Change change) {
   Log log = simulated();

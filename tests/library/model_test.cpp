@@ -17,7 +17,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Returns the name of the argument that `call` refuses, or "" if `call` accepts all arguments.
+/// Calls `call`. Returns the name of the argument that `call` refuses, or "" if `call` accepts all arguments.
 template <class Call>
 std::string refused_argument(Call call) {
   try {
@@ -69,8 +69,8 @@ TEST(LibraryModel, SimulatesStepByStepAsAtOnce) {
     const double duration_s = i == 0 ? 0 : course.time_s[i] - course.time_s[i - 1];
     worst = std::max(worst, std::abs(simulator.step(duration_s, course.value[i]) - at_once[i]));
   }
-  // The sample times of the array are differences of floating-point times, so they deviate from 0.01 s by
-  // rounding errors.
+  // The duration of a step is the difference of two floating-point times, so it deviates from 0.01 s by a
+  // rounding error.
   EXPECT_LT(worst, 1e-10);
   EXPECT_GT(*std::max_element(at_once.begin(), at_once.end()), 5);
 }

@@ -1,4 +1,5 @@
-// Tests properties that every block of the catalogue must have. A new block is tested automatically.
+// Tests properties that every block of the catalogue must have. If a block is added to the catalogue, these
+// tests cover it automatically.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +29,7 @@ void for_every_block(Check&& check) {
   }
 }
 
-/// Returns the model bench_twin with an additional block. The parameters of the block have their default
+/// Returns the model bench_twin with one additional block. The parameters of this block have their default
 /// values.
 Model twin_with(std::size_t type) {
   const Model twin = preset("bench_twin");
@@ -62,8 +63,8 @@ TEST(EveryBlock, DoesNothingAtItsNeutralValues) {
   });
 }
 
-// The output segments of a block must join without a gap. Their total duration must equal the duration of the
-// input.
+// The output segments of a block must follow each other without a gap in time or value. Their total duration
+// must equal the duration of the input.
 TEST(EveryBlock, KeepsTimeAndContinuity) {
   for (std::size_t type = 0; type < catalogue().size(); ++type) {
     const Model model{"one", "test", {default_block(type)}};
@@ -102,7 +103,7 @@ TEST(EveryBlock, KeepsTimeAndContinuity) {
   }
 }
 
-// After reset(), the reading must stay constant under a constant command in constant surroundings.
+// After reset(), the reading must stay constant while the command and the surroundings are constant.
 TEST(EveryBlock, RestsAfterReset) {
   for_every_block([](std::size_t type) {
     if (is_random(type)) return;
@@ -121,12 +122,12 @@ TEST(EveryBlock, RestsAfterReset) {
   });
 }
 
-// A linear command can be simulated in one step or in two half steps. A block that is documented as exact
-// must give the same reading in both cases. For every other block, the difference must be small for a step of
-// 5 ms.
+// Simulates a linear command in one step and in two half steps. A block that is documented as exact must give
+// the same reading in both cases. For every other block, the two readings may differ slightly for a step of 5
+// ms.
 TEST(EveryBlock, StepsInHalvesAsInOne) {
-  // These blocks are approximate in this chain. The first two are lags that are exact for a linear input, but
-  // here another lag precedes them.
+  // These blocks are approximate in this chain. The first two blocks of the list are lags. A lag is exact for
+  // a linear input, but here another lag precedes it.
   const std::vector<std::size_t> approximate{block_type<AsymmetricValveLag>(),
                                              block_type<ChamberLag>(),
                                              block_type<RateLimit>(),
@@ -145,8 +146,8 @@ TEST(EveryBlock, StepsInHalvesAsInOne) {
                                              block_type<Backlash>(),
                                              block_type<SensorLag>()};
   for_every_block([&](std::size_t type) {
-    // The clock offset uses the slope of the last step, so two half steps give a different result than one
-    // step. clock_offset_test.cpp tests this error.
+    // The clock offset uses the slope of the last step, so two half steps give another result than one step.
+    // clock_offset_test.cpp tests this error.
     if (is_random(type) || type == block_type<ClockOffset>()) return;
     const double tolerance_mm = std::ranges::count(approximate, type) == 0 ? 1e-8 : 2e-4;
     Chain<double> whole(twin_with(type)), halves(twin_with(type));
@@ -159,8 +160,8 @@ TEST(EveryBlock, StepsInHalvesAsInOne) {
   });
 }
 
-// peek() must give the same result as step(), with one difference: only step() takes account of a corner of
-// the pressure within a sample.
+// peek() must give the same result as step(), with one exception: only step() takes a corner of the pressure
+// within a sample into account.
 TEST(EveryBlock, ForetellsWhatItsStepGives) {
   for_every_block([](std::size_t type) {
     const BlockInfo& info = catalogue()[type].info;

@@ -1,5 +1,5 @@
 // Tests the automatic differentiation of the chain. Compares the derivative of the reading with respect to
-// each parameter with finite differences. Also compares peek(), which the inverse uses, with step().
+// each parameter with finite differences. Also compares step() with peek(), which the inverse uses.
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
@@ -49,8 +49,8 @@ std::vector<Jet> readings_with_derivatives(const Model& model, SignalName signal
   return y;
 }
 
-// Returns true for parameters that select a variant or control random numbers. A fit must not change these
-// parameters.
+// Returns true if the parameter selects a variant or controls random numbers. A fit must not change such a
+// parameter.
 bool has_no_derivative(const std::string& path) {
   return path == "bouc_wen.exponent" || path == "sensor_noise.correlation_time_s" ||
          path == "outliers.probability" || path == "quantisation.step_mm";
@@ -70,8 +70,8 @@ void expect_derivatives_agree(const Model& model, SignalName signal) {
     down[k] -= h;
     const std::vector<double> y_up = readings(with_values(model, up), signal, 0);
     const std::vector<double> y_down = readings(with_values(model, down), signal, 0);
-    // At a kink, such as a corner of the signal or the start of a contact, the two one-sided finite
-    // differences are unequal. The derivative equals one of them.
+    // At a kink, the two one-sided finite differences are unequal. Examples of a kink are a corner of the
+    // signal and the start of a contact. The derivative must lie between the two differences.
     double largest = 0;
     double outside = 0;
     for (std::size_t i = 0; i < plain.size(); ++i) {
@@ -91,8 +91,8 @@ TEST(ChainDerivatives, PublishedModelOnTriangles) {
   expect_derivatives_agree(preset("zhang2025"), SignalName::tp1);
 }
 
-// The delay is not a multiple of the sample time. With such a multiple, the response to a kink would have two
-// different one-sided derivatives.
+// The delay is not a multiple of the sample time. If it were, the response to a kink would have two different
+// one-sided derivatives.
 TEST(ChainDerivatives, TwinWithFractionalDelayAndLag) {
   Model twin = preset("bench_twin");
   twin.blocks[0].values[0] = 0.1317;
@@ -122,17 +122,17 @@ TEST(ChainDerivatives, EveryBlockInTheTwin) {
     expect_derivatives_agree(with_block(twin, default_block(type)), SignalName::tp2);
   }
   expect_derivatives_agree(with_block(twin, {*find_block("pressure_saturation"), {41.3}}), SignalName::tp2);
-  // With this band, the valve does not break free exactly at a sample. Otherwise the response to a jump would
-  // have two different one-sided derivatives.
+  // With this stick band, the valve does not break free exactly at a sample time. If it did, the response to
+  // a jump would have two different one-sided derivatives.
   expect_derivatives_agree(with_block(twin, {block_type<ValveStiction>(), {2.37}}), SignalName::tp2);
-  // These parameter values are large, so that the derivative exceeds the rounding errors of the finite
-  // differences.
+  // These parameter values are large. With smaller values, the rounding errors of the finite differences
+  // would exceed the derivative.
   expect_derivatives_agree(with_block(twin, {block_type<RateDependentLevelling>(), {3.0, 20.0, 0.05}}),
                            SignalName::tp2);
 }
 
-// A parameter value of 0 switches an effect off. The derivative at 0 must not vanish, so that a fit can find
-// the direction in which the parameter must change.
+// At the value 0, each of these parameters has no effect. The derivative at 0 must not be 0, so that a fit
+// finds the direction in which the parameter must change.
 TEST(ChainDerivatives, NeutralValuesHaveThem) {
   const Model twin = preset("bench_twin");
   for (const std::string id : {"supply_sag",
@@ -177,10 +177,10 @@ TEST(ChainDerivatives, NeutralValuesHaveThem) {
 
 constexpr double derivative_tolerance = 1e-5;
 
-// Returns by how much the derivative of peek() is outside the interval between its two one-sided finite
-// differences. At a kink (a reversal of the pressure, or the start of a contact), the two differences are
-// unequal, and the derivative equals one of them. Close to a kink, neither difference is the slope at p, so
-// the function tries smaller step sizes.
+// Returns the distance of the derivative of peek() from the interval between its two one-sided finite
+// differences. At a kink, for example a reversal of the pressure, these differences are unequal, and the
+// derivative equals one of them. Close to a kink, neither difference is the slope at p, so the function tries
+// smaller step sizes.
 double outside_of_differences(Chain<double>& chain, double p, const Surroundings& now,
                               const Dual<double>& trial) {
   double outside = 0;
@@ -195,8 +195,8 @@ double outside_of_differences(Chain<double>& chain, double p, const Surroundings
 }
 
 TEST(ChainPeek, IsWhatTheStepWillGive) {
-  // The models are the actuators of the presets, an actuator with a contact, and an actuator with every block
-  // whose inverse is implicit.
+  // The models are the actuators of the presets, an actuator with a contact, and an actuator that contains
+  // every block with an implicit inverse.
   std::vector<Model> models{preset("zhang2025"), preset("bench_twin"),
                             with_block(preset("zhang2025"), {*find_block("contact"), {9.0, 1.5}})};
   Model smooth = preset("bench_twin");
@@ -204,8 +204,8 @@ TEST(ChainPeek, IsWhatTheStepWillGive) {
   for (std::size_t type = 0; type < catalogue().size(); ++type) {
     if (position_of(all, type)) continue;
     BlockSpec block = default_block(type);
-    // With a corner within a sample, the rate of the pressure is not constant. Only step() takes account of
-    // this corner, so the block gets neutral parameters.
+    // If the pressure has a corner within a sample, the rate of the pressure changes within the sample. Only
+    // step() takes this corner into account, so the block gets parameter values with which it has no effect.
     if (type == block_type<RateDependentWidth>()) block = neutral_block(type);
     all = with_block(all, block);
     const BlockInfo& info = catalogue()[type].info;
@@ -215,8 +215,8 @@ TEST(ChainPeek, IsWhatTheStepWillGive) {
   }
   models.push_back(smooth);
   models.push_back(all);
-  // Only step() takes account of a corner within a sample, such as a threshold that the pressure crosses. So
-  // the tolerance is larger for this model.
+  // Only step() takes a corner within a sample into account, for example at a threshold that the pressure
+  // crosses. The tolerance is therefore larger for the model with all blocks.
   const std::size_t with_corners = models.size() - 1;
   for (std::size_t m = 0; m < models.size(); ++m) {
     const double tolerance = m == with_corners ? 1e-4 : 1e-12;

@@ -1,6 +1,6 @@
 // Compares the chain with results that SciPy computed from the continuous equations. golden/make_golden.py
-// contains its own copy of signals and parameters, so this test also detects an error in the preset models or
-// the signals of the project.
+// contains its own copy of signals and parameters. Therefore this test also detects an error in the preset
+// models or the signals of the project.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Compares the chain with a solution by CVODE for the same piecewise linear command. The difference must be
-// below 1e-6 mm for each tested sample time.
+// below 1e-6 mm at each tested sampling rate.
 
 #include <gtest/gtest.h>
 
@@ -75,8 +75,8 @@ INSTANTIATE_TEST_SUITE_P(
              std::to_string(static_cast<int>(param.param.rate_hz)) + "Hz";
     });
 
-// Tests the exponents 2, 3 and 4 with the model bench_twin. Without its delay, the kinks of the command are
-// at sample times. gamma and eta are scaled so that the state saturates at the same value for each exponent.
+// Tests the exponents 2, 3 and 4 with the model bench_twin. gamma and eta are scaled so that the state
+// saturates at the same value for each exponent.
 TEST(ChainReferenceExponents, AgreeAtOneKilohertz) {
   for (const int exponent : {2, 3, 4}) {
     Model model = preset("bench_twin");
@@ -100,8 +100,8 @@ TEST(ChainReferenceFractionalDelay, AgreesOffTheGrid) {
   }
 }
 
-// The command rises by 44 kPa within one sample of 10 ms, and later falls within one sample. The expected
-// displacement is computed with a step that is 100 times smaller.
+// The command rises by 44 kPa within one sample of 10 ms, and later falls by 44 kPa within one sample. The
+// expected displacement is computed with steps of 0.1 ms.
 constexpr double sample_s = 0.01;
 constexpr std::size_t finer = 100, samples = 60;
 

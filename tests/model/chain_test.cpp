@@ -14,7 +14,7 @@
 namespace softgrip::model::testing::chain_test {
 namespace {
 
-/// Returns the model bench_twin with every block of the catalogue added.
+/// Returns the model bench_twin. Every other block of the catalogue is added to this model.
 Model everything(BlockSpec (*block_of)(std::size_t)) {
   Model model = preset("bench_twin");
   for (std::size_t type = 0; type < catalogue().size(); ++type) {
@@ -91,7 +91,7 @@ TEST(Chain, StationsShowTheirSignals) {
   for (int i = 1; i <= 1000; ++i) chain.step(5e-3, value_kpa(SignalName::tp1, i * 5e-3));
   EXPECT_EQ(chain.command_kpa(), 60);
   EXPECT_NEAR(chain.pressure_kpa(), 60 - 12 * 0.174,
-              0.1);  // the command rises by 12 kPa/s, and dead time and lag delay the pressure by 0.174 s
+              0.1);  // the command rises by 12 kPa/s; dead time and lag delay the pressure by 0.174 s
   const double free = chain.after(Station::actuator);
   EXPECT_GT(free, 5);
   EXPECT_NEAR(chain.after(Station::load), 5 + (free - 5) / 3, 1e-12);
@@ -120,7 +120,7 @@ TEST(Chain, RestIsWhereARiseAndALongHoldLead) {
 }
 
 TEST(Chain, AHeldOutputIsAJumpAndAHold) {
-  // Compares the response to a jump with the response to a very steep ramp.
+  // Compares the response to a jump of the command with the response to a very steep ramp.
   const Model twin = preset("bench_twin");
   Chain<double> held(twin, {}, 5e-3), steep(twin);
   for (int i = 0; i < 3000; ++i) {

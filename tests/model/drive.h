@@ -1,5 +1,5 @@
 #pragma once
-// Functions that apply inputs to single blocks and to whole chains in tests.
+// Functions for tests that apply inputs to single blocks and to whole chains.
 
 #include <cmath>
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace softgrip::model::testing {
 
-/// Creates a block from a list of its parameter values.
+/// Creates a block from the list of its parameter values.
 template <class Block>
 Block make(std::initializer_list<double> values, double sample_time_s = 0) {
   const std::vector<double> list(values);
@@ -25,8 +25,8 @@ std::vector<Segment<double>> pass(Block& block, const Segment<double>& in, const
   return out;
 }
 
-/// Applies linear segments of length dt between `values` to a pressure or displacement block. The first
-/// segment starts at the value `from`. Returns the output of the block at the end of each segment.
+/// Applies linear segments of length dt to a pressure or displacement block. The segments connect the value
+/// `from` and then the elements of `values`. Returns the output of the block at the end of each segment.
 template <class Block>
 std::vector<double> drive(Block& block, double from, std::span<const double> values, double dt) {
   std::vector<double> out;
@@ -38,8 +38,8 @@ std::vector<double> drive(Block& block, double from, std::span<const double> val
   return out;
 }
 
-/// Applies a linear segment from `from` to `to` [kPa] of duration dt [s] to an element. Sets `from` to `to`
-/// and returns the output of the element at the end.
+/// Applies a linear segment from `from` to `to` [kPa] of duration dt [s] to an element. Then sets `from` to
+/// `to`. Returns the output of the element at the end of the segment.
 template <class Block>
 double move(Block& element, double& from, double to, double dt) {
   element.step(Segment<double>::straight(dt, from, to), {});

@@ -36,8 +36,8 @@ TEST(Catalogue, EveryDeclarationIsSound) {
   }
 }
 
-// Returns the suffix of a key for a unit: _mm_per_kpa for mm/kPa, _per_mm2 for 1/mm^2, _c for degC. The
-// suffix is empty if there is no unit.
+// Returns the suffix that a unit adds to a key: _mm_per_kpa for mm/kPa, _per_mm2 for 1/mm^2, _c for degC.
+// Returns an empty text for a quantity without a unit.
 std::string ending_of(const std::string& unit) {
   std::string ending = unit.empty() ? "" : "_" + unit;
   for (const auto& [written, named] : {std::pair<std::string, std::string>{"degC", "C"},
@@ -113,7 +113,7 @@ TEST(Model, SaysWhatIsWrong) {
   EXPECT_EQ(validate(Model{}).size(), 1u);  // one error: the model has no element
   Model model = preset("bench_twin");
   model.blocks.push_back({lag, {0.1}});
-  EXPECT_EQ(validate(model).size(), 2u);  // two errors: the block exists twice, and the blocks are in the
+  EXPECT_EQ(validate(model).size(), 2u);  // two errors: the block occurs twice, and the blocks are in the
                                           // wrong order
   model = preset("zhang2025");
   model.blocks[0].values[4] = 1.5;

@@ -1,5 +1,5 @@
 #pragma once
-// Reads the preset models from their files, in the same way as a model file of a user.
+// Reads the preset models from their files, with the code that also reads the model files of users.
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@ inline Model preset(const std::string& name) {
   return *model;
 }
 
-/// Returns the value of one parameter of a model by its path. Returns 0 if the model does not have the
-/// parameter.
+/// Returns the value of one parameter of a model. The path selects the parameter. Returns 0 if the model does
+/// not have this parameter.
 inline double number(const Model& model, std::string_view path) {
   const auto index = find_path(model, path);
   return index ? flat_values(model)[*index] : 0.0;

@@ -12,12 +12,12 @@
 namespace softgrip::model::testing {
 namespace {
 
-// An initial value problem with the state vector p, h, x1 .. xn. If the valve has no lag, the pressure equals
-// the command, and p is not integrated.
+// An initial value problem with the state vector p, h, x1 .. xn. If the valve has no lag, the pressure p
+// equals the command and is not integrated.
 struct Problem {
   const Physics& physics;
-  double from_s = 0, from_kpa = 0, slope = 0;  // time and value at the start of the current linear segment of
-                                               // the delayed command, and its slope
+  double from_s = 0, from_kpa = 0, slope = 0;  // start time, start value and slope of the present linear
+                                               // segment of the delayed command
 
   [[nodiscard]] double command(double t) const { return from_kpa + slope * (t - from_s); }
 };
@@ -49,8 +49,8 @@ std::vector<double> integrate(const Physics& physics, const std::vector<double>&
   const double dt = sample_time_s;
   const std::size_t count = command_kpa.size();
   const double end_s = dt * static_cast<double>(count - 1);
-  // Times at which the slope of the delayed command changes. The delayed command is linear between two of
-  // these times.
+  // Times at which the slope of the delayed command changes. Between two successive times, the delayed
+  // command is linear.
   struct Corner {
     double at_s, kpa;
   };

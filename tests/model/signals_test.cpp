@@ -69,8 +69,8 @@ TEST(Signals, TrianglesAndSinusoidsShareTheirPeaks) {
 }
 
 TEST(Signals, CornersLieOnTheGridsOfOneKilohertzAndTwoHundredHertz) {
-  // The corners of the signals are at multiples of 5 ms. So linear interpolation between samples at 200 Hz
-  // must give the original signal.
+  // All corners of the signals are at multiples of 5 ms. Linear interpolation between samples at 200 Hz must
+  // therefore give the original signal.
   for (const SignalName signal : {SignalName::tp1, SignalName::tp2, SignalName::steps, SignalName::hold}) {
     for (int i = 0; (i + 1) * 5e-3 <= duration_s(signal); ++i) {
       const double a = value_kpa(signal, i * 5e-3), b = value_kpa(signal, (i + 1) * 5e-3);

@@ -1,7 +1,7 @@
 """Tests the functions for models, logs and diagnosis on arrays. Their results must equal those of the commands and
 must be picklable. Invalid arguments must raise an exception.
 
-Needs the folder python of a build (SOFTGRIP_BUILD), which contains the extension module.
+Needs the folder python of a build (SOFTGRIP_BUILD). This folder contains the extension module.
 """
 
 import doctest
@@ -36,7 +36,7 @@ def command(*arguments):
 
 
 def plain(report, *without):
-    """Returns the result without the values that differ between two calls, such as durations."""
+    """Removes the values that differ between two calls, such as durations, and returns the rest of the result."""
     return {key: value for key, value in report.items() if key not in without}
 
 
@@ -236,7 +236,7 @@ class HostileArguments(unittest.TestCase):
            np.array(["2020-01-01", "2020-01-02"], dtype="datetime64[s]"), "a\0b", [0, 1e-320]]
 
     def refused(self, call):
-        """Calls the function with each invalid value. Returns how many of the values the function refused."""
+        """Calls the function with each invalid value. Returns the number of values that the function refused."""
         count = 0
         for bad in self.BAD:
             try:
@@ -345,7 +345,8 @@ class Threads(unittest.TestCase):
         identify(log, starts=50, threads=1)
         done.set()
         other.join()
-        self.assertGreater(len(ticks), 3)  # if the fit held the GIL, `ticks` would have only one entry
+        self.assertGreater(len(ticks), 3)  # if the fit held the GIL, the other thread would have added only one entry
+                                           # to `ticks`
 
     def test_fits_in_threads_give_one_result(self):
         from concurrent.futures import ThreadPoolExecutor

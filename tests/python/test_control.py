@@ -1,7 +1,7 @@
-"""Tests limits, PID, controller and boards from Python: their numerical results, and exceptions for invalid
+"""Tests limits, PID, controller and boards from Python. Checks numerical results and the exceptions for invalid
 arguments.
 
-Needs the folder python of a build (SOFTGRIP_BUILD), which has the extension module.
+Needs the folder python of a build (SOFTGRIP_BUILD). This folder contains the extension module.
 """
 
 import math

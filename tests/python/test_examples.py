@@ -16,7 +16,7 @@ MODEL = SOURCE / "config/models/bench_twin.yaml"
 
 
 class Examples(unittest.TestCase):
-    ran = {"nightly_health.py"}  # test_health.py runs this example
+    ran = {"nightly_health.py"}  # test_health.py runs the example nightly_health.py
 
     def run_example(self, name, *arguments, expect=0):
         done = subprocess.run([sys.executable, EXAMPLES / name, *map(str, arguments)], capture_output=True, text=True,
@@ -58,7 +58,7 @@ class Examples(unittest.TestCase):
         self.assertRegex(said, r"0001-none: .*none\.csv")
 
     def check_grip(self, at):
-        """Runs the examples that need a daemon. The daemon simulates its board."""
+        """Runs the examples that need a daemon. The board of the daemon is simulated."""
         text = (SOURCE / "config/rig.yaml").read_text()
         for before, after in (("/tmp/softgrip.sock", f"{at}/socket"), ("/tmp/softgrip-runs", f"{at}/runs"),
                               ("models/bench_twin.yaml", str(MODEL)),

@@ -1,11 +1,11 @@
-"""Calls every function of the package with random arguments, from several threads at a time. A call may raise an
+"""Calls every function of the package with random arguments from several threads at the same time. A call may raise an
 exception of the package but must never crash.
 
-    test_fuzz.py --seed 7 --calls 1000 [--threads 4]      in this process; prints the seed
+    test_fuzz.py --seed 7 --calls 1000 [--threads 4]      makes the calls in this process and prints the seed
 
-The test runs these calls in a child process, so that it can detect a crash. Needs the folder python of a build
-(SOFTGRIP_BUILD), which contains the extension module. For a build with AddressSanitizer, LD_PRELOAD must name the
-library of AddressSanitizer.
+Without arguments, the program makes these calls in a child process, so that it can detect a crash. Needs the folder
+python of a build (SOFTGRIP_BUILD). This folder contains the extension module. For a build with AddressSanitizer,
+LD_PRELOAD must name the library of AddressSanitizer.
 """
 
 import argparse
@@ -38,11 +38,11 @@ MODEL = SOURCE / "config/models/bench_twin.yaml"
 LONGEST_CALL_S = 0.3
 HUGE = 200_000
 class Enough(Exception):
-    """Raised by the progress callback to end a long call."""
+    """Exception that the progress callback raises to end a long call."""
 
 
 class FromArgument(Exception):
-    """Raised by a test argument when the package converts the argument."""
+    """Exception that a test argument raises when the package converts the argument."""
 
 
 class Raises:
@@ -221,7 +221,7 @@ class World:
         target("read_columns", recordings.read_columns, path=(self.folder / "log.csv", text))
         target("read_report", recordings.read_report, path=(self.folder / "log.csv", text))
         target("Recording.read", recordings.Recording.read, folder=(self.folder, text))
-        # matplotlib draws the picture. This test covers only the checks of the package before the drawing.
+        # matplotlib draws the picture. This test covers only the checks that the package makes before the drawing.
         target("plots", lambda log, axes: (validation.plot(log, axes), prediction.plot(axes), change.plot(axes)),
                log=("no such log", text), axes=(3, lambda c: [[], [1], [1, 2, 3], 3]))
 

@@ -1,7 +1,7 @@
-"""Tests the health analysis of recordings. Values and pages must equal those of `softgrip health`, and results must
-be picklable. Invalid arguments must raise an exception.
+"""Tests the health analysis of recordings. Values and pages must equal those of `softgrip health`, and results must be
+picklable. Invalid arguments must raise an exception.
 
-Needs the folder python of a build (SOFTGRIP_BUILD), which has the extension module.
+Needs the folder python of a build (SOFTGRIP_BUILD). This folder contains the extension module.
 """
 
 import json
@@ -28,8 +28,8 @@ MADE = ("made", "made_unix_s")
 
 
 class Health(unittest.TestCase):
-    """Writes recordings of one grip of two fingers per day for 12 days. From the ninth day on, the left finger
-    leaks."""
+    """Writes the recordings of a gripper with two fingers that grips once per day for 12 days. From the ninth day
+    on, the left finger leaks."""
 
     @classmethod
     def setUpClass(cls):

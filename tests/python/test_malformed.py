@@ -1,5 +1,5 @@
-"""Tests the package with lines that softgripd never sends. Each line must raise a ProtocolError or have no effect. It
-must never raise a built-in exception of Python."""
+"""Tests the package with lines that softgripd never sends. Each line must raise a ProtocolError or have no effect. No
+line may raise a built-in exception of Python."""
 
 import json
 import random
@@ -25,7 +25,7 @@ STATUS = {"state": "running", "result": "HOLDING", "channels": [CHANNEL], "owner
           "sequence": {"name": "pick", "request": 3, "client": None, "parameters": {"a": 1}, "step": 0, "step_name": "s",
                        "steps": 2, "ended": None}}
 PARAMETER = {"name": "a", "unit": "kpa", "lower": 0, "upper": 9, "default": 4, "about": ""}
-# Maps each request to a valid result and to the function of the package that reads this result.
+# Maps each request to a valid result of the request and to the function of the package that reads this result.
 RESULTS = {
     "status": (STATUS, lambda result: Status.of(result, "status")),
     "sequences": ({"sequences": [{"name": "a", "about": "", "parameters": [PARAMETER], "problems": [PROBLEM]}]},
@@ -43,7 +43,8 @@ OTHERS = (None, True, False, 0, -1, 1.5, 10**400, "", "x", "\ud800", [], [1], {}
 
 
 def places(value, path=()):
-    """Yields the path of `value` and the paths of all values in it. The test can replace the value at each path."""
+    """Yields the path of `value` and the paths of all values inside `value`. The test replaces the value at each
+    path."""
     yield path
     if isinstance(value, dict):
         for key in value:
@@ -68,8 +69,8 @@ def put(value, path, other):
 
 class Malformed(unittest.TestCase):
     def hear(self, command, said):
-        """Sends the request `command` and passes the line `said` to the session as its reply. Returns "taken",
-        "malformed" or "error"."""
+        """Sends the request `command` and passes the line `said` to the session as the reply to this request.
+        Returns "taken", "malformed" or "error"."""
         session = Session()
         session.subscribed({"since": 0, "started_at": "x"})
         number, _ = session.request("start" if command == "check" else command,

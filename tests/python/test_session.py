@@ -1,4 +1,4 @@
-"""Tests, without a socket, how the clients interpret the lines that the daemon sends."""
+"""Tests how the clients interpret the lines that the daemon sends. The tests use no socket."""
 
 import json
 import unittest
@@ -98,7 +98,8 @@ class Story(unittest.TestCase):
         told = Events()
         told.tell("overall_result", "HOLDING")
         told.session.subscribed({"since": 0, "started_at": "second"})
-        # Belongs to a request of the new daemon; requests of both daemons can have the same number.
+        # The reply belongs to a request to the new daemon. Requests to the old and to the new daemon can have the same
+        # number.
         told.tell("overall_result", "RELEASED")
         self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
         told.session.grip = 3
@@ -117,7 +118,7 @@ class Starts(unittest.TestCase):
         number, sent = session.request("start", {"sequence": "pick"})
         (start_id,) = session.starts
         self.assertEqual(json.loads(sent)["start_id"], start_id)
-        session.forget(number)  # The client forgets a request if an exception ends the wait for its answer.
+        session.forget(number)  # If an exception ends the wait for the reply, the client forgets the request.
         session.receive(line(id=number, ok=True, result={"request": 5}))
         self.assertEqual(session.starts, {start_id: 5})
         self.assertEqual(session.grip, 5)

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Carries out docs/how-to/add-a-cause.md in a copy of the source tree, with the files, edits and commands of the page.
+"""Executes the steps of docs/how-to/add-a-cause.md in a copy of the source tree. Uses the files, edits and commands
+of the page.
 
     add_a_cause.py --source DIR --work DIR
 
@@ -20,8 +21,8 @@ FENCE = re.compile(r"^```(\w+)(?: ([^\n]*))?\n(.*?)^```$", re.MULTILINE | re.DOT
 
 
 def copy_of(source, target):
-    """Copies the files that git tracks or would add. If the source is not a git repository, copies all files except
-    the builds."""
+    """Copies the files that git tracks and the new files that git does not ignore. If the source is not a git
+    repository, copies all files except the builds."""
     if target.exists():
         kept = target / "build"
         for path in target.iterdir():
@@ -39,8 +40,8 @@ def copy_of(source, target):
 
 
 def insert(path, hunk):
-    """Adds the lines marked + of a hunk to a file. The other lines of the hunk must occur in the file exactly once;
-    differences in spacing are ignored."""
+    """Adds the lines marked + of a hunk to a file. The other lines of the hunk must occur in the file exactly once.
+    Ignores differences in spacing."""
     parts = [(line[0], line[1:]) for line in hunk.splitlines()]
     assert all(mark in " +" for mark, _ in parts), f"{path}: a hunk only adds"
     wanted = [line.split() for mark, line in parts if mark == " "]
@@ -84,8 +85,8 @@ def main():
             insert(copy / file[1], body)
         elif file:
             (copy / file[1]).write_text(body)
-    # A block that no cause uses must not compile. The error message of the compiler must be the one that the
-    # page quotes.
+    # If no cause uses a block, the source must not compile. The compiler must print the error message that the page
+    # quotes.
     refused = run("cmake --build build/release --target softgrip_sysid_diagnosis_causes", copy, check=False)
     assert refused.returncode != 0 and expected, "a block without a cause compiles"
     for sentence in expected:

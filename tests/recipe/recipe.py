@@ -1,6 +1,6 @@
-"""Carries out a page of docs/how-to in a copy of the source tree, and builds it.
+"""Executes the steps of a page of docs/how-to in a copy of the source tree, and builds the copy.
 
-The code blocks of the page are used unchanged. A block ```cpp file=PATH is a new file; a block ```diff file=PATH
+The code blocks of the page are used unchanged. A block ```cpp file=PATH creates a new file. A block ```diff file=PATH
 changes a file. The lines that a diff keeps or removes must occur in the file exactly once.
 """
 
@@ -16,7 +16,7 @@ from source_copy import SOURCE, copy_sources  # noqa: E402
 
 
 class RecipeError(AssertionError):
-    """Raised if an edit of the page does not fit the source."""
+    """Exception for an edit of the page that does not fit the source."""
 
 
 FENCE = re.compile(r"^```(\w+) file=(\S+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)

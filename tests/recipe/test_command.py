@@ -1,4 +1,4 @@
-"""Carries out docs/how-to/add-a-command.md in a copy of the source tree."""
+"""Executes the steps of docs/how-to/add-a-command.md in a copy of the source tree."""
 
 import pathlib
 import subprocess

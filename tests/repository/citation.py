@@ -1,5 +1,5 @@
-"""Checks CITATION.cff. Its version and licence must be those of CMakeLists.txt and LICENSE. The file must contain all
-keys that the format (cff 1.2.0) requires."""
+"""Checks CITATION.cff. Version and licence must be those of CMakeLists.txt and LICENSE. The file must contain all keys
+that the format (cff 1.2.0) requires."""
 
 import re
 import sys

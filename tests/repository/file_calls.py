@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Checks that the programs open files in base/files.cpp and write files in base/file_writing.cpp.
 
-Any other call in their C++ code that opens, creates or renames a file must be listed in file_calls.txt with its reason:
+The C++ code of the programs may contain other calls that open, create or rename a file. Each of these calls must be
+listed in file_calls.txt with its reason:
 
     PATH: COUNT CALL: REASON
 
-The list may only become shorter: if a call is removed, its entry must be deleted. Calls that open a folder are not
-counted.
+The list may only become shorter. If a call is removed from the code, its entry must be deleted. Calls that open a
+folder are not counted.
 """
 
 import pathlib
@@ -18,8 +19,8 @@ from tree import ROOT
 
 LIST = pathlib.Path(__file__).with_name("file_calls.txt")
 THE_PLACES = ("base/files.cpp", "base/file_writing.cpp")
-# Maps the name of a call in the list to a regular expression. open() without :: counts as the system call if
-# one of its arguments is a flag such as O_RDONLY.
+# Maps the name of a call in the list to a regular expression. The name open without :: stands for the system call,
+# which has a flag such as O_RDONLY as an argument.
 CALLS = {
     "fstream": r"\bstd::(?:basic_)?[io]?f(?:stream|ilebuf)\b",
     "fopen": r"\b(?:fopen|fopen64|freopen|fdopen|tmpfile)\s*\(",
@@ -76,7 +77,7 @@ def findings_in(sources, allowed):
 
 
 def check_itself():
-    """Checks that the regular expressions find every type of call in code, and do not find a call in a comment or a
+    """Checks that the regular expressions find every type of call in code, and find no call in a comment or a
     string."""
     examples = {"fstream": "std::ofstream file(path);", "fopen": "std::fopen(path, mode);",
                 "open": "int file = open(path.c_str(),\n  O_WRONLY | O_CREAT);", "mkstemp": "::mkstemp(name);",

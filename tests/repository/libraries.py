@@ -23,7 +23,7 @@ RUNTIME = {"c", "m", "gcc_s", "stdc++", "atomic", "asan", "ubsan", "tsan"}
 
 
 def linked(program, ninja):
-    """Returns the shared libraries in the link command of a program. The libraries of the C library are left out."""
+    """Returns the shared libraries in the link command of a program, without those of the C library."""
     build = re.search(rf"^build \S+/{program}: CXX_EXECUTABLE_LINKER.*\n(?:  .*\n)*", ninja, re.MULTILINE)
     line = re.search(r"^  LINK_LIBRARIES = (.*)$", build.group(0), re.MULTILINE).group(1)
     names = set(re.findall(r"/lib([^/\s]+?)\.so\S*", line)) | set(re.findall(r"(?:^|\s)-l(\S+)", line))

@@ -3,7 +3,7 @@
 
 A document names a test in inline code or in a code block. The name can be `Suite.Name` of GoogleTest,
 `repository.name` of CTest, or `name_test`, a program or a file. In Python, the name is `test_module`,
-`test_module.Class` or `test_module.Class.test_method`. `*` matches any text. In `.Name*`, the suite is that of the
+`test_module.Class` or `test_module.Class.test_method`. `*` matches any text. A word `.Name*` refers to the suite of the
 preceding word. The tests of CTest are read from BUILD_DIR.
 """
 
@@ -54,7 +54,7 @@ def cmake_texts():
 
 def ctest_tests(build):
     """Returns the names of the tests that CTest lists. Without a build, returns the names that are written out in a
-    CMakeLists.txt. In these names, * replaces a CMake variable."""
+    CMakeLists.txt. In the second case, * replaces each CMake variable in a name."""
     if build and (build / "CTestTestfile.cmake").exists():
         texts = [file.read_text() for file in (build / "tests").rglob("CTestTestfile.cmake")]
         return {name for text in texts for name in re.findall(r"^add_test\(\[=\[(.*?)\]=\]", text, re.MULTILINE)}
@@ -63,7 +63,8 @@ def ctest_tests(build):
 
 
 def test_programs():
-    """Returns the names of the GoogleTest programs, and the names of their source files without the ending."""
+    """Returns the names of the GoogleTest programs, and the names of the source files of these programs without the
+    ending."""
     programs = {name for text in cmake_texts() for name in re.findall(r"softgrip_test\((\w+)", text)}
     stems = {pathlib.PurePosixPath(name).stem for name in tree.names()
              if re.search(r"_test\.(cpp|sh)$", name) or re.fullmatch(r"tests/.*_test\.py", name)}

@@ -1,6 +1,6 @@
-"""Finds two types with the same name in the same namespace, in headers that do not include each other. Such types
-compile and link, but the program crashes, because the linker uses one destructor for both types. Prints each pair of
-types. The exit code is 1 if there is a pair.
+"""Finds two types with the same name in the same namespace, in headers that do not include each other. A program with
+two such types compiles and links, but it crashes, because the linker uses one destructor for both types. Prints each
+pair of types. The exit code is 1 if a pair exists.
 
     one_definition.py
 """
@@ -10,14 +10,14 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# A build includes only one of these two headers, so they may define the same types.
+# A build includes only one of these two headers, so both headers may define the same types.
 ALTERNATIVES = {"drivers/gpio/libgpiod_1.h", "drivers/gpio/libgpiod_2.h"}
 DECLARED = re.compile(r"^(?:struct|class|enum class) (?:\[\[\w+\]\] )?(\w+)(?: final)?(?: :.*)? \{", re.M)
 
 
 def types_of(text):
     """Returns (namespace, name) of every type whose declaration starts at the beginning of a line. The namespace is
-    the last one that is opened before the declaration."""
+    the one that the file has opened last before the declaration."""
     for found in DECLARED.finditer(text):
         opened = re.findall(r"^namespace ([\w:]+) \{", text[:found.start()], re.M)
         yield (opened[-1] if opened else "", found[1])

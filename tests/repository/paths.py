@@ -2,9 +2,9 @@
 """Checks that every file, link and program that the documents name exists, and that no page contains a heading twice:
 paths.py [--build BUILD_DIR]
 
-It reads the pages of the top folder and docs/. A word of inline code or of a code block is a path of the project if
-its first part is a folder of the project. The programs in build/ are read from the ninja file in BUILD_DIR. `*` and
-words in CAPITALS (values that the reader chooses) match any text; `{a,b}` matches a or b.
+The check reads the pages of the top folder and docs/. A word of inline code or of a code block is a path of the
+project if its first part is a folder of the project. The programs in build/ are read from the ninja file in BUILD_DIR.
+`*` and words in CAPITALS (values that the reader chooses) match any text; `{a,b}` matches a or b.
 """
 
 import argparse
@@ -44,7 +44,7 @@ def alternatives(word):
 
 
 def pattern_of(word):
-    """Returns a regular expression for the word, in which the values that the reader chooses match any text."""
+    """Returns a regular expression for the word, in which `*` and words in CAPITALS match any text."""
     return re.sub(r"<[^<>]*>|\b[A-Z][A-Z_]+\b(?![.])", "*", word)
 
 

@@ -1,5 +1,6 @@
-"""Checks that npm packages are pinned. The lock file must contain exact versions and a hash of each package. It must
-not contain the address of a registry, so that npm uses the registry that the machine is configured for."""
+"""Checks that npm packages are pinned. The lock file must contain the exact version and a hash of each package. The
+lock file must not contain the address of a registry, so that npm uses the registry in the configuration of the
+machine."""
 
 import json
 import pathlib

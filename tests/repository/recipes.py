@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Checks that the edits of the how-to pages fit the sources. The check makes the edits in a copy of the sources but
-does not build it; `ctest -L recipe` also builds the copy."""
+does not build the copy. `ctest -L recipe` makes the edits and builds the copy."""
 
 import pathlib
 import sys
@@ -14,8 +14,8 @@ import recipe  # noqa: E402
 
 
 def edits_of_the_cause(folder):
-    """Makes all edits of the page about causes. Returns the number of edits. If an edit does not fit, an
-    AssertionError describes it."""
+    """Makes all edits of docs/how-to/add-a-cause.md. Returns the number of edits. If an edit does not fit the sources,
+    raises an AssertionError that describes the edit."""
     add_a_cause.copy_of(ROOT, folder)
     made = 0
     for language, info, body in add_a_cause.FENCE.findall((ROOT / add_a_cause.PAGE).read_text()):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks each page of docs/results. The page must begin with the meaning of its result, followed by a table of
-version, date, command and conditions. Also checks that docs/README.md or docs/results/README.md has a link to each
+"""Checks each page of docs/results. The page must begin with the meaning of the result. A table of version,
+date, command and conditions must follow. Also checks that docs/README.md or docs/results/README.md has a link to each
 page of docs/."""
 
 import re

@@ -43,7 +43,8 @@ def included_by(folders):
 
 
 def table(known):
-    """Returns the table of the page. `known` maps the folder of each room to the text that describes its content."""
+    """Returns the table of rooms for docs/explanation/architecture.md. `known` maps the folder of each room to the
+    text that describes its content."""
     lines = ["| room | content | may include |\n", "|---|---|---|\n"]
     for folder, _, uses in rooms():
         lines.append(f"| `{folder}` | {known.get(folder, '')} | {', '.join(uses)} |\n")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Checks that the names of every *_test.cpp are in a namespace with the name of the file. So CI can compile many test
-files as one file without a conflict between helper functions (softgrip_compile_together in cmake/targets.cmake).
-Prints each file that breaks this rule. The exit code is 1 if there is such a file.
+"""Checks that the names of every *_test.cpp are in a namespace with the name of the file. This allows CI to compile
+many test files as one file: helper functions of different files do not conflict (softgrip_compile_together in
+cmake/targets.cmake). Prints each file that breaks this rule. The exit code is 1 if there is such a file.
 """
 
 import pathlib

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Checks that tests include every header, directly or through another header. If no test reaches a header,
-untested_headers.txt must list this header with a reason. The list may only become shorter. So a listed header must be
-removed from the list when a test reaches it or when it is deleted."""
+"""Checks that tests include every header, directly or through another header. If no test includes a header,
+untested_headers.txt must list this header with a reason. The list may only become shorter. If a test includes a listed
+header, or if a listed header is deleted, its entry must be removed."""
 
 import pathlib
 import re

@@ -11,7 +11,7 @@ using namespace drivers;
 
 const std::string boards = SOFTGRIP_SOURCE_DIR "/config/boards/";
 
-/// A small valid board map. Each test changes one of its lines.
+/// A small valid board map. Each test changes one line of this map.
 const std::string valid = R"(name: test
 source: a test
 address_base: 1
@@ -221,8 +221,8 @@ TEST(BoardMapFile, AModuleMayHaveOneDirectionOnly) {
   EXPECT_TRUE(inputs.map->has_inputs());
   EXPECT_FALSE(inputs.map->has_outputs());
 
-  // Keys of inputs require the key `inputs`, and keys of outputs require the key `outputs`. A module needs at
-  // least one of these two keys.
+  // If an entry has a key of an input, the key `inputs` is required. If it has a key of an output, the key
+  // `outputs` is required. A module needs at least one of the keys `inputs` and `outputs`.
   EXPECT_NE(
       read(without(valid, "inputs:", "outputs:")).problems.format().find("`input_status` needs `inputs`"),
       std::string::npos);
@@ -291,7 +291,7 @@ TEST(BoardMapFile, AHeartbeatHasTwoValuesThatDiffer) {
       << "only a heartbeat may have alternating values";
 }
 
-/// Some couplers reset their watchdog only for certain function codes, which a mask selects. The reader
+/// The watchdog of some couplers is reset only by certain function codes, which a mask selects. The reader
 /// computes this mask from the function codes in the file. It also checks that the mask includes the function
 /// code that writes the outputs.
 TEST(BoardMapFile, AMaskOfFunctionsIsMadeOfThem) {

@@ -1,4 +1,4 @@
-// Tests the key `channel_defaults` of a rig file, which contains the settings that all channels share.
+// Tests the key `channel_defaults` of a rig file. This key contains the settings that all channels share.
 
 #include "rig/channel_defaults.h"
 
@@ -34,7 +34,7 @@ class ChannelDefaultsTest : public ::testing::Test {
     problems = {};
     return read_rig(document::parse(path, text, problems), problems);
   }
-  /// Returns the number of the first line that contains `words`.
+  /// Returns the number of the first line of the text that contains `words`.
   [[nodiscard]] int line_of(const std::string& words) const {
     return 1 + static_cast<int>(std::count(
                    text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(words)), '\n'));

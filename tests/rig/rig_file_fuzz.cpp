@@ -1,6 +1,6 @@
 // Fuzz target: passes arbitrary bytes to the reader of rig files. The reader must return a rig with all
-// properties that RigFile guarantees, or refuse the bytes with a line and a column. Relative paths in the rig
-// file refer to the folder of config/rig.yaml.
+// properties that RigFile guarantees, or refuse the bytes with a message that states line and column.
+// Relative paths in the rig file refer to the folder of config/rig.yaml.
 //
 //   scripts/fuzz.sh rig_file_fuzz 30
 

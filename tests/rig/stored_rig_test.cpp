@@ -14,7 +14,7 @@ RigFile shipped(const std::string& name) {
   return rig ? std::move(*rig) : RigFile{};
 }
 
-/// Returns a copy of the files in which the paths are replaced by paths that do not exist.
+/// Copies the files. In the copy, replaces the path of each file by a path that does not exist.
 std::vector<InputFile> elsewhere(std::vector<InputFile> files) {
   const std::string from = SOFTGRIP_SOURCE_DIR "/config";
   for (InputFile& file : files) {

@@ -1,13 +1,13 @@
 #pragma once
 // Counts the memory allocations of a thread. The functions replace operator new in a test program. They also
-// replace malloc if no sanitizer brings its own allocator. They are in a separate translation unit, so that
-// the compiler cannot optimise the calls away.
+// replace malloc(), except in a build with a sanitizer that has its own allocator. The functions are in a
+// separate source file, so that the compiler cannot remove their calls.
 
 #include <cstddef>
 
 namespace softgrip::test {
 
-/// Starts or stops the count of this thread's allocations. The count is initially stopped.
+/// Starts or stops the count of the allocations of this thread. Initially, the count is stopped.
 void count_allocations(bool on) noexcept;
 /// Returns the number of allocations of this thread that have been counted so far.
 [[nodiscard]] std::size_t allocations() noexcept;

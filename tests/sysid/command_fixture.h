@@ -24,8 +24,8 @@ class CommandInFolder : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// Runs `softgrip ARGUMENTS` and returns the exit code. The outputs of the program are written to out.txt
-  /// and err.txt.
+  /// Runs `softgrip ARGUMENTS` and returns the exit code. Writes the standard output to out.txt and the
+  /// standard error to err.txt.
   int run(const std::string& arguments) {
     const std::string line =
         "cd '" + folder_.string() + "' && '" SOFTGRIP_PROGRAM "' " + arguments + " >out.txt 2>err.txt";

@@ -9,8 +9,8 @@
 namespace softgrip::sysid {
 namespace {
 
-using State = std::array<double, 3>;  // state of the finger: h, displacement of the first branch,
-                                      // displacement of the second branch
+using State = std::array<double, 3>;  // state of the finger: h, displacements of the first and the second
+                                      // creep branch
 
 State slope(const IntegratedFinger& f, const State& x, double p, double rate) {
   const double h = x[0];
@@ -22,7 +22,8 @@ State moved(const State& x, const State& k, double dt) {
   return {x[0] + dt * k[0], x[1] + dt * k[1], x[2] + dt * k[2]};
 }
 
-/// Integrates one step of `dt`. The pressure begins at `p` and changes with the constant rate `rate`.
+/// Integrates the state over one step of `dt`. The pressure begins at `p` and changes at the constant rate
+/// `rate`.
 State stepped(const IntegratedFinger& f, const State& x, double p, double rate, double dt) {
   const State k1 = slope(f, x, p, rate);
   const State k2 = slope(f, moved(x, k1, dt / 2), p + rate * dt / 2, rate);

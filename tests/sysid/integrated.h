@@ -1,6 +1,6 @@
 #pragma once
-// A simulated finger that uses no code of model/. The equations are taken from the literature. They are
-// integrated with the classical fourth-order Runge-Kutta method with 50 steps per sample.
+// A simulated finger that uses no code of model/. The equations are taken from the literature. The classical
+// fourth-order Runge-Kutta method integrates them with 50 steps per sample.
 
 #include <cstdint>
 
@@ -15,12 +15,12 @@ struct IntegratedFinger {
   double k0 = 310, k1 = 17, c1 = 215, k2 = 3.7, c2 = 1.9;        // k0, k1, k2 in kPa/mm; c1, c2 in kPa s/mm
 };
 
-/// Simulates the response of the finger to a signal. The finger starts at rest. White noise is added to the
-/// readings.
+/// Simulates the response of the finger to a signal. The finger starts at rest. The readings contain white
+/// noise.
 [[nodiscard]] Log integrated(const IntegratedFinger& finger, model::SignalName signal, double rate_hz,
                              double noise_mm, std::uint64_t seed);
 
-/// Returns the pressure behind the valve of `model` for the commands of the log.
+/// Simulates the valve of `model` for the commands of the log. Returns the pressure downstream of this valve.
 [[nodiscard]] std::vector<double> pressures_behind(const model::Model& model, const Log& log);
 
 }  // namespace softgrip::sysid

@@ -1,6 +1,6 @@
 #pragma once
-// Logs that a model generates, with added noise. Tests check that a fit recovers the parameters of this
-// model.
+// Logs that a model generates, with added noise. Tests check that a fit to these logs finds the parameters of
+// the model.
 
 #include <cstdint>
 #include <string>

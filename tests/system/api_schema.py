@@ -25,8 +25,8 @@ RESULTS = {"start": "accepted", "stop": "accepted", "vent": "accepted", "release
 
 
 def check(line, command=None):
-    """Checks a line. If the line does not match the schema, raises an AssertionError that describes the wrong part of
-    the line."""
+    """Checks a line. If the line does not match the schema, raises an AssertionError that describes the part of the
+    line that does not match."""
     result = line.get("result") if command and line.get("ok") else None
     name, value = (RESULTS.get(command, command), result) if result is not None else (None, line)
     error = jsonschema.exceptions.best_match(validator(name).iter_errors(value))

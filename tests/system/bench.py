@@ -28,8 +28,7 @@ SOFTGRIP = BUILD / "tools" / "softgrip"
 SOFTGRIP_RIG = BUILD / "tools" / "softgrip-rig"
 SOFTGRIPD = BUILD / "daemon" / "softgripd"
 
-# Longest waiting time [s]. It is generous, because the machine may be busy. It does not affect the result of
-# a test.
+# Longest waiting time [s]. It is long, because the machine may be busy. No result of a test depends on this time.
 PATIENCE_S = 30
 
 # In the tests, the rig runs at 100 Hz, and its bus may be silent for up to 0.6 s.
@@ -38,8 +37,8 @@ BUS_DOWN_CYCLES = 30  # shorter than the time-out of the board's watchdog
 
 
 def wait_for(what, condition, patience_s=PATIENCE_S, pause_s=0.02):
-    """Calls condition() until its result is true, and returns this result. After `patience_s`, fails with the message
-    `what`."""
+    """Calls condition() until its result is true, and returns this result. If the result is not true within
+    `patience_s`, fails with the message `what`."""
     end = time.monotonic() + patience_s
     while True:
         result = condition()
@@ -82,7 +81,8 @@ def resident_kib(pid):
 
 
 class Process:
-    """A child process whose output goes to files. At the end of its test, the process is ended if it still runs."""
+    """A child process whose output goes to files. If the process still runs at the end of the test, the test ends
+    it."""
 
     def __init__(self, name, arguments, folder, environment=None):
         self.name = name
@@ -113,7 +113,7 @@ class Process:
         self.child.wait(PATIENCE_S)
 
     def end(self, number=signal.SIGTERM):
-        """Asks the process to end and returns its exit code."""
+        """Requests that the process ends, and returns its exit code."""
         if self.running():
             self.send(number)
         return self.wait()
@@ -247,7 +247,7 @@ class BenchTest(unittest.TestCase):
                 print(f"--- {process.name}\n{process.output()[-2000:]}\n{process.errors()[-6000:]}", file=sys.stderr)
 
     def check_recordings(self):
-        """Checks that all recordings of the test have the properties that docs/reliability.md guarantees."""
+        """Checks that all recordings of the test have the properties that docs/reliability.md states."""
         for about in sorted((self.folder / "runs").glob("*/run.json")):
             self.assertEqual(recording_check.check(about.parent), [])
 

@@ -8,7 +8,8 @@ import bench
 import exit_codes
 
 TWIN = "config/models/bench_twin.yaml"
-# Address space that a process may use; the limit is not set in a build with a sanitizer, which needs terabytes.
+# Largest address space of a process. A process of a build with a sanitizer needs terabytes, so this limit is not set
+# there.
 MEMORY_BYTES = 5 << 30
 
 

@@ -11,11 +11,11 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
 
-# A browser that runs as root has no sandbox. The options switch off the network requests that the browser
-# itself makes, because they use processor time and delay the tests.
+# Options of the browser. As root, the browser has no sandbox. The other options switch off the network requests that
+# the browser makes by itself, because these requests use processor time and delay the tests.
 QUIET = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
          "--disable-background-networking", "--disable-component-update")
-# Returns the text colour and the background colour of each visible element with text.
+# Script that returns the text colour and the background colour of each visible element with text.
 TEXTS = """
 const seen = (element) => element.checkVisibility() && element.getClientRects().length > 0;
 const ground = (element) => {

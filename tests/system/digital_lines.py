@@ -38,8 +38,8 @@ class Lines:
         self.wire.ask(f"low {name} {time.monotonic_ns()}")
 
     def press_for(self, for_s, name="ESTOP"):
-        """Presses a button for `for_s` seconds. The function does not wait for answers, because a paused softgripd
-        does not answer."""
+        """Presses a button for `for_s` seconds. Does not wait for a confirmation, because a paused softgripd
+        sends none."""
         self.wire.file.write(f"high {name} {time.monotonic_ns()}\n")
         self.wire.file.flush()
         time.sleep(for_s)

@@ -19,7 +19,7 @@ ENDINGS = ("done", "refused", "signal", "fault", "full disk", "closed pipe")
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 IMPOSSIBLE = "-"
 ELSEWHERE = ()
-# Files that a command may create with their final name and without the functions of base/files.h.
+# Files that a command may create under their final name with other functions than those of base/files.h.
 GROWING = re.compile(r"/run\.csv$|^/dev/|^/proc/self/fd/\d+$")
 TEMPORARY = re.compile(r"/\.softgrip-[0-9a-f]{16}\.part$|^\.softgrip-[0-9a-f]{16}\.part$")
 
@@ -52,21 +52,21 @@ def each(test, commands, ending, check):
 
 @dataclasses.dataclass
 class Command:
-    """The command of one row of the table, and what the test needs to provoke its endings. `{out}` in a command line
-    is the folder of the outputs."""
+    """The command of one row of the table, and the data with which the test provokes the endings of this command.
+    `{out}` in a command line is the folder of the outputs."""
 
     done: str
     refused: str = ""
-    hangs_at: str = ""  # end of the path of an input that the command opens while it runs
+    hangs_at: str = ""  # end of the path of an input that the command opens during its run
     # File within {out} that the command replaces; empty if the command only writes to standard output.
     writes: str = ""
     new: bool = False  # true: the command never replaces an existing file
-    more: tuple = ()  # further command lines that write a file, for the test with a full disk
+    more: tuple = ()  # additional command lines that write a file, for the test with a full disk
 
 
 class FullDisk:
-    """A folder on a disk that fill() fills. If this user may not mount a disk, the kernel's limit of the file size
-    replaces the full disk."""
+    """A folder on a disk that fill() fills. If this user may not mount a disk, a limit on the file size
+    simulates the full disk."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -82,7 +82,7 @@ class FullDisk:
                 filler.write(bytes(4096))
 
     def limit(self):
-        """Prepares the child process before it runs the program."""
+        """Prepares the child process. Called in the child process before it executes the program."""
         if not self.mounted:
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (1, resource.RLIM_INFINITY))
@@ -150,7 +150,7 @@ class Runner:
                                  stderr=subprocess.PIPE, env=self.environment)
         os.close(writer)
         try:
-            # A command that sleeps and uses no more processor time waits in the kernel for the pipe.
+            # If a command sleeps and its processor time does not increase, it waits in the kernel for the pipe.
             def waits():
                 state, used = self.state_and_ticks(child.pid)
                 time.sleep(0.1)

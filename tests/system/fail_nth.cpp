@@ -13,7 +13,7 @@
 // With FAIL_HANG=NAME a call that opens a file whose path ends in NAME never returns, as on a mount without
 // its server. FAIL_TOLD is created in this case, too.
 
-#undef _FORTIFY_SOURCE  // its wrappers of recv and of other functions would define these functions twice
+#undef _FORTIFY_SOURCE  // its wrappers would define functions such as recv() a second time
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -69,7 +69,7 @@ Function real(const char* name) noexcept {
   return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
 }
 
-/// Creates the file FAIL_TOLD. The calls that this function makes are not counted.
+/// Creates the file FAIL_TOLD. Calls that this function itself makes are not counted.
 void tell() noexcept {
   if (order().told == nullptr) return;
   using Open = int (*)(const char*, int, ...);
@@ -78,8 +78,8 @@ void tell() noexcept {
   if (descriptor >= 0) ::close(descriptor);
 }
 
-/// Counts a call of a function of the group `call`. Returns true if this call must fail with the error number
-/// `error`.
+/// Counts a call of a function of the group `call`. If this call must fail, sets errno to `error` and returns
+/// true.
 bool fails(const char* call, int error) noexcept {
   if (order().call == nullptr || std::strcmp(order().call, call) != 0) return false;
   const long number = ++calls;
@@ -89,8 +89,8 @@ bool fails(const char* call, int error) noexcept {
   return true;
 }
 
-/// Writes the path to the file FAIL_CREATED if this call may create a file. The calls that this function
-/// makes are not counted.
+/// If this call may create a file, appends the path of the file to the file FAIL_CREATED. Calls that this
+/// function itself makes are not counted.
 void note_created(const char* path, bool creates) noexcept {
   if (!creates || order().created == nullptr) return;
   using Open = int (*)(const char*, int, ...);
@@ -104,7 +104,7 @@ void note_created(const char* path, bool creates) noexcept {
   if (noted <= 0) std::abort();
 }
 
-/// Never returns if FAIL_HANG names this path.
+/// Never returns if the path ends in the name that FAIL_HANG specifies.
 void hang_at(const char* path) noexcept {
   if (order().hang == nullptr) return;
   const std::size_t end = std::strlen(order().hang);
@@ -116,9 +116,9 @@ void hang_at(const char* path) noexcept {
 
 }  // namespace
 
-// Counts the allocations of C++ code in all threads from main() on. Allocations before main() are not
-// counted. At this time the program cannot report an error, and it has commanded no output. Allocations with
-// a special alignment are not counted.
+// Counts the allocations of C++ code in all threads from main() on. Before main(), a program cannot report an
+// error and has commanded no output, so these allocations are not counted. Allocations with a special
+// alignment are not counted either.
 void* operator new(std::size_t size) {
   void* const memory = in_main && fails("allocation", ENOMEM) ? nullptr : std::malloc(size > 0 ? size : 1);
   if (memory == nullptr) throw std::bad_alloc();
@@ -187,8 +187,8 @@ int openat(int folder, const char* path, int flags, ...) {
   return next(folder, path, flags, mode);
 }
 
-// With the hardening options, a program calls these functions instead of open() and openat() if the flags are
-// not constant.
+// If the flags are not constant, a program with hardening options calls these functions instead of open() and
+// openat().
 int __open_2(const char* path, int flags) {
   hang_at(path);
   if (fails("open", EMFILE)) return -1;
@@ -222,7 +222,7 @@ FILE* fopen64(const char* path, const char* mode) {
 ssize_t write(int descriptor, const void* data, size_t size) {
   if (fails("write", ENOSPC)) return -1;
   static const auto next = real<ssize_t (*)(int, const void*, size_t)>("write");
-  // On a disk that becomes full, a call writes a part of the data and the next call fails. So this call
+  // When a disk becomes full, one call writes a part of the data and the next call fails. This call therefore
   // writes one half of the data.
   if (size > 1 && fails("short_write", ENOSPC)) return next(descriptor, data, size / 2);
   return next(descriptor, data, size);
@@ -231,7 +231,7 @@ ssize_t write(int descriptor, const void* data, size_t size) {
 ssize_t writev(int descriptor, const iovec* parts, int count) {
   if (fails("write", ENOSPC)) return -1;
   static const auto next = real<ssize_t (*)(int, const iovec*, int)>("writev");
-  // A short write: this call writes only half of the first part that is not empty.
+  // Makes a short write: writes half of the first part that is not empty, and nothing else.
   int first = 0;
   while (first < count && parts[first].iov_len == 0) ++first;
   if (first < count && parts[first].iov_len > 1 && fails("short_write", ENOSPC)) {

@@ -20,13 +20,13 @@ import bench
 
 SHIM = bench.BUILD / "tests" / "system" / "libfail_nth.so"
 PATIENCE_S = 60
-# Groups of functions that are called in loops. Their calls are so frequent that N increases in steps of 25 %.
+# Groups of functions that a program calls in loops. These calls are frequent, so N increases in steps of 25 %.
 SPARSE = ("clock", "sleep", "send", "recv", "write", "open", "allocation")
 FILES = ("open", "write", "short_write", "fsync", "rename", "mkdir")
 PROCESS = ("mmap", "mlockall", "scheduler", "thread")
 WIRE = ("socket", "connect", "bind", "listen", "send", "recv", "sleep", "clock")
-# Accepted exit codes. 0: done, 1: failed, 3: refused, 4: input or output error, 5: not possible in this
-# state, 6: finished with a bad result.
+# Exit codes that a run may have after a failed call. 0: done, 1: failed, 3: refused, 4: input or output error, 5: not
+# possible in this state, 6: finished with a bad result.
 GOT_OVER_IT, VIRTUAL, REAL = (0,), (0, 1, 3, 4), (0, 1, 3, 4, 5, 6)
 SEQUENCE = """name: short
 steps:
@@ -36,7 +36,7 @@ steps:
 
 
 class Failure(AssertionError):
-    """Raised if a failed call had a forbidden consequence."""
+    """Exception for a failed call with a forbidden consequence."""
 
 
 def ends_in_a_destructor(done, call):
@@ -140,7 +140,7 @@ class Scenario:
 
     def writer(self, arguments, name, call, nth, from_then_on=False):
         """Runs a command that writes a file or a folder. After the run, either the old version or the complete new
-        version must exist."""
+        version of the output must exist."""
         out = self.folder / name
         before = "what was there before\n"
         if out.suffix:

@@ -33,7 +33,7 @@ PAGE = bench.SOURCE / "docs" / "results" / "fault-matrix.md"
 # Maps a phase of the matrix to its name in safe_action of the rig file. safe_action has no name for the phase
 # `connect`.
 PHASE_OF = {"idle": "idle", "closing": "closing", "holding": "holding", "venting": "releasing"}
-# Number of cycles for which a fault without a visible effect is observed.
+# Number of cycles for which the test observes a fault that must have no visible effect.
 OBSERVED_CYCLES = 80
 SETTLED_KPA = 0.1
 SEQUENCE = """name: matrix
@@ -49,7 +49,7 @@ steps:
   - release: {{duration_s: 3, purge_s: 0.5, timeout_s: 8, on_fail: vent}}
 """
 
-# The pressures of this sequence are below the rest pressure. The sequence takes as long as SEQUENCE.
+# The pressures of this sequence are below the rest pressure. The sequence has the same duration as SEQUENCE.
 VACUUM_SEQUENCE = """name: matrix
 steps:
   - grip:
@@ -62,19 +62,19 @@ steps:
   - hold: {{hold_s: {hold_s}, reverify_every_s: 0.25, on_fail: release}}
   - release: {{duration_s: 3, purge_s: 0.5, timeout_s: 8, on_fail: vent}}
 """
-# Raw 12-bit value of an output at its rest pressure of 0 kPa. This pressure is 0 V on the shipped rig and 5 V
-# on the vacuum rig.
+# Raw 12-bit value of an output at its rest pressure of 0 kPa. The shipped rig has 0 V at this pressure, and the vacuum
+# rig has 5 V.
 REST_RAW = {False: 0, True: 2047.5}
-# A constant command holds a vacuum. So a repeated old reply has the correct contents until the release.
+# A constant command holds a vacuum until the release. During this hold, a repeated old reply has the correct contents.
 NOT_BELOW_REST = {("repetition_of_contents", "holding")}
 
 
 class Wrong(AssertionError):
-    """Raised if the result of a cell differs from the result in the table."""
+    """Exception for a cell whose result differs from the result in the table."""
 
 
 class Skipped(Exception):
-    """Raised if a cell needs a permission that this user does not have, or a resource that does not exist."""
+    """Exception for a cell that needs a missing resource, or a permission that this user does not have."""
 
 
 def require(holds, sentence):
@@ -138,7 +138,7 @@ class Cell:
         self.processes = []
         self.proxy = None
         self.lines = None
-        self.seen = 0  # the largest id of an event before the fault
+        self.seen = 0  # largest id of the events before the fault
         self.measured = {}
 
     # --- Starting the processes
@@ -209,15 +209,16 @@ class Cell:
             self.lines = digital_lines.Lines(self.folder)
 
     def clear_emergency_stop(self):
-        """Resets the emergency stop. The daemon treats it as pressed after each start of the daemon."""
+        """Resets the emergency stop. After its start, the daemon treats the emergency stop as pressed until this
+        reset."""
         self.daemon.wait_for_state("faulted")
         bench.wait_for("an acknowledged start", lambda: self.daemon.ask("acknowledge")["ok"], pause_s=0.05)
         bench.wait_for("the enable output", lambda: "ENABLE" in self.lines.on())
         self.seen = self.daemon.events()[-1]["id"]
 
     def find_origin(self):
-        """Computes time.monotonic() at the daemon's time 0. A status can be as old as one tick, so the function takes
-        the smallest value that 20 statuses give."""
+        """Computes time.monotonic() at the daemon's time 0. A status can be one tick old, so the function computes
+        the time from 20 statuses and returns the smallest value."""
         self.origin = math.inf
         for n in range(20):
             now_s = self.daemon.status()["time_s"]
@@ -262,8 +263,8 @@ class Cell:
             self.proxy.clear()
 
     def first_other_write(self):
-        """The board ignores all writes since the fault began. Returns the time of the first write since then whose
-        values differ from the outputs of the board."""
+        """Since the beginning of the fault, the board has ignored all writes. Returns the time of the first ignored
+        write whose values differ from the outputs of the board."""
         before = [words for at, words in self.proxy.writes if at <= self.began][-1:]
         return next((at for at, words in self.proxy.writes
                      if at > self.began and before and wire_proxy.noticeable(words, before[0])), self.began)
@@ -303,7 +304,7 @@ class Cell:
         return self.emulator.commands_kpa()
 
     def away_kpa(self):
-        """Returns the difference between the outputs and their rest pressure of 0 kPa."""
+        """Returns the absolute difference between each output and the rest pressure of 0 kPa."""
         return [abs(kpa) for kpa in self.outputs_kpa()]
 
     def check_waits(self):
@@ -326,7 +327,7 @@ class Cell:
         if self.expected.get("outputs") != "spoiled":
             self.check_outputs(fault["code"])
             self.check_no_motion(writes_before)
-        if self.has_lines() and not self.expected.get("for_good"):  # a chip that was removed drives no output
+        if self.has_lines() and not self.expected.get("for_good"):  # if the chip was removed, it drives no output
             bench.wait_for("an enable output that has dropped", lambda: "ENABLE" not in self.lines.on(), 2)
             bench.wait_for("the fault lamp", lambda: "FAULT" in self.lines.on(), 2)
         self.find_origin()
@@ -350,7 +351,7 @@ class Cell:
         return safety["safe_action"][PHASE_OF[self.phase]]
 
     def check_outputs(self, code):
-        """Checks the outputs of the emulator, which are the values that real valves would receive."""
+        """Checks the outputs of the emulator. Real valves would receive these values."""
         action = self.action(code)
         self.measured["outputs"] = action
         if action == "vent":
@@ -398,8 +399,8 @@ class Cell:
         require(not self.latched(), "there is still a fault at the end")
 
     def check_unseen(self):
-        """Checks that the daemon reports no fault in a case that it cannot detect. The grip result is recorded
-        without a requirement."""
+        """Checks that the daemon reports no fault, because it cannot detect this fault. Records the grip result, but
+        does not require a specific one."""
         self.observe()
         fault = self.latched()
         require(not fault, f"a fault was detected: {fault and fault['code']}: {fault and fault['text']}")
@@ -428,7 +429,7 @@ class Cell:
     def reaction(self, fault):
         """Counts rows of the recording. Returns the number of ticks from the first effect of the fault to the latched
         fault."""
-        # The emergency stop at the start of the daemon also creates a recording.
+        # The emergency stop at the start of the daemon causes an additional recording.
         for recording in reversed(self.recordings()):
             about = json.loads((recording / "run.json").read_text())
             same = next((e for e in reversed(about["faults"]) if e["code"] == fault["code"]), None)
@@ -487,7 +488,7 @@ class Cell:
 
 def hurry(yes):
     """Raises the priority of this process, if this user has the permission. The process simulates a wire, and a wire
-    does not wait for other work of the machine. The process sleeps most of the time. Child processes start with the
+    is not delayed by other work of the machine. The process sleeps most of the time. Child processes start with the
     normal priority, because the test checks the priorities that they set."""
     with contextlib.suppress(PermissionError):
         os.sched_setscheduler(0, os.SCHED_FIFO if yes else os.SCHED_OTHER, os.sched_param(30 if yes else 0))
@@ -514,8 +515,8 @@ def run_once(name, phase, vacuum=False):
 
 
 def run_cell(name, phase, attempts=2, vacuum=False):
-    """Runs a cell. If the cell fails, runs it a second time, because the machine may have paused. The page of results
-    states the number of repetitions."""
+    """Runs a cell. If the cell fails, runs the cell a second time, because a pause of the machine may have caused the
+    failure. The page of results states the number of repetitions."""
     for attempt in range(1, attempts + 1):
         result = run_once(name, phase, vacuum)
         result["attempts"] = attempt

@@ -1,5 +1,5 @@
-"""Grips simulated parts with the shipped recipe, in virtual time or over a real connection. The judgement does not
-use values of the controller. It computes the gripping pressure from the values of the simulated plant and from a
+"""Grips simulated parts with the shipped recipe, in virtual time or over a real connection. The results are judged
+without values of the controller. The gripping pressure is computed from the values of the simulated plant and from a
 curve of `softgrip simulate`."""
 
 import csv
@@ -17,8 +17,8 @@ import bench
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MODEL = ROOT / "config/models/bench_twin.yaml"
-REACH_MM = 10  # the fingers search for a part up to this distance [mm] behind its expected position
-APPROACH_MM = 4  # the approach ends at this distance [mm] in front of the expected position
+REACH_MM = 10  # the fingers search for a part up to this distance [mm] beyond its expected position
+APPROACH_MM = 4  # the approach ends at this distance [mm] before the expected position
 # Tolerance of a pressure limit [kPa]. It covers the sensor noise, the resolution of the board and the filter
 # of the readings.
 TOLERANCE_KPA = 0.5
@@ -28,7 +28,7 @@ TOLERANCE_KPA = 0.5
 class Part:
     name: str
     expected_mm: float
-    # Motion of the finger against the part, as a share of its free motion beyond the surface of the part.
+    # Motion of the finger after contact with the part, as a fraction of its free motion beyond the surface of the part.
     yielding: float
 
 
@@ -41,13 +41,13 @@ class Trial:
     part: Part | None  # None if there is no part
     fingers: int
     offset_mm: float  # position of the part relative to the position that the recipe expects
-    tilt_mm: float  # additional distance of the part from the second finger
+    tilt_mm: float  # additional distance [mm] between the part and the second finger
     seed: int
 
     @property
     def slips(self):
-        """True if the part slips away while the fingers hold it. This happens in one of five trials over the real
-        connection."""
+        """Returns True if the part slips away while the fingers hold it. This happens in one of five trials over the
+        real connection."""
         return self.part is not None and random.Random(f"slips {self.seed}").random() < 0.2
 
     def place_mm(self, finger):
@@ -64,8 +64,8 @@ class Judged:
 
 
 class Finger:
-    """The true behaviour of the simulated fingers. A finger behaves like the model, or moves farther than the model
-    by a given percentage. Also computes the pressure for which the free finger has a given displacement 3 s after a
+    """The true behaviour of the simulated fingers. The displacement of a finger is that of the model, increased by a
+    given percentage. Also computes the pressure that moves the free finger to a given displacement within 3 s after a
     jump."""
 
     def __init__(self, softgrip, folder, farther_percent=0):
@@ -111,7 +111,7 @@ def drawn(seed):
 
 
 def recipe(trial):
-    """Returns the shipped recipe, in which the expected position is that of the part. Without a part, the recipe
+    """Returns the shipped recipe with the expected position of the part. Without a part, the recipe
     expects a stone."""
     expected_mm = (trial.part or PARTS[0]).expected_mm
     text = (ROOT / "config/sequences/pick_stone.yaml").read_text()
@@ -127,7 +127,7 @@ def rig(trial, finger_model, folder):
     text = text.replace("models/", f"{ROOT}/config/models/").replace("seed: 1", f"seed: {trial.seed}", 1)
     plants, channels = text.split("\nchannel_defaults:", 1)
     text = re.sub(r"model: \S+", f"model: {finger_model}", plants) + "\nchannel_defaults:" + channels
-    # The judgement reads the pressure without noise.
+    # The judgement uses the pressure without noise.
     text = text.replace("pressure_noise_kpa: 0.1", "pressure_noise_kpa: 0")
     text = re.sub(r"directory: \S+}", f"directory: {folder}/runs}}", text)
     text = re.sub(r"path: /\S+,", f"path: {folder}/softgrip.sock,", text)
@@ -160,8 +160,8 @@ def play(trial, finger, folder):
 
 
 def play_on_the_wire(trial, finger, folder):
-    """Runs a trial with softgripd and softgrip-rig in real time. For both fingers, the part is at the position that
-    the trial has for the first finger."""
+    """Runs a trial with softgripd and softgrip-rig in real time. Both fingers get the part position that the trial
+    states for the first finger."""
     shutil.copytree(ROOT / "config", folder / "config")
     (folder / "config/sequences/recipe.yaml").write_text(recipe(trial))
     there = () if trial.part is None else ("--object", f"{trial.place_mm(0)}:{trial.part.yielding}")
@@ -216,7 +216,8 @@ def peak_squeeze(rows, trial, number, finger, folder):
 
 
 def broken(trial, judged, allowed_kpa):
-    """Returns the guarantees of a grip that this trial has violated. The list is empty if there is no violation."""
+    """Returns the requirements on a grip that this trial has violated. Returns an empty list if no requirement is
+    violated."""
     told = [answer for answers in judged.answers for answer in answers]
     problems = []
     if judged.peak_kpa > allowed_kpa + TOLERANCE_KPA:

@@ -3,9 +3,9 @@
 
     tests/system/import_reports.py [FOLDER] [--softgrip PROGRAM]...
 
-FOLDER has a folder for each report. Without FOLDER the reports of foreign_files.py are made and imported. The table
-has a row for each file. With two programs it has a column for each program, to compare two versions. The exit code is
-1 if a run has crashed."""
+FOLDER has a folder for each report. Without FOLDER, writes and imports the reports of foreign_files.py. The table has
+a row for each file. With two programs, the table has a column for each program, to compare two versions. The exit code
+is 1 if a run has crashed."""
 
 import argparse
 import json

@@ -1,4 +1,5 @@
-"""Runs a process of another user, who has no permission for the rig, to test what every local user can do."""
+"""Runs a process of another user who has no permission for the rig. Tests use
+this process to find out what every local user can do."""
 
 import hashlib
 import os
@@ -27,8 +28,8 @@ def lock_folders():
 
 
 class OtherUser:
-    """A process of another user that occupies a socket name or a path while it runs. `backlog`: with None the socket
-    does not listen, with 0 it accepts no connection."""
+    """A process of another user that occupies a socket name or a path while it runs. If `backlog` is None, the socket
+    does not listen. If it is 0, the socket accepts no connection."""
 
     def __init__(self, test, address, backlog=5):
         ready, told = os.pipe()
@@ -61,7 +62,7 @@ class OtherUser:
                     raise
         if backlog is not None:
             held.listen(backlog)
-        if backlog == 0:  # fills the queue of the socket, so that every further connection has to wait
+        if backlog == 0:  # fills the queue of the socket, so that every new connection has to wait
             full = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
             full.connect(address)
         os.write(told, b"1")

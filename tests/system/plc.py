@@ -19,7 +19,7 @@ NOT_GIVEN = 0x8000
 
 
 class Map:
-    """The register addresses by name. They are read from the map file that the gateway uses."""
+    """Maps the names of registers to their addresses. Reads them from the map file that the gateway uses."""
 
     def __init__(self, path):
         registers = yaml.safe_load(path.read_text())["registers"]
@@ -91,7 +91,7 @@ class Master:
         self.write("master_heartbeat", self.beats)
 
     def synchronise(self):
-        """Waits until no command is in progress, and then takes over the counter value of the gateway without giving
+        """Waits until no command is in progress, and then reads the counter value of the gateway. Does not send
         a command."""
         bench.wait_for("the end of what is under way", lambda: self.read("outcome") != 1)
         self.counter = self.read("done_counter")

@@ -19,5 +19,5 @@ def sheets(page, folder):
 
 
 def before_appendix(printed):
-    """Returns the number of printed pages before the appendix. The appendix is for readers who check the values."""
+    """Returns the number of printed pages before the appendix."""
     return next(i for i, sheet in enumerate(printed) if sheet.lstrip().startswith("Appendix"))

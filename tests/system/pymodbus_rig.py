@@ -1,9 +1,9 @@
-"""Simulates an ADAM-6024 with two soft fingers. It serves the registers with pymodbus and shares no code with the
+"""Simulates an ADAM-6024 with two soft fingers. Serves the registers with pymodbus and shares no code with the
 emulator.
 
 pymodbus_rig.py [OBJECT_MM]     an object stops both fingers at this displacement
-Prints {"port": N}. Then it answers each line on stdin with a line of JSON that contains the written values and the
-number of writes.
+Prints {"port": N}. Then the program answers each line on stdin with a line of JSON. This line contains the written
+values and the number of writes.
 """
 
 import asyncio
@@ -30,7 +30,7 @@ FIRST_OUTPUT = 10
 INPUT_REGISTERS = 4  # function code of a read of input registers, as pymodbus passes it to setValues()
 STEP_S = 0.001
 NOISE_COUNTS = 3
-YIELDING = 0.1  # motion of a finger against the object, as a share of its free motion beyond the object
+YIELDING = 0.1  # motion of a finger after contact with the object, as a fraction of its free motion beyond the object
 
 
 class Finger:
@@ -72,7 +72,7 @@ class Finger:
 
     def raw(self, count):
         """Returns the raw reading of a 16-bit input with a range of -10 to 10 V. The sensor outputs 0 to 10 V for -5
-        to 45 mm. Successive readings always differ by some noise."""
+        to 45 mm. Noise is added, so that successive readings always differ."""
         volts = (self.displacement_mm() + 5) / 50 * 10
         return round((volts + 10) / 20 * 65535) + count % NOISE_COUNTS - 1
 
@@ -106,7 +106,8 @@ class Board(ModbusSlaveContext):
                 self.fingers[index].move()
                 self.fingers[index].command_kpa = value / 4095 * 100
                 self.highest_kpa = max(self.highest_kpa, self.fingers[index].command_kpa)
-        self.store["i"].setValues(FIRST_REGISTER + address, list(values))  # function 4 can read the outputs back
+        self.store["i"].setValues(FIRST_REGISTER + address, list(values))  # makes the outputs readable with function
+                                                                           # code 4
         super().setValues(fc_as_hex, address, values)
 
     def told(self):

@@ -1,5 +1,5 @@
-"""Runs a daemon on a simulated rig in which a pause of the machine causes no fault. This rig is for tests in which
-clients fail but the rig does not fail."""
+"""Runs a daemon on a simulated rig in which a pause of the machine causes no fault. Tests with failing clients use this
+rig, so that no fault of the rig disturbs them."""
 
 import re
 
@@ -33,7 +33,8 @@ class QuietRigTest(bench.BenchTest):
         return sequence["request"] if sequence and sequence["ended"] is None else None
 
     def ended(self, request):
-        """Returns how the sequence with this request id ended, or None if it still runs."""
+        """Returns the code with which the sequence with this request id has ended, or None if this sequence still
+        runs."""
         for event in self.softgripd.events():
             if event["kind"] == "sequence_finished" and event["request"] == request:
                 return event["code"]

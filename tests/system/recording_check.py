@@ -1,7 +1,8 @@
-"""Checks recordings against the guarantees of docs/reliability.md: recording_check.py RECORDING...
+"""Checks that recordings have the properties that docs/reliability.md states: recording_check.py RECORDING...
 
 The script reads run.csv and run.json. It also reads the rig file to which run.json refers, if this file has not
-changed since the recording. The exit code is 6 if a recording violates a guarantee; the message states the row.
+changed since the recording. If a recording does not have a property, the exit code is 6, and the message states the
+row.
 """
 
 import argparse
@@ -14,9 +15,10 @@ import sys
 
 import yaml
 
-# States in which a command may move away from the rest pressure, as in may_rise() of control/tick/tick.h.
+# States in which a command may move away from the rest pressure. They must equal those in may_rise() of
+# control/tick/tick.h.
 MAY_RISE = ("resynchronising", "running")
-# Maps a state to the states that may follow it, as in control/tick/supervisor.h.
+# Maps a state to the states that may follow it. The map must equal that in control/tick/supervisor.h.
 NEXT = {
     "starting": ("idle", "faulted"),
     "idle": ("resynchronising", "running", "stopping", "faulted"),
@@ -110,8 +112,8 @@ class Recording:
                 self.says(row, f"{command} kPa is out of the range of its limits")
 
     def check_step(self, name, before, row):
-        """Checks two successive ticks. The state may change only as NEXT permits. A command may move away from rest
-        only during a sequence and within the slew limit."""
+        """Checks two successive ticks. The state may change as NEXT permits, and in no other way. During a sequence, a
+        command may move away from rest within the slew limit. Outside a sequence, it must not move away from rest."""
         if row["state"] != before["state"] and row["state"] not in NEXT[before["state"]]:
             self.says(row, f"{before['state']} is followed by {row['state']}")
         for side, slew in ((1, "slew_up_kpa_per_s"), (-1, "slew_down_kpa_per_s")):
@@ -125,8 +127,8 @@ class Recording:
                                f"{self.allowed(name, slew):.6f} are its slew")
 
     def check_return(self, name, before, row, last):
-        """Checks that the return to rest stays within the slew limit. Safe outputs during a fault and at the end of
-        the recording are exempt, because they are written in one step."""
+        """Checks that the return to rest stays within the slew limit. Exceptions are the safe outputs during a fault
+        and at the end of the recording, because they are written in one step."""
         if name not in self.limits or row["state"] == "faulted" or last:
             return
         for side, slew in ((1, "slew_down_kpa_per_s"), (-1, "slew_up_kpa_per_s")):
@@ -141,8 +143,8 @@ class Recording:
         return max(0.0, side * (float(row["pressure_command_kpa"]) - self.rest(name)))
 
     def allowed(self, name, slew):
-        """Returns the largest permitted change of a command in a tick. A missed tick of the loop does not permit a
-        larger change."""
+        """Returns the largest permitted change of a command in a tick. If the loop has missed a tick, a larger change
+        is not permitted."""
         return self.limits[name][slew] * self.about["decimation"] / self.about["rate_hz"]
 
     # --- Checks of results and events
@@ -177,7 +179,7 @@ class Recording:
 
 
 def check(folder):
-    """Returns a sentence for each guarantee that a recording violates."""
+    """Returns a sentence for each property of docs/reliability.md that a recording does not have."""
     return Recording(pathlib.Path(folder)).check()
 
 

@@ -19,8 +19,8 @@ def board_priority():
 
 
 def rig_file(folder, rate_hz, *changes):
-    """Writes a rig file with half of the highest possible control rate. A kernel thread transfers the bytes of a
-    pseudo-terminal, and on a busy machine this thread has to wait."""
+    """Writes a rig file with half of the highest possible control rate. The rate is low because a kernel thread
+    transfers the bytes of a pseudo-terminal, and this thread has to wait on a busy machine."""
     text = (folder / "config" / "rig_rtu.yaml").read_text()
     for pattern, replacement in (
             (r"device: .*", f"device: {folder}/line"), (r"rate_hz: \d+", f"rate_hz: {rate_hz}"),
@@ -40,8 +40,8 @@ def rig_file(folder, rate_hz, *changes):
 
 
 class Shared(bench.Emulator):
-    """An emulator whose control connection is shared by the test and a watcher. The emulator accepts one control
-    client at a time, so a lock protects the connection."""
+    """An emulator for a test and a watcher. Both use the same control connection, because the emulator accepts one
+    control client at a time. A lock protects this connection."""
 
     def __init__(self, folder, *arguments):
         self.one_at_a_time = threading.Lock()
@@ -66,7 +66,7 @@ class Emulator(Shared):
 
 
 class Watcher:
-    """Replaces the proxy of the TCP tests. It changes no message and records the outputs every 5 ms."""
+    """Replaces the proxy of the TCP tests. Changes no message, and records the outputs every 5 ms."""
 
     def __init__(self, emulator):
         self.writes = []

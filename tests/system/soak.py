@@ -1,5 +1,5 @@
 """Runs softgripd for hours at 1 kHz over TCP with softgrip-rig. It runs one sequence after the other while the
-machine does other work. The run is disturbed by clients that connect and leave, pauses and a full disk
+machine does other work. Disturbances are clients that connect and leave, pauses, and a full disk
 (soak_disturbances.py).
 
 scripts/soak.sh runs this program. Once a minute, the program writes a line to soak.csv: memory, descriptors,
@@ -25,11 +25,11 @@ import bench
 import soak_disturbances
 
 RATE_HZ = 1000
-# Number of cycles without a bus exchange before a fault. On a shared machine, pauses below 100 ms are caused
-# by the machine, not by the bus.
+# Number of cycles without a bus exchange before a fault. They last 100 ms: on a shared machine, shorter pauses are
+# caused by the machine, not by the bus.
 PATIENCE_CYCLES = 100
-# Each entry: the part between the fingers, the sequence, how the sequence must end, and the required result
-# of both fingers.
+# Each entry contains four values: the part between the fingers, the sequence, the required end of the sequence, and the
+# required result of both fingers.
 ROUND = (
     ("stone", "pick_stone", "done", "RELEASED"),
     ("out", "empty_grip", "failed", "NO PART"),
@@ -110,7 +110,7 @@ class Soak:
         print(f"  {sentence}", flush=True)
 
     def take_events(self, awaited=()):
-        """Reads new events. Counts and prints the faults among them, without the expected faults."""
+        """Reads new events. Counts and prints the faults among these events, except the expected faults."""
         events = self.daemon.events(self.newest)
         for event in events:
             self.newest = event["id"]
@@ -124,7 +124,7 @@ class Soak:
         self.emulator.ask(f"object {item}" if item == "out" else "object back")
         if item != "out":
             self.emulator.ask(f"object {item}")
-        # Each sequence uses a new client, so that connections are opened and closed all the time.
+        # Each sequence uses a new client, so connections are opened and closed during the whole run.
         client = bench.Lines(self.folder / "softgripd.sock")
         reply = json.loads(client.ask(json.dumps({"command": "start", "sequence": sequence})))
         client.close()
@@ -152,8 +152,8 @@ class Soak:
         self.daemon.wait_for_state("idle")
 
     def read_recordings(self):
-        """Reads every recording to its end and deletes it. The rows of both channels must have intervals of one tick,
-        and no row may be missing."""
+        """Reads every recording to its end and then deletes the recording. The rows of both channels must have
+        intervals of one tick, and no row may be missing."""
         for recording in sorted((self.folder / "runs").iterdir()):
             about = json.loads((recording / "run.json").read_text())
             if about["state"] == "recording":
@@ -165,8 +165,8 @@ class Soak:
             with open(recording / "run.csv", newline="") as file:
                 for row in csv.reader(file):
                     rows += 1
-            # The file has one header row and two rows per tick. The time of a row has the jitter of the
-            # wake-up, so missing ticks are computed from the total time.
+            # The file has one header row and two rows per tick. The times of single rows vary with the wake-up of the
+            # loop, so the number of missing ticks is computed from the total time.
             self.missing += max(0, round(float(row[0]) * RATE_HZ) + 1 - (rows - 1) // 2)
             if rows - 1 != about["rows"]:
                 self.note(f"{recording.name}: {rows - 1} rows, run.json says {about['rows']}")
@@ -221,7 +221,8 @@ class Soak:
 
     def verdict(self, exit_code):
         """Returns a sentence for each requirement that is not met. The list is empty if all requirements are met."""
-        # The first round fills buffers once. So the memory is compared with its value after the first round.
+        # During the first round, buffers are filled for the first time. The memory is therefore compared with its value
+        # after the first round.
         settled = self.samples[min(2, len(self.samples) - 1)]
         last = self.samples[-1]
         wrong = list(self.unexpected)

@@ -14,7 +14,7 @@ import bench
 SHORT_PAUSE_S = 0.03  # the rig of the soak test must tolerate this pause
 LONG_PAUSE_S = 0.8    # longer than the time-out of the board's watchdog
 SETTLED_KPA = 0.1
-RUNS_MIB = 64         # size of the disk for the recordings, if a separate disk can be mounted
+RUNS_MIB = 64         # size of a separate disk for the recordings [MiB], if this user may mount one
 
 
 class Runs:
@@ -55,7 +55,8 @@ class Disturbances:
         self.soak.emulator.ask("object back")
         self.soak.emulator.ask("object stone")
         self.soak.daemon.start(sequence)
-        time.sleep(self.chance.uniform(0.5, 6))  # the sequence is then in its approach, its closing or its hold
+        time.sleep(self.chance.uniform(0.5, 6))  # after this time, the sequence is in its approach, its closing or its
+                                                 # hold
 
     def finish(self, what):
         """Waits until the sequence has ended normally."""

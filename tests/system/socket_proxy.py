@@ -12,9 +12,9 @@ TO_DAEMON, TO_CLIENT = "to_daemon", "to_client"
 class SocketProxy:
     """Listens at `path`, passes the bytes of clients to the daemon at `daemon_path`, and passes the answers back.
 
-    `held` contains the directions in which the proxy keeps the bytes back. If `refuses` is true, the proxy closes new
-    connections. let_go() passes the kept bytes on, even if the client has left. The kernel does the same for a daemon
-    that is paused.
+    `held` contains the directions in which the proxy stores the bytes and does not forward them. If `refuses` is true,
+    the proxy closes new connections. let_go() forwards the stored bytes, even if the client has closed its connection.
+    The kernel does the same for a paused daemon.
     """
 
     def __init__(self, path, daemon_path):
@@ -50,7 +50,7 @@ class SocketProxy:
         self._wake()
 
     def waiting(self, direction):
-        """Returns the bytes that the proxy keeps back, by connection."""
+        """Returns the bytes that the proxy has stored, by connection."""
         with self._lock:
             return [pair[2 if direction == TO_DAEMON else 3] for pair in self._pairs]
 
@@ -62,7 +62,7 @@ class SocketProxy:
         self._wake()
 
     def cut(self):
-        """Closes all connections on both sides and drops the bytes that the proxy keeps back."""
+        """Closes all connections on both sides and discards the stored bytes."""
         with self._lock:
             for pair in self._pairs:
                 for end in pair[:2]:
@@ -123,8 +123,8 @@ class SocketProxy:
                     with contextlib.suppress(OSError):
                         pair[other].sendall(pair[waits])
                 pair[waits] = b""
-        # If one side closes its connection, the proxy first passes the remaining bytes of this side on. It
-        # then closes the other side, too.
+        # If one side closes its connection, the proxy first forwards the remaining bytes of this side. It then closes
+        # the connection on the other side.
         if (pair[0] is None and not pair[2]) or (pair[1] is None and not pair[3]):
             for end in pair[:2]:
                 if end:

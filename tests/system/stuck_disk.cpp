@@ -6,7 +6,7 @@
 // The first call that waits creates the file STUCK_WHILE.waits. A test then knows that the program waits for
 // the disk.
 
-#undef _FORTIFY_SOURCE  // its wrapper of read() would define this function twice
+#undef _FORTIFY_SOURCE  // its wrapper would define read() a second time
 
 #include <dirent.h>
 #include <dlfcn.h>

@@ -14,7 +14,7 @@ import pyte
 
 
 class Terminal:
-    """Runs a program on its own terminal. Keeps the output both as the text on the screen and as bytes."""
+    """Runs a program on its own terminal. Stores the output as the text on the screen and as bytes."""
 
     def __init__(self, arguments, folder, columns=80, rows=24, environment=None):
         self.master, self.slave = pty.openpty()
@@ -29,7 +29,7 @@ class Terminal:
             env={**os.environ, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8", "TZ": "UTC", **(environment or {})})
 
     def _own_terminal(self):
-        """Makes the pseudo-terminal the controlling terminal of the program. Ctrl-C, Ctrl-Z and a hang-up then have
+        """Makes the pseudo-terminal the controlling terminal of the program, so that Ctrl-C, Ctrl-Z and a hang-up have
         the same effect as on a real terminal."""
         os.setsid()
         fcntl.ioctl(self.slave, termios.TIOCSCTTY, 0)

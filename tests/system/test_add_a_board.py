@@ -1,5 +1,5 @@
-"""Carries out docs/how-to/add-a-board.md. The test checks the board map of the page, uses it for exchanges, and
-compiles the driver."""
+"""Executes the steps of docs/how-to/add-a-board.md. The test checks the board map of the page, uses it for exchanges,
+and compiles the driver."""
 
 import pathlib
 import re

@@ -1,5 +1,5 @@
-"""Tests logs and models with a bending angle as the output. The values must equal those of the same finger in mm.
-Every text must have the unit of the angle."""
+"""Tests logs and models whose output is a bending angle. The values must equal those of the same finger with its output
+in mm. Every text must have the unit of the angle."""
 
 import csv
 import html

@@ -73,8 +73,8 @@ class Baseline(bench.BenchTest):
         self.assertEqual(about["check"]["verdict"], "unchanged")
         self.assertEqual((about["rig"]["channel"], about["rig"]["simulated"]), ("left", True))
         (self.folder / "base").rename(self.folder / "healthy")
-        # The changed model moves 10 % less than the original for every pressure. This holds for the immediate
-        # displacement and for the creep.
+        # The changed model moves 10 % less than the original model at every pressure. The immediate displacement and
+        # the creep are both 10 % smaller.
         def weaker(line):
             value = float(line[2]) * (0.9 if "mm_per_kpa" in line[1] else 1 / 0.9)
             return f"{line[1]}: {value}"
@@ -150,7 +150,7 @@ class Baseline(bench.BenchTest):
         self.assertIn("run_2, 1 of 1: sharp_steps", done.stderr)
         self.assertLess(max(board.pressures_kpa()), 5, "and it is vented")
         about = self.check_whole(1)
-        # One short log has too little data for a fixed verdict, so the test accepts any verdict.
+        # One short log contains too little data to determine the verdict, so the test accepts any verdict.
         check = about["check"]
         self.assertEqual(done.returncode, 0 if check["verdict"] == "unchanged" else 6)
         self.assertLess(check["second_run_rms_mm"], 2 * check["healthy_heldout_rms_mm"])

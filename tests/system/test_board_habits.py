@@ -11,8 +11,8 @@ import bench
 
 
 class OneTable(socketserver.ThreadingTCPServer):
-    """A proxy for an emulator that answers both read functions. With the proxy, only one of these functions can read
-    the inputs, registers 0 to 15."""
+    """A proxy in front of an emulator. The emulator answers both read functions. Through the proxy, only one of the two
+    functions can read the inputs (registers 0 to 15)."""
     daemon_threads = allow_reuse_address = True
 
     def __init__(self, behind, function, code):
@@ -100,11 +100,11 @@ class BoardHabits(bench.BenchTest):
         return name
 
     def described(self, port, board, session=""):
-        """Writes a rig file that uses this board map and has these additional keys for the session."""
+        """Writes a rig file that uses this board map. `session` contains additional keys of the session."""
         return self.rig(port, [(r"map: boards/adam-6024.yaml", f"map: boards/{board}.yaml"), (r"unit: 1", "unit: 1" + session)])
 
     def examined(self, described, emulated, *arguments, fault="", session="", in_front=None):
-        """Returns the report of softgrip doctor on a board that does not match its board map."""
+        """Returns the report of softgrip doctor about a board that does not match its board map."""
         if fault:
             arguments += ("--faults", self.write("fault.yaml", f"faults:\n  - {{name: it, kind: {fault}}}\n"))
         emulator = self.emulator(*arguments, board=emulated)

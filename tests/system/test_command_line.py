@@ -47,7 +47,7 @@ class Offline(bench.BenchTest):
 
     def test_check_finds_everything_at_once(self):
         files = sorted((self.folder / "config").rglob("*.yaml"))
-        # The sequence of the vacuum rig does not fit any other rig.
+        # The sequence of the vacuum rig is valid for the vacuum rig only.
         vacuum = [path for path in files if "vacuum" in path.parts]
         good = self.softgrip("check", *(path for path in files if path not in vacuum))
         self.assertIn("rig 'bench': ok", good.stdout)
@@ -162,7 +162,7 @@ class Online(bench.BenchTest):
         return written
 
     def test_the_live_view_gives_the_terminal_back(self):
-        for keys in (b"q", b"\x03"):  # the key q, and Ctrl-C
+        for keys in (b"q", b"\x03"):  # ends the program with the key q and with Ctrl-C
             written = self.live({}, keys)
             self.assertIn(b"displacement", written)
             self.assertTrue(written.startswith(b"\x1b[?1049h\x1b[?25l"), written[:40])

@@ -1,5 +1,5 @@
-"""Tests servers that cannot open any more file descriptors. The servers must wait without load, and their existing
-connections must continue."""
+"""Tests servers that cannot open another file descriptor. The servers must wait without using processor time, and their
+existing connections must continue."""
 
 import os
 import resource
@@ -12,7 +12,7 @@ from test_web_limits import processor_s
 
 class Descriptors(bench.BenchTest):
     def check_recordings(self):
-        """Checks nothing, because the tests of this class record nothing."""
+        """Replaces the check of recordings, because the tests of this class record nothing."""
 
     def test_the_emulator_does_not_spin(self):
         rig = self.emulator()

@@ -82,7 +82,7 @@ class Devices(unittest.TestCase):
         self.assertEqual((valve / "out_voltage0_raw").read_text().split()[0], "0")
         (self.folder / "iio/iio:device0").unlink()
         other = self.plug(0, "1-0062", "mcp4725")
-        # This text is no number, so the session with the board ends.
+        # This text is not a number, so the daemon ends the session with the board.
         (sensors / "in_voltage0_raw").write_text("gone\n")
         bench.wait_for("the end of the session", lambda: "no number" in log.read_text())
         (sensors / "in_voltage0_raw").write_text("8000\n")

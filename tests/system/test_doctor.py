@@ -20,7 +20,7 @@ class Doctor(bench.BenchTest):
     def test_a_healthy_rig_is_fit_and_left_vented(self):
         emulator = self.emulator()
         report, findings = self.doctor(self.rig(emulator.port), "--move", expect=None)
-        # The tests may fail the punctuality checks of the doctor, because the machine may be busy.
+        # In the tests, the punctuality checks of the doctor may fail, because the machine may be busy.
         failed = {name for name, finding in findings.items() if finding["verdict"] == "fail"}
         self.assertLessEqual(failed, {"timer", "bus time"}, report)
         for name in ("board", "sensor left", "valve left", "finger right", "model right", "safe state"):
@@ -40,8 +40,8 @@ class Doctor(bench.BenchTest):
         self.assertIn("cable", findings["board"]["advice"])
 
     def failures(self, report):
-        """Returns the names of the failed checks. The punctuality checks are left out, because the machine may be
-        busy."""
+        """Returns the names of the failed checks. Omits the punctuality checks, because they may fail on a busy
+        machine."""
         return [finding["name"] for finding in report["findings"]
                 if finding["verdict"] == "fail" and finding["name"] not in ("timer", "bus time", "loop")]
 
@@ -213,8 +213,8 @@ class Calibrate(bench.BenchTest):
         self.assertEqual(child.returncode, 0, said)
         error = float(re.search(r"sensor: error between the points ([\d.]+) mm", out).group(1))
         sensor = self.line_in(out, "sensor")
-        # The test reads the gauge shortly before softgrip averages the sensor. The finger creeps between
-        # these two times.
+        # The test reads the gauge shortly before softgrip averages the readings of the sensor. Meanwhile, the finger
+        # creeps.
         for volts in (2, 4):
             self.assertAlmostEqual(sensor(volts), self.true_mm(volts), delta=error + 0.3, msg=out)
         self.assertEqual(max(emulator.commands_kpa()), 0)
@@ -300,8 +300,8 @@ class Calibrate(bench.BenchTest):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         before = rig.read_bytes()
-        # The limit of the file size makes the write fail. restore_signals=False keeps SIGXFSZ ignored,
-        # because this signal would end the process.
+        # The limit on the file size makes the write fail. restore_signals=False keeps SIGXFSZ ignored; otherwise, this
+        # signal would end the process.
         done = subprocess.run([bench.SOFTGRIP, "calibrate", "--rig", rig, *self.QUICK, "--gauge-mm", "3.6", "19", "--write",
                                "--out", "-"], cwd=self.folder, capture_output=True, text=True, restore_signals=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))

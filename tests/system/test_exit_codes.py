@@ -48,8 +48,8 @@ DESK = {
                            f"investigate --model {TWIN} --data bad.csv --rig config/rig.yaml --rig-channel left --yes "
                            "--out {out}/found", "log.csv", "found/investigation.json"),
 }
-# Commands that send requests to the daemon, each with the state of the daemon that it needs. The commands are
-# in an order in which one daemon can answer all of them.
+# Commands that send requests to the daemon. For each command, the state of the daemon that the command needs. The order
+# of the commands allows one daemon to answer all of them.
 CLIENTS = {
     "status": Command("status"),
     "sequences": Command("sequences"),
@@ -62,8 +62,8 @@ CLIENTS = {
     "acknowledge": Command("acknowledge", "acknowledge"),
     "start --wait": Command("start short.yaml --wait", "start short.yaml --wait"),
 }
-# Commands that move a rig. `{rig}` is replaced by the rig file of an emulated board, and `{out}` by the
-# folder of the outputs.
+# Commands that move a rig. The test replaces `{rig}` by the rig file of an emulated board, and `{out}` by the folder of
+# the outputs.
 MOTION = {
     "run": Command("run short.yaml --rig {rig} --no-socket --record {out}/rec", "run bad.yaml --rig {rig} --no-socket",
                    writes="rec"),
@@ -321,7 +321,7 @@ class Clients(bench.BenchTest):
 
 
 class Motion(bench.BenchTest):
-    """Tests the commands that move a rig. Whatever the ending of a command, the outputs must be safe afterwards."""
+    """Tests the commands that move a rig. After any ending of a command, the outputs must be safe."""
 
     def setUp(self):
         super().setUp()
@@ -335,8 +335,8 @@ class Motion(bench.BenchTest):
         self.count = 0
 
     def use_rested_fingers(self):
-        """Starts a new rig with rested fingers. A finger creeps for a minute after a pressure, and doctor compares
-        the motion of the finger with the model."""
+        """Starts a new rig whose fingers have never been under pressure. After a pressure, a finger would creep for a
+        minute, and this creep would disturb the comparison of the finger with the model."""
         self.board = self.emulator("--faults", self.faults)
         self.rig_path = self.rig(self.board.port)
 
@@ -357,7 +357,7 @@ class Motion(bench.BenchTest):
         self.assertLess(max(self.board.commands_kpa()), 0.1, f"{name} has ended, and a finger is under pressure")
 
     def working(self, line, **keys):
-        """Starts the command and returns its process as soon as it has raised a pressure."""
+        """Starts the command. Returns its process as soon as the command has raised a pressure."""
         child = subprocess.Popen(Runner.words(line, ""), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                  stderr=subprocess.PIPE, env=self.runner.environment, **keys)
         self.addCleanup(child.kill)
@@ -396,7 +396,7 @@ class Motion(bench.BenchTest):
         self.each("fault", check)
 
     def test_fault_with_safe_outputs(self):
-        """While a finger is pressurised, its sensor fails. The board still responds."""
+        """Tests a sensor that fails while its finger is pressurised. The board still responds."""
         for name, (_, cell) in exit_codes.motion_faults().items():
             with self.subTest(name):
                 child = self.working(self.line(MOTION[name]))
@@ -439,7 +439,7 @@ class Motion(bench.BenchTest):
 
     def test_closed_pipe(self):
         def check(name, command, cell):
-            # The experiments of baseline --rig take 2 minutes, so it runs only once.
+            # The experiments of baseline --rig take 2 minutes, so the test runs this command only once.
             for ignored in (False, True) if name != "baseline --rig" else (False,):
                 done = self.runner.unread(self.line(command), ignored)
                 self.ended(done, "4" if ignored else cell, signal.SIGPIPE)

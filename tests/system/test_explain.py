@@ -1,5 +1,5 @@
-"""Tests softgrip diagnose --explain, which prints the comparisons behind every reported cause. The comparisons are
-listed by run and by cause. Checks the screen and the files."""
+"""Tests softgrip diagnose --explain, which prints the comparisons behind every reported cause. The output
+lists the comparisons by run and by cause. Checks the text on the screen and the files."""
 
 import json
 

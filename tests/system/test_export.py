@@ -18,7 +18,7 @@ import mcap_reading
 MODEL = "config/models/bench_twin.yaml"
 
 HERE = pathlib.Path(__file__).resolve().parent
-# The folder into which scripts/mcap_reader.sh installs the packages that HERE/mcap pins.
+# Folder of the npm packages. scripts/mcap_reader.sh installs the packages that the lock file in HERE/mcap states.
 READER = bench.BUILD.parent / "mcap"
 
 
@@ -116,8 +116,8 @@ class Signals(bench.BenchTest):
                 mcap_reading.read(path)
 
     def read_by_its_own_reader(self, path):
-        """Reads a file with the MCAP reader of its authors. If npm could not reach a registry when the reader was
-        installed, scripts/mcap_reader.sh has written the reason to the file `unreachable`."""
+        """Reads a file with the MCAP reader of the authors of the format. If npm could not reach a registry when the
+        reader was installed, scripts/mcap_reader.sh has written the reason to the file `unreachable`."""
         if (READER / "unreachable").exists():
             self.skipTest((READER / "unreachable").read_text().strip())
         self.assertTrue((READER / "node_modules/@mcap/core").is_dir(), "bash scripts/mcap_reader.sh installs @mcap/core")
@@ -260,7 +260,7 @@ int main(void) {
   return 0;
 }
 """
-# A model with every block that has C code. The parameters are chosen so that each block has an effect.
+# A model that contains every block with C code. The parameters are chosen so that each block has an effect.
 EVERYTHING = """name: every thing
 source: "a test"
 valve:
@@ -299,7 +299,7 @@ def with_valve(*blocks):
 
 
 class ExportedC(bench.BenchTest):
-    """Compiles and runs exported models, and gets the result of `softgrip simulate` for the same commands."""
+    """Compiles and runs exported models. Also returns the result of `softgrip simulate` for the same commands."""
 
     def compiled(self, driver, model, *arguments):
         """Compiles the program of an exported model. The compiler must print no warning."""

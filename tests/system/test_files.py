@@ -1,5 +1,5 @@
-"""Tests the files that a command reads and writes. A command must not overwrite its own input or wait for a pipe. It
-must not fill the memory because of a small file. It must not open another file to which its input file refers."""
+"""Tests the files that a command reads and writes. A command must not overwrite its own input or wait for a pipe. A
+small file must not cause it to fill the memory. It must not open another file to which its input file refers."""
 
 import gzip
 import json
@@ -102,8 +102,8 @@ class Overwriting(bench_files.Files):
 
 
 class Pipes(bench_files.Files):
-    """A pipe replaces an input file. No process writes to the pipe, so a command that waits for the pipe would never
-    end."""
+    """Tests with a named pipe in place of an input file. No process writes to the pipe, so a command that waits for
+    the pipe would never end."""
 
     def test_inputs(self):
         self.record()
@@ -212,7 +212,8 @@ class Bombs(bench_files.Files):
         header = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x0100, 0x4D49)
         small = b"".join(compressed_matrix(name, 50, [struct.pack("<50d", *(i * scale for i in range(50)))])
                          for name, scale in (("time_s", 0.1), ("pressure_command_kpa", 1), ("displacement_mm", 0.5)))
-        # In the first file, all samples are present. In the second file, only the header announces samples.
+        # In the first file, all samples are present. In the second file, the header announces samples that are not
+        # present.
         for large in (compressed_matrix("bomb", 100 << 20, zeros), compressed_matrix("bomb", 500 << 20, [])):
             (self.folder / "bomb.mat").write_bytes(header + small + large)
             self.assertLess((self.folder / "bomb.mat").stat().st_size, 2 << 20)
@@ -221,8 +222,8 @@ class Bombs(bench_files.Files):
             self.assertEqual(len((self.folder / "from_mat.csv").read_text().splitlines()), 51)
 
     def test_matlab_cells(self):
-        """An empty cell takes 8 bytes of the file and almost no bytes after compression. In memory, it takes an
-        object of libmatio."""
+        """Tests a file of empty cells. In the file, an empty cell takes 8 bytes, and almost none after compression. In
+        memory, an empty cell takes an object of libmatio."""
         header = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x0100, 0x4D49)
         body = (struct.pack("<IIII", 6, 8, 1, 0) + struct.pack("<IIii", 5, 8, 500_000_000, 1) + struct.pack("<II", 1, 4) +
                 b"bomb" + bytes(4 + (100 << 20)))
@@ -245,7 +246,7 @@ class Bombs(bench_files.Files):
 
 
 class OtherFiles(bench_files.Files):
-    """Tests HDF5 files that refer to other files. The content of these other files must not get into the log."""
+    """Tests HDF5 files that refer to other files. The log must not contain data of these other files."""
 
     def setUp(self):
         super().setUp()
@@ -283,7 +284,8 @@ class OtherFiles(bench_files.Files):
             file["data"] = [float(i) for i in range(50)]
         with h5py.File(self.folder / "a.h5", "w") as file:
             self.columns(file)
-            file["displacement_mm"] = h5py.SoftLink("/#hidden/data")  # a list of columns does not show names with #
+            file["displacement_mm"] = h5py.SoftLink("/#hidden/data")  # a list of columns does not show names that
+                                                                      # contain #
             file["#hidden"] = h5py.ExternalLink(str(self.folder / "other.h5"), "/")
         said = self.limited("import", "a.h5", "--yes", "--out", "stolen.csv", code=3)
         self.assertIn("no column looks like a displacement", said)

@@ -1,4 +1,4 @@
-"""Tests gentle grips. Wherever a part is, its gripping pressure must not exceed the limit of the recipe."""
+"""Tests gentle grips. For any position of a part, the gripping pressure must not exceed the limit of the recipe."""
 
 import csv
 import pathlib
@@ -41,8 +41,8 @@ class Gentle(bench.BenchTest):
         daemon.end()
         emulated.end()
         allowed_kpa = gripping.bound_kpa((self.folder / "config/sequences/pick_stone.yaml").read_text())
-        # On a busy machine, a reading may be old. The finger may have moved since then, so the limit has an
-        # additional tolerance of 2 kPa.
+        # On a busy machine, a reading may be old, and the finger may have moved since the reading. The limit therefore
+        # has an additional tolerance of 2 kPa.
         self.assertLess(self.squeezed_kpa(truth), allowed_kpa + 2)
 
     def test_a_hold_ends_when_its_release_is_asked_for(self):

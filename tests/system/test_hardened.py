@@ -1,4 +1,5 @@
-"""Tests that every build of the programs has the hardening options, and not only the build of the package."""
+"""Tests that every build of the programs has the hardening options. The build for the package is one of these
+builds."""
 
 import platform
 import re
@@ -27,7 +28,7 @@ class Hardened(unittest.TestCase):
             with self.subTest(program=program.name):
                 symbols = self.read(program, "--dyn-syms")
                 self.assertIn("__stack_chk_fail", symbols, "-fstack-protector-strong")
-                if cache("CMAKE_BUILD_TYPE") != "Debug":  # _FORTIFY_SOURCE has an effect only in an optimised build
+                if cache("CMAKE_BUILD_TYPE") != "Debug":  # _FORTIFY_SOURCE has an effect in optimised builds only
                     self.assertRegex(symbols, r"__(memcpy|read|printf|snprintf|vsnprintf|poll)_chk", "_FORTIFY_SOURCE")
                 self.assertIn("BIND_NOW", self.read(program, "-d"))
                 self.assertIn("GNU_RELRO", self.read(program, "-l"))

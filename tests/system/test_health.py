@@ -1,5 +1,5 @@
-"""Tests softgrip health on recordings of softgrip run. The command must detect that a finger has changed from
-recordings of ordinary grips."""
+"""Tests softgrip health on recordings of softgrip run. From recordings of
+ordinary grips, the command must detect that a finger has changed."""
 
 import datetime
 import json
@@ -133,7 +133,7 @@ class Health(bench.BenchTest):
         self.assertEqual(fingers["left"]["grips"], 24)
         result = json.loads((self.folder / "out/health.json").read_text())
         self.assertEqual([one["run"] for one in result["skipped"]], [bad.name])
-        # The command must not score a recording a second time.
+        # The command must not score the same recording a second time.
         self.assertEqual(len((self.folder / "out/health-scores.jsonl").read_text().splitlines()), 48)
 
     def test_what_cannot_be_compared_is_refused(self):

@@ -1,6 +1,7 @@
-"""Tests that the daemon carries out a vent request under all disturbances. The disturbances are floods of requests,
-pipelined commands, many silent clients, clients that stop reading, files that never respond, a full disk, and a log
-reader that hangs. scripts/vent_times.py repeats the tests of Hearing that vent and prints the longest time.
+"""Tests that the daemon executes a vent request during all kinds of disturbances. The disturbances are floods of
+requests, pipelined commands, many silent clients, clients that stop reading, files that never respond, a full disk,
+and a log reader that hangs. scripts/vent_times.py repeats those tests of the class Hearing that vent, and prints the
+longest time.
 """
 
 import json
@@ -20,8 +21,8 @@ import bench
 import fail_nth
 import soak_disturbances
 
-# Longest permitted time [s] from the client's request to the written output. A busy machine may lengthen the
-# measured time. Other clients must not lengthen it.
+# Longest permitted time [s] from the request of the client to the written output. The limit allows for delays of a busy
+# machine, but not for delays by other clients.
 VENT_BOUND_S = 0.5
 
 # A client program that sends the given lines. It prints "said" after it has sent them, and reads nothing.
@@ -38,8 +39,8 @@ except TimeoutError:
 print("said", flush=True)
 time.sleep(600)
 """
-# Lines that the clients send before they stop: half of a line, requests whose answers they do not read, and
-# subscriptions to events and values that they do not read.
+# Lines that the clients send before they stop. They contain half of a line, requests whose replies the clients do not
+# read, and subscriptions to events and values that they do not read.
 LAST_WORDS = (('{"command":"ve', 1), ('{"command":"events","limit":1000}\n', 10_000),
               ('{"command":"subscribe","since":0}\n{"command":"watch","rate_hz":50}\n', 1))
 
@@ -68,8 +69,8 @@ class Hearing(bench.BenchTest):
         return client
 
     def vents(self, patience_s=5):
-        """Sends a vent request from a new client and checks the answer. Returns the time from the request until the
-        outputs fall [s]."""
+        """Sends a vent request from a new client and checks the reply. Returns the time [s] from the request until the
+        outputs fall."""
         self.assertGreater(min(self.board.commands_kpa()), 10, "there is nothing to vent")
         began = time.monotonic()
         client = self.raw()
@@ -88,7 +89,7 @@ class Hearing(bench.BenchTest):
         self.addCleanup(self.stop_.set)
 
     def flood(self, line, reads=True):
-        """A client that sends as fast as it can. It reads its answers at the same speed, or does not read them."""
+        """A client that sends requests as fast as it can. It reads its replies at the same rate, or it reads none."""
         client = self.raw()
         client.settimeout(0.2)
 
@@ -167,7 +168,8 @@ class Hearing(bench.BenchTest):
         self.check_vent()
 
     def test_on_a_full_disk(self):
-        """The disk becomes full in the middle of a recording. It is still full at the start of the next recording."""
+        """Tests a disk that becomes full in the middle of a recording and is still full at the start of the next
+        recording."""
         disk = soak_disturbances.Runs(self.folder)
         self.addCleanup(disk.end)
         if not disk.mounted:
@@ -269,8 +271,8 @@ class Ending(bench.BenchTest):
         self.addCleanup(daemon.wait)
         self.addCleanup(daemon.kill)
         bench.wait_for("the socket", lambda: (self.folder / "softgripd.sock").exists())
-        # This descriptor has its own flags. So O_NONBLOCK does not apply to the daemon's descriptor, which
-        # must block.
+        # This descriptor has its own flags, so O_NONBLOCK does not affect the descriptor of the daemon. The daemon's
+        # descriptor must block.
         filler = os.open(f"/proc/self/fd/{writer}", os.O_WRONLY | os.O_NONBLOCK)
         os.close(writer)
         try:
@@ -294,12 +296,11 @@ class AnotherMaster(bench.BenchTest):
             daemon.wait_for_event("grip_result", code="HOLDING", channel=channel)
         other = socket.create_connection(("127.0.0.1", emulator.port))
         self.addCleanup(other.close)
-        # Sends FC16 requests that set outputs 10 and 11 to 0, in a loop. A script that somebody has forgotten
-        # to stop could do this.
+        # Sends requests with function code 16 that set outputs 10 and 11 to 0, in a loop. A forgotten script of another
+        # user could do the same.
         frame = bytes([0, 1, 0, 0, 0, 11, 1, 16, 0, 10, 0, 2, 4, 0, 0, 0, 0])
-        # A write of this client may fall between a write of the daemon and its read-back. The daemon then
-        # reads an output that it has not written. In this case the first fault is F302, and the outputs are
-        # held.
+        # This client may write between a write of the daemon and the read-back of the daemon. The daemon then reads an
+        # output that it has not written. In this case, the first fault is F302, and the outputs are held.
         codes = []
         began = time.monotonic()
         while time.monotonic() - began < 5 and "F304" not in codes:

@@ -1,4 +1,4 @@
-"""Tests that a failed check is visible to a person, in the output, and to a program, in the exit code."""
+"""Tests that a failed check is visible in the output, for a person, and in the exit code, for a program."""
 
 import bench
 import terminal

@@ -1,5 +1,5 @@
-"""Tests softgrip import as a user sees it: the imports of external files, the questions of the command, the stored
-answers, and the refusals."""
+"""Tests softgrip import as a user runs it. Covers imports of external files, the questions of the command, stored
+answers, and refusals."""
 
 import json
 import os

@@ -10,8 +10,8 @@ import bench
 
 GIVEN = "config/models/bench_twin.yaml"
 FINGER = "config/models/finger.yaml"
-# The pressure rises and falls once. The finger is softer than the given model. However, the log also fits a
-# sensor with a drift or with a wrong scale.
+# The pressure rises and falls once. The finger is softer than the given model. A drift or a wrong scale of the sensor
+# would explain the log equally well.
 CORNERS = ((0, 0), (1, 0), (7, 45), (13, 0), (16, 0))
 RATE_HZ, NOISE_MM, NOISES, LONGEST_MINUTES = 25, "0.15", range(1, 17), 1
 # A program for --rig-command. It changes the command with the function CHANGE and simulates a finger with the result.
@@ -41,8 +41,8 @@ class Investigation(bench.BenchTest):
         self.assertTrue(any(map(self.asks, NOISES)), "for none of these logs an experiment is suggested")
 
     def asks(self, seed):
-        """Writes log.csv with this noise. Returns True if a short experiment can separate the causes that explain the
-        log equally well."""
+        """Writes log.csv with this noise. Several causes explain this log equally well. Returns True if a short
+        experiment can separate them."""
         self.softgrip("simulate", "--model", FINGER, "--input", "load.csv", "--out", "log.csv", "--noise-mm", NOISE_MM,
                       "--seed", seed)
         told = json.loads(self.softgrip("diagnose", "--model", GIVEN, "--data", "log.csv", "--no-closed-loop", "--out",
@@ -66,8 +66,8 @@ class Investigation(bench.BenchTest):
         self.assertIn(told["why"], page)
 
     def simulated(self, about):
-        """Writes a rig file like config/rig.yaml with this finger. The text `about` replaces the entry `object` (a
-        stone between the fingers)."""
+        """Writes a rig file like config/rig.yaml with this finger. The text `about` replaces the entry `object`, which
+        describes a stone between the fingers."""
         text = (self.folder / "config/rig.yaml").read_text()
         stone = "\n        object: {position_mm: 12, yielding: 0.1}    # a stone between the fingers"
         self.assertIn(stone, text)

@@ -25,7 +25,8 @@ class Kill(bench.BenchTest):
         daemon.kill()
         killed = time.monotonic()
         bench.wait_for("vented valves", lambda: max(emulator.commands_kpa()) == 0)
-        # The test asks the emulator every 20 ms. The rest of the 0.5 s is a margin for a busy machine.
+        # The test reads the outputs from the emulator every 20 ms. The rest of the 0.5 s is a margin for a busy
+        # machine.
         self.assertLess(time.monotonic() - killed, WATCHDOG_S + 0.5)
         self.assertTrue(emulator.status()["watchdog_tripped"])
 
@@ -54,8 +55,8 @@ class Kill(bench.BenchTest):
         self.assertEqual(again.status()["state"], "idle")
 
     def test_after_a_free_stroke_the_next_daemon_grips_again(self):
-        """A new daemon does not know the creep that a previous pressure has left in the finger. The daemon learns the
-        creep from a stroke without a part."""
+        """Moves the finger once without a part. A new daemon does not know the creep that an earlier pressure has
+        caused. The daemon estimates this creep from the stroke."""
         self.creep_faster()
         emulator = self.emulator("--object", "stone")
         rig = self.rig(emulator.port)

@@ -1,5 +1,5 @@
 """Tests the programs with a server that sends lines that softgripd never sends. Each command must report such a line
-in a sentence and end with exit code 4. A gateway must behave as without a daemon."""
+in a sentence and end with exit code 4. A gateway must behave as if no daemon were running."""
 
 import contextlib
 import json
@@ -89,8 +89,8 @@ class Commands(bench.BenchTest):
         self.assertGreater(daemon.connections, len(COMMANDS))
 
     def test_behind_a_good_hello(self):
-        """A sequence may have started although the answer is malformed. The client must stop this sequence by its id,
-        over a new connection."""
+        """Tests a malformed reply to a start. The sequence may have started nevertheless. The client must open a new
+        connection and stop the sequence by the id of its start."""
         said = b""
         def answer(request):
             if request["command"] == "hello":

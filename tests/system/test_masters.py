@@ -98,8 +98,8 @@ class Masters(bench.BenchTest):
 
 @unittest.skipUnless(os.geteuid() == 0, other_user.NEEDS_ROOT)
 class OtherUsers(bench.BenchTest):
-    """Another user of the machine occupies the name that the program uses to lock the board. The board has no
-    watchdog."""
+    """Tests a board without a watchdog while another user of the machine occupies the name with which a program locks
+    the board."""
 
     HOLDERS = {"listens": 5, "lets nobody in": 0, "does not listen": None}
 
@@ -187,7 +187,7 @@ class OtherUsers(bench.BenchTest):
         second = self.rig_path.with_name("second.yaml")
         second.write_text(self.rig_path.read_text().replace("softgripd.sock", "second.sock"))
         program = self.folder / "softgripd"
-        # Copies the program, because other users may not be able to read the folder of the build.
+        # Copies the program, because another user may have no permission to read the folder of the build.
         program.write_bytes(bench.SOFTGRIPD.read_bytes())
         program.chmod(0o755)
         other = subprocess.run([program, "--config", second], user=other_user.NOBODY, group=other_user.NOBODY,

@@ -1,4 +1,4 @@
-"""Carries out the session of docs/how-to/a-morning.md. The screen must show the same text as the page."""
+"""Executes the session of docs/how-to/a-morning.md. The screen must show the same text as the page."""
 
 import subprocess
 import sys

@@ -1,6 +1,6 @@
-"""Tests commands that move a rig without a daemon. They must follow the same rule as the daemon: after a gap in which
-the board has vented, no pressure may rise. The same holds if a sensor fails that the motion needs. The command must
-then end with the exit code for this fault."""
+"""Tests commands that move a rig without a daemon. If the board has vented during a gap in communication, no
+pressure may rise after the gap. No pressure may rise either after the failure of a sensor that the motion needs. In
+both cases, the command must end with the exit code for the fault."""
 
 import json
 import re
@@ -12,15 +12,14 @@ import bench
 WATCHDOG_S = 0.5  # time-out of the watchdog in the board map
 PAUSE_S = 1.2
 NOISE_KPA = 0.05  # resolution of the board's outputs
-# The faults file for all tests in this module. Each test switches one of these faults on.
+# The faults file for all tests in this module. Each test activates one of its faults.
 FAULTS = """faults:
   - {name: requests_lost, kind: lost_request, for_s: 0.7}
   - {name: replies_lost, kind: no_reply, for_s: 0.7}
   - {name: blind, kind: sensor_out_of_range, channel: left}
 """
 CALIBRATE = ("calibrate", "--channel", "left", "--average-s", "0.3")
-# Commands that move the left finger, each with the required exit code for a motion during which the board has
-# vented.
+# Commands that move the left finger. For each command, the required exit code if the board vents during the motion.
 MOTIONS = {
     "calibrate": ((*CALIBRATE, "--valve", "--move", "--settle-s", "1"), 4),
     "doctor": (("doctor", "--move", "--json"), 6),
@@ -80,7 +79,7 @@ class MotionTest(bench.BenchTest):
 
 
 class Paused(MotionTest):
-    """Pauses the whole process (SIGSTOP). The pause is longer than the time-out of the board's watchdog."""
+    """Tests pauses of the whole process (SIGSTOP). A pause is longer than the time-out of the board's watchdog."""
 
     def check(self, name):
         command, code = MOTIONS[name]
@@ -105,8 +104,8 @@ class Paused(MotionTest):
 
     def test_calibrate_while_it_asks(self):
         child = self.begin((*CALIBRATE, "--sensor", "--move", "--settle-s", "0.3"))
-        # Standard input is closed. The pause occurs before the command asks its question, while the finger is
-        # pressurised.
+        # Standard input is closed. The pause occurs while the finger is pressurised, before the command asks its
+        # question.
         self.wait_for_pressure(child, 9.9)
         self.pause(child)
         samples = self.outputs_to_the_end(child)
@@ -115,7 +114,7 @@ class Paused(MotionTest):
 
 
 class Silent(MotionTest):
-    """Messages on the connection are lost for 0.7 s."""
+    """Tests a connection whose messages are lost for 0.7 s."""
 
     def check(self, name, fault, expected, kpa=5):
         child = self.begin(MOTIONS[name][0])
@@ -140,15 +139,15 @@ class Silent(MotionTest):
         self.check_nothing_rises_again(samples)
 
     def test_calibrate_without_the_replies(self):
-        """The board receives the requests and keeps its outputs, but its replies are lost. The outputs may keep the
-        last command but must not rise."""
+        """Tests a connection on which the requests arrive and the replies are lost. The board keeps its outputs. They
+        may stay at the last command but must not rise."""
         highest, samples = self.check("calibrate", "replies_lost", 4)
         self.assertLess(max(sample[0] for sample in samples), highest + 2, "at most one step of a cycle plus the noise")
         self.assertLessEqual(samples[-1][0], NOISE_KPA)
 
 
 class Blind(MotionTest):
-    """The displacement sensor of the moving finger has failed."""
+    """Tests a displacement sensor that fails while its finger moves."""
 
     def test_nothing_rises_without_the_sensor(self):
         self.board.ask("fault blind")
@@ -176,7 +175,7 @@ class Blind(MotionTest):
 
     def test_a_cable_that_comes_out_on_the_way_ends_the_motion(self):
         child = self.begin((*CALIBRATE, "--valve", "--move", "--settle-s", "1"))
-        self.wait_for_pressure(child, 12)  # the pressure is on its way to 40 kPa
+        self.wait_for_pressure(child, 12)  # the pressure is rising to 40 kPa
         self.board.ask("fault blind")
         samples = self.outputs_to_the_end(child)
         self.assertEqual(child.wait(), 6, child.errors())

@@ -1,5 +1,5 @@
-"""Tests the operator's page in a real browser. The tests cover grips, lost parts, daemons that end and start, and the
-permissions of users."""
+"""Tests the operator's page in a real browser. The tests cover grips, lost parts, the end and the start of a
+daemon, and the permissions of users."""
 
 import http.server
 import os
@@ -12,8 +12,8 @@ import web
 
 SIZES = ((1920, 1080), (360, 740))
 
-# A page of another site. In the browser of a user who may operate, the page tries these requests to
-# softgrip-web.
+# A page of another web site. A user who may operate opens this page in the browser. The page then tries to send these
+# requests to softgrip-web.
 FORGERY = """<!doctype html><title>forged</title><script>
 const body = JSON.stringify({command: "start", sequence: "pick_stone"});
 const tries = ["text/plain", "application/json"].flatMap((type) => ["no-cors", "cors"].map((mode) =>
@@ -25,7 +25,7 @@ tries.push(fetch("TARGET/api/status", {credentials: "include"}).then((a) => a.te
 Promise.all(tries).then((said) => { document.title = "tried " + said.join(", "); });
 </script>"""
 
-# Returns, for each canvas, true if it shows a curve and its axis has the colour of the colour scheme.
+# Script that returns true for each canvas that shows a curve and whose axis has the colour of the colour scheme.
 CURVES = """return Object.values(Chart.instances).map((c) => {
   const pixels = c.canvas.getContext("2d").getImageData(0, 0, c.canvas.width, c.canvas.height).data;
   const ink = getComputedStyle(document.body).getPropertyValue("--quiet").trim();
@@ -140,13 +140,13 @@ class Page(web.WebTest):
         self.assertEqual(set(said) - {"refused", "unseen"}, set())
         self.assertEqual(said[-1], "refused")
         self.assertNotIn("sequence_started", {e["kind"] for e in self.softgripd.events()})
-        # Some of the requests reached the server. The server refused them because of their origin, before it
-        # checked anything else.
+        # Some of the requests have reached the server. The server has refused each of them because of its origin,
+        # before any other check.
         answers = {bench.re.search(r"\d+", name).group() for name in told.metrics() if "answers_total" in name}
         self.assertIn("403", answers)
         self.assertEqual(answers & {"401", "415"}, set())
-        # The page of softgrip-web sends the same request, and the sequence starts. So the origin was the only
-        # reason for the refusals.
+        # The page of softgrip-web sends the same request, and the sequence starts. This shows that the origin was the
+        # only reason for the refusals.
         seen.open(told.address)
         status = seen.run_async("const done = arguments[0]; fetch('/api/command', {method: 'POST', headers:"
                                 "{'Content-Type': 'application/json'}, body: JSON.stringify({command: 'start',"
@@ -205,7 +205,7 @@ class Page(web.WebTest):
                     self.assertEqual(seen.run(CURVES), [True, True])
                     seen.picture(pictures / f"page-{width}-{'dark' if dark else 'light'}.png", width)
         seen.look_like(*SIZES[0], False)
-        seen.driver.refresh()  # resets the keyboard focus to the top of the page
+        seen.driver.refresh()  # moves the keyboard focus back to the top of the page
         seen.wait("sequences", lambda: "pick_stone" in seen.text("sequence"))
         seen.run("const s = document.getElementById('sequence'); s.value = 'pick_stone';"
                  "s.dispatchEvent(new Event('change'))")

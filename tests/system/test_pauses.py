@@ -12,15 +12,17 @@ import bench
 import pauses
 
 WATCHDOG_S = 0.5  # time-out of the watchdog in the board map
-# Each entry: the process or thread that pauses, the duration of the pause [s], and the required result.
+# Each entry contains three values: the process or thread that pauses, the duration of the pause [s], and the required
+# result.
 PAUSES = (
-    # The bus may be silent for longer than this pause, so the grip may continue or end with a fault.
+    # The permitted time without a bus exchange is longer than this pause. The grip may therefore continue, or it may
+    # end with a fault.
     ("process", 0.2, "anything"),
     ("process", WATCHDOG_S, "F303"),
     ("process", 0.8, "F303"),
     ("softgrip-loop", 0.2, "anything"),
     ("softgrip-loop", 1.5, "F901"),
-    # The loop notices that the bus thread is silent before the bus thread can report the fault.
+    # The loop detects the pause of the bus thread before the bus thread can report the fault itself.
     ("softgrip-bus", 0.8, "faulted"),
     ("softgrip-serve", 0.8, "nothing"),
 )

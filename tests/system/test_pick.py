@@ -1,5 +1,5 @@
-"""Tests the pick sequence with both fingers over TCP. The cases are a stone between the fingers, no stone, and a
-stone that is pulled out."""
+"""Tests the pick sequence with both fingers over TCP. Covers three cases: a stone between the fingers, no stone,
+and a stone that is pulled out."""
 
 import json
 
@@ -42,8 +42,8 @@ class Pick(bench.BenchTest):
             self.assertGreater(len(rows), 500)
             held = [row for row in rows if row["result"] == "holding" and row["step"] == "2"]
             self.assertGreater(len(held), 200)
-            # The stone yields. So the finger is at 12 mm plus one tenth of the distance from 12 mm to the
-            # position of the free finger.
+            # The stone yields: beyond 12 mm, the finger moves one tenth of the distance that it would move without the
+            # stone.
             for row in held[50:-50]:
                 self.assertTrue(11.5 < float(row["displacement_mm"]) < 13.5, row)
         self.softgrip("plot", recording, "--out", self.folder / "run.svg")

@@ -75,7 +75,7 @@ class Virtual(bench.BenchTest):
 
 
 class Served(bench.BenchTest):
-    """Tests a planned feedforward with a daemon in real time; the sequence is started over the socket."""
+    """Tests a planned feedforward with a daemon in real time. A client starts the sequence over the socket."""
 
     def setUp(self):
         super().setUp()
@@ -103,7 +103,7 @@ class Served(bench.BenchTest):
         lines.file.write('{"id": 1, "command": "start", "sequence": "long", "sequence_text": "'
                          + long.replace("\n", "\\n") + '"}\n')
         lines.file.flush()
-        # The daemon must answer while it computes the plan.
+        # The daemon must answer requests while it computes the plan.
         self.assertIn("idle", lines.ask('{"id": 2, "command": "status"}'))
         self.assertEqual(self.softgripd.ask("start", sequence="track_sine")["error"]["code"], "busy")
         self.softgripd.ask("vent")

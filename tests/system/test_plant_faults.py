@@ -41,14 +41,13 @@ class PlantFaults(bench.BenchTest):
         bench.wait_for("vented valves", lambda: max(self.emulated.commands_kpa()) < 0.1)
 
     def test_a_jumping_sensor(self):
-        # The sensor jumps by 15 mm. At 100 mm/s, a finger needs 15 cycles for this distance. So the daemon
-        # rejects the reading for 15 cycles.
+        # The sensor jumps by 15 mm. At 100 mm/s, a finger needs 15 cycles for this distance, so the daemon rejects the
+        # reading for 15 cycles.
         self.check_latches("jumping", ("F204",), "right", ((r"max_speed_mm_per_s: \d+", "max_speed_mm_per_s: 100"),
                                                            (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 10")))
 
     def test_a_sensor_that_jumps_ten_times_a_second(self):
-        # The jumps of 5 mm are slower than max_speed_mm_per_s permits, so the daemon rejects no single
-        # reading.
+        # Each jump of 5 mm is slower than max_speed_mm_per_s, so the daemon rejects no single reading.
         self.check_latches("unsteady", ("F204",), "right")
 
     def test_where_that_is_no_fault_it_is_told(self):
@@ -87,7 +86,7 @@ class PlantFaults(bench.BenchTest):
     def test_a_blocked_line_where_the_pressure_is_measured(self):
         self.check_latches("blocked", ("F207",), "left")
 
-    # Without a measured pressure, only the model can show a leak or a lost pressure.
+    # Without a measured pressure, the model is the only way to detect a leak or a lost pressure.
     UNWATCHED = ((r"pressure_cycles: \d+", "pressure_cycles: 0"),)
 
     def test_a_leaking_line_makes_the_model_unfit(self):

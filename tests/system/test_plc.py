@@ -1,5 +1,5 @@
 """Tests a PLC that grips through softgrip-plc. The tests cover counters, registers, a Modbus client (master) that
-becomes silent, and daemons that end and start."""
+becomes silent, and the end and the start of a daemon."""
 
 import contextlib
 import socket
@@ -67,8 +67,8 @@ class Gateway(bench.BenchTest):
         self.softgripd.wait_for_state("idle")
         for _ in range(20):
             second.write("command_counter", old, plc.START, 1)
-            # The client that wrote the wrong counter reads the reason for the refusal. The other client reads
-            # the result of its own command.
+            # The client with the wrong counter reads the reason for the refusal. The other client reads the outcome of
+            # its own command.
             self.assertEqual((second.read("outcome"), second.read("reason")), (plc.REFUSED, plc.NOT_NEXT))
             self.assertEqual(master.done(master.counter), (plc.ACCEPTED, 0))
         for wrong in (0, master.counter + 2, 65535):
@@ -85,14 +85,14 @@ class Gateway(bench.BenchTest):
         master = self.master(gateway)
         self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
         late = []
-        # Two late requests: one has an old counter value, the other has the value that will be the next one
+        # Two late requests. The first one has an old counter value. The second one has the value that is the next one
         # when the rest of the request arrives.
         for counter in (master.counter, master.counter + 2):
             client = socket.create_connection(("127.0.0.1", gateway.port))
             self.addCleanup(client.close)
             client.settimeout(bench.PATIENCE_S)
-            # Sends a complete request before the half request. When the answer to the complete request
-            # arrives, the gateway has also read the half request.
+            # Sends a complete request before the half request. When the reply to the complete request arrives, the
+            # gateway has also received the half request.
             client.sendall(plc.block(master.counter, 0) + plc.block(counter, plc.START, 1)[:11])
             self.assertEqual(len(client.recv(100)), 12)
             late.append((client, plc.block(counter, plc.START, 1)[11:]))
@@ -121,7 +121,7 @@ class Gateway(bench.BenchTest):
         master = self.master(self.gateway())
         self.assertEqual(master.command(9), (plc.REFUSED, plc.NO_SUCH_COMMAND))
         self.assertEqual(master.command(plc.START, recipe=77), (plc.REFUSED, plc.NO_SUCH_RECIPE))
-        # The gripping pressure is beyond its range.
+        # The gripping pressure of this command is outside its permitted range.
         self.assertEqual(master.command(plc.START, recipe=1, squeeze=3000), (plc.REFUSED, 7))
         self.assertEqual(master.command(plc.STOP), (plc.REFUSED, 107))  # R07: there is no sequence to stop
         self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
@@ -138,7 +138,7 @@ class Gateway(bench.BenchTest):
         gateway.kill()
         again = plc.Plc(self.folder, name="softgrip-plc-again")
         self.processes.append(again)
-        # A PLC that writes its registers in every cycle and has not noticed the restart of the gateway.
+        # A PLC that writes its registers in every cycle and does not detect the restart of the gateway.
         cyclic = plc.Master(again, synchronise=False)
         self.addCleanup(cyclic.close)
         for _ in range(20):
@@ -153,7 +153,7 @@ class Gateway(bench.BenchTest):
     def test_a_master_that_falls_silent_is_noticed_and_the_rig_stops(self):
         master = self.master(self.gateway(changes=((r"silence_s: 2", "silence_s: 0.5"),)))
         self.assertEqual(master.command(plc.START, recipe=2)[0], plc.ACCEPTED)
-        time.sleep(0.8)  # the gateway does not watch a client that sends no heartbeat
+        time.sleep(0.8)  # the gateway does not monitor a client that sends no heartbeat
         self.assertEqual((master.read("master"), self.softgripd.status()["state"]), (0, "running"))
         master.beat_until(lambda: master.read("result") == plc.HOLDING)
         self.assertEqual(master.read("master"), 1)
@@ -167,7 +167,7 @@ class Gateway(bench.BenchTest):
         self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
 
     def test_the_reaction_to_a_silence_is_kept_for_the_next_daemon(self):
-        """The client becomes silent, and the daemon is killed before the gateway notices that the client is
+        """Tests a client that becomes silent. The daemon is killed before the gateway detects that the client is
         silent."""
         changes = ((r"silence_s: 2", "silence_s: 0.5"), (r"when_silent: stop", "when_silent: vent"))
         master = self.master(self.gateway(changes=changes))
@@ -177,7 +177,7 @@ class Gateway(bench.BenchTest):
         master.wait("master", 2)
         time.sleep(0.5)  # during this time, the gateway finds no daemon
         master.beat()
-        # The gateway keeps its reaction to the silence, even if the client returns.
+        # The gateway must send the stop for the silence even if the client returns.
         self.assertEqual(master.read("master"), 2)
         again = self.daemon(self.rig_path)
         again.wait_for_event("state_changed", client="softgrip-plc")
@@ -185,8 +185,8 @@ class Gateway(bench.BenchTest):
         master.beat_until(lambda: master.read("state") == plc.IDLE)
 
     def test_the_reaction_to_a_silence_waits_for_a_daemon_that_does_not_answer(self):
-        """Within 40 ms, the client becomes silent and the daemon stops answering. The control loop of the daemon
-        continues the grip during this time."""
+        """Tests a client and a daemon that become silent within 40 ms. The control loop of the silent daemon continues
+        the grip."""
         for lead_s in (-0.04, -0.02, 0, 0.02, 0.04):
             with self.subTest(lead_s=lead_s):
                 master = self.master(self.gateway(changes=(("silence_s: [0-9.]+", "silence_s: 1.2"),)))
@@ -229,7 +229,7 @@ class Gateway(bench.BenchTest):
             client.settimeout(bench.PATIENCE_S)
             self.assertEqual(client.recv(1), b"")
             client.close()
-            master.read("state")  # a client that sends requests keeps its connection
+            master.read("state")  # the gateway keeps the connection of a client that sends requests
 
         def others_place():
             master.read("state")
@@ -242,8 +242,8 @@ class Gateway(bench.BenchTest):
         self.assertEqual(master.command(plc.VENT)[0], plc.ACCEPTED)
 
     def test_a_master_is_not_locked_out_by_its_own_dead_connections(self):
-        """The gateway would keep dead connections for a minute. A new connection of the same client must be accepted
-        much earlier."""
+        """Tests that a client can replace its dead connections. The gateway keeps a dead connection for up to a
+        minute, but must accept a new connection of the same client much earlier."""
         gateway = self.gateway()
         dead = [self.master(gateway) for _ in range(4)]
         alive = bench.wait_for("a place", lambda: self.connected(gateway))

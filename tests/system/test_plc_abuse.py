@@ -43,12 +43,12 @@ class Abuse(bench.BenchTest):
         for _ in range(1000):
             crowd.append(self.connect())
             if len(crowd) % 5 == 0:
-                # The PLC must send requests regularly, and on a busy machine the 1000 connections take seconds.
+                # The PLC must send requests regularly, and the 1000 connections take seconds on a busy machine.
                 self.master.read("state")
             if len(crowd) % 100 == 0:
                 self.assert_well()
-        # In addition to the PLC, the gateway keeps three connections. It closes them after five seconds
-        # without a request.
+        # The gateway keeps three connections in addition to that of the PLC. It closes such a connection after five
+        # seconds without a request.
         ends = sum(self.is_at_its_end(client) for client in crowd)
         self.assertGreaterEqual(ends, 997)
         self.assert_well()
@@ -59,7 +59,7 @@ class Abuse(bench.BenchTest):
         resource.prlimit(pid, resource.RLIMIT_NOFILE, (in_use, in_use))
         for _ in range(8):
             self.connect()
-            # The PLC sends requests, because the gateway closes an idle connection in favour of a new one.
+            # The PLC sends requests, because the gateway closes an idle connection when a new client connects.
             self.master.read("state")
         before = processor_s(pid)
         for _ in range(40):
@@ -87,8 +87,8 @@ class Abuse(bench.BenchTest):
             return False
 
     def test_who_dribbles_a_request_is_shown_out(self):
-        """The client sends one byte per second and never completes its request of 260 bytes. After `idle_s`, the
-        gateway must give its connection to another client."""
+        """Tests a client that sends one byte per second and never completes its request of 260 bytes. After `idle_s`,
+        the gateway must close this connection in favour of another client."""
         slow = self.connect()
         began = time.monotonic()
         for byte in struct.pack(">HHHB", 1, 0, 254, 1) + b"\x10" * 253:
@@ -124,7 +124,7 @@ class Abuse(bench.BenchTest):
 
     def test_strange_bytes(self):
         """Generates frames that are cut off, damaged or joined, and frames with a wrong function, address, count or
-        length. No frame is a valid command, because values that could be a command are left out."""
+        length. No frame is a valid command, because the generator omits values that could be a command."""
         seed = 20261122
         chance = random.Random(seed)
         for turn in range(1500):

@@ -95,13 +95,13 @@ class Python(bench.BenchTest):
         again.wait_for_state("idle")
         gripper.reconnect()
         self.assertEqual(gripper.wait(timeout_s=PATIENCE_S), softgrip.SequenceEnd.FAULTED)
-        # The finger creeps back after the grip. The daemon could mistake this creep for a part, so it refuses
-        # a grip.
+        # The finger creeps back after the grip. The daemon could interpret this creep as contact with a part, so it
+        # must refuse a grip.
         gripper.start("pick_stone")
         with self.assertRaises(softgrip.GripFailed):
             gripper.wait_until(softgrip.Result.HOLDING, timeout_s=PATIENCE_S)
         codes = {event["code"] for event in again.events() if event["kind"] == "not_at_rest"}
-        # The finger is away from the position that the model expects, and it still moves during the first
+        # The displacement differs from the prediction of the model, and the finger still moves during the first
         # moments.
         self.assertIn("off_model", codes)
         self.assertLessEqual(codes, {"off_model", "moves"})

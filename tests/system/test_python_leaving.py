@@ -1,5 +1,5 @@
-"""Tests the end of the `with` block of a Python client, whatever happens in the block. The client's own sequence must
-have ended, or an exception must say that the sequence may still run. No sequence of another client may be stopped."""
+"""Tests the end of the `with` block of a Python client after any event in the block. The sequence of this client must
+have ended, or an exception must state that it may still run. No sequence of another client may be stopped."""
 
 import asyncio
 import contextlib
@@ -23,7 +23,7 @@ import softgrip  # noqa: E402
 # A failed test prints the seed of its random values. SOFTGRIP_SEEDS=FIRST:COUNT runs COUNT seeds from FIRST
 # on.
 FIRST_SEED, SEEDS = map(int, os.environ.get("SOFTGRIP_SEEDS", "1:25").split(":"))
-# The time [s] for which a client waits for an answer, and a longer time for which the daemon is silent.
+# Time [s] for which a client waits for a reply, and a longer time for which the daemon is silent.
 ANSWER_S = 0.4
 SILENCE_S = 0.7
 
@@ -71,7 +71,7 @@ class Leaving(quiet_rig.QuietRigTest):
             other = self.gripper(name="other")
             self.addCleanup(other.close)
             theirs = other.start("long", text=LONG).request
-            # The robot has not yet read that its own sequence has ended and that another client's sequence
+            # The robot program has not read yet that its own sequence has ended and that the sequence of another client
             # runs.
         self.assertEqual(self.running(), theirs)
         other.status()
@@ -82,7 +82,7 @@ class Leaving(quiet_rig.QuietRigTest):
         async def work():
             async with softgrip.AsyncGripper(self.path, name="robot", answer_s=bench.PATIENCE_S) as robot:
                 await robot.start("short", text=SHORT)
-                # The event loop of asyncio does not run during this code, so the client reads nothing.
+                # The event loop of asyncio is blocked during this code, so the client reads nothing.
                 self.wait_until_ended(self.starts()[-1])
                 self.softgripd.wait_for_state("idle")
                 return other.start("long", text=LONG).request
@@ -93,8 +93,8 @@ class Leaving(quiet_rig.QuietRigTest):
         self.assertEqual(self.running(), theirs)
 
     def test_a_daemon_that_was_silent_stops_when_it_goes_on(self):
-        """The daemon is paused, or its connection is stalled. The stop request waits in the socket, and an exception
-        must say that the stop is not confirmed."""
+        """Tests a paused daemon and a stalled connection. The stop request then waits in the socket, and an exception
+        must state that the stop is not confirmed."""
         proxy = self.proxy()
         for path, pause, resume in (
                 (self.path, lambda: self.softgripd.send(signal.SIGSTOP), lambda: self.softgripd.send(signal.SIGCONT)),
@@ -213,13 +213,14 @@ class Leaving(quiet_rig.QuietRigTest):
             request = robot.start("long", text=LONG).request
             subscriber = self.gripper(name="subscriber")
             self.addCleanup(subscriber.close)
-            # Clients that keep sending requests use all other connections of the daemon.
+            # Clients that send requests continuously use all other connections of the daemon.
             crowd = [bench.Lines(self.path) for _ in range(13)]
             for client in crowd:
                 self.addCleanup(client.close)
             began = time.monotonic()
             refused = 0
-            while time.monotonic() - began < 6:  # longer than the daemon keeps the connection of a silent client
+            while time.monotonic() - began < 6:  # longer than the time after which the daemon closes the connection of
+                                                 # a silent client
                 self.softgripd.status()
                 for client in crowd:
                     client.ask('{"command":"sequences"}')
@@ -243,8 +244,8 @@ class Leaving(quiet_rig.QuietRigTest):
         self.softgripd.status()
         with self.assertRaisesRegex(softgrip.ConnectionLost, "at most 16 clients"):
             self.gripper(name="late")
-        # The daemon must carry out a stop although all connections are in use. This also holds for a program
-        # that has lost its connection.
+        # The daemon must execute a stop although all connections are in use. This also holds if the stopping program
+        # has lost its connection.
         with subscribers[0] as robot:
             request = robot.start("long", text=LONG).request
             proxy.cut()
@@ -255,8 +256,8 @@ class Leaving(quiet_rig.QuietRigTest):
             self.assertEqual(subscriber.status().state, softgrip.State.IDLE)
 
     def test_malformed_lines(self):
-        """Whatever the server sends, the client must raise an exception of the package, and the sequence must be
-        stopped."""
+        """Tests a server that sends arbitrary lines. The client must raise an exception of the package, and the
+        sequence must be stopped."""
         proxy = self.proxy()
         for seed in range(FIRST_SEED, FIRST_SEED + SEEDS):
             with self.subTest(seed=seed):
@@ -303,8 +304,8 @@ class Leaving(quiet_rig.QuietRigTest):
         asyncio.run(work())
 
     def test_two_clients_and_two_faults_at_once(self):
-        """Runs random stalls, closed connections, damaged lines and exceptions. Two clients use the rig in turn. Each
-        seed gives one series of events."""
+        """Runs random stalls, closed connections, damaged lines and exceptions. Two clients use the rig in turn. The
+        seed determines the series of events."""
         proxy = self.proxy()
         for seed in range(FIRST_SEED, FIRST_SEED + SEEDS):
             with self.subTest(seed=seed):
@@ -348,7 +349,7 @@ class Leaving(quiet_rig.QuietRigTest):
         own = self.starts()[before:]
         proxy.let_go()
         if isinstance(raised, softgrip.StopNotConfirmed):
-            # The daemon carries out the requests that waited in the socket, if the connection was not closed.
+            # If the connection was not closed, the daemon executes the requests that waited in the socket.
             time.sleep(0.1)
         else:
             self.assertNotIn(self.running(), own, raised)

@@ -1,5 +1,5 @@
-"""Tests the check of recordings. The recordings of a grip that ends in a fault must pass the check. A recording with
-changed rows must not pass."""
+"""Tests the check of recordings. The recordings of a grip that ends in a fault must pass the check. If rows of a
+recording are changed, the recording must fail."""
 
 import csv
 import signal

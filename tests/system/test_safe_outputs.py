@@ -30,7 +30,7 @@ class SafeOutputs(bench.BenchTest):
     def test_after_a_kill_the_board_is_vented(self):
         self.hold().kill()
         time.sleep(0.5)
-        # Without the command, the board keeps its outputs, because it has no watchdog.
+        # Without --safe-outputs, the board would keep its outputs, because it has no watchdog.
         self.assertGreater(min(self.emulator_.commands_kpa()), 10)
         ended = self.safe_outputs(SERVICE_RESULT="signal")
         self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
@@ -59,7 +59,8 @@ class SafeOutputs(bench.BenchTest):
 
 
 class EditedRig(bench.BenchTest):
-    """A crash occurs while the user is editing the rig file, so the file is incomplete. The board has no watchdog."""
+    """Tests a crash while the user is editing the rig file. The rig file is then incomplete. The board has no
+    watchdog."""
 
     def setUp(self):
         super().setUp()
@@ -146,8 +147,8 @@ class EditedRig(bench.BenchTest):
 
 
 class Hold(bench.BenchTest):
-    """Tests the messages about a hold. How long the board holds its outputs depends on the board. The programs must
-    say this before the start, at the start and at the end."""
+    """Tests the messages about a hold. The board determines how long it holds its outputs. The programs must state this
+    before the start, at the start and at the end."""
 
     def ends_holding(self, emulator, rig):
         """Ends a daemon while it holds a part. Returns the output of the check, the output of the daemon, and the

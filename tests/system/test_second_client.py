@@ -15,7 +15,7 @@ REQUEST = bytes((0, 1, 0, 0, 0, 6, 1, 4, 0, 0, 0, 1))
 
 
 class Reader(threading.Thread):
-    """Reads the first input of the board every 50 ms, like a display."""
+    """A client that reads the first input of the board every 50 ms, as a display would."""
 
     def __init__(self, port):
         super().__init__(daemon=True)
@@ -51,8 +51,8 @@ class SecondClient(bench.BenchTest):
         return {finding["name"]: finding for finding in report["findings"]}
 
     def test_a_reader_keeps_the_pressure_of_a_killed_daemon_and_was_told_before(self):
-        """After the kill, the second client keeps the watchdog from tripping, so the pressure remains. No daemon can
-        prevent this, but the daemon must warn before."""
+        """Kills the daemon. The requests of the second client then prevent a watchdog trip, so the pressure remains. A
+        dead daemon cannot vent, so the daemon must warn of the second client while it runs."""
         emulator = self.emulator("--object", "stone")
         daemon = self.daemon(self.rig(emulator.port))
         daemon.wait_for_state("idle")

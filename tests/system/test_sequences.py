@@ -57,7 +57,7 @@ class WithoutADaemon(bench.BenchTest):
         weak = self.softgrip("check", "config/rig.yaml", "weak.yaml", expect=3).stderr
         self.assertRegex(weak, r"weak\.yaml:9:3: with `squeeze_kpa` = 0\.5, the lower end of its range, line \d+ is "
                                r"wrong: step 'grip': grips with 0\.5 kPa, but channel 'left' detects")
-        # Without a rig, the check accepts this grip, because some rigs can detect it.
+        # The check without a rig must accept this grip, because some rigs can detect it.
         self.softgrip("check", "weak.yaml")
         self.write("strong.yaml", recipe.replace("range: [3, 10]", "range: [3, 12]"))
         self.assertIn("squeeze_max_kpa is below squeeze_kpa", self.softgrip("check", "strong.yaml", expect=3).stderr)

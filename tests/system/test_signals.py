@@ -1,5 +1,5 @@
 """Tests commands that are interrupted by a signal. The command must write safe outputs and then end by the same
-signal, so that a shell script stops, too."""
+signal, so that a shell script that runs the command stops as well."""
 
 import os
 import signal

@@ -1,5 +1,5 @@
-"""Tests version 1 of the socket API: the identity and the permissions of a client, dry runs, and that a client
-receives all events."""
+"""Tests version 1 of the socket API: the identity and the permissions of a client, dry runs, and the delivery of all
+events to a client."""
 
 import json
 import time
@@ -13,8 +13,8 @@ class Client:
 
     def __init__(self, path):
         self.lines = bench.Lines(path)
-        # Uses a separate file object for reading. A file object for both directions drops the data that it
-        # has read ahead when it writes.
+        # Uses a separate file object for reading. A file object for both directions discards its buffered input when it
+        # writes.
         self.input = self.lines.socket.makefile("r", encoding="utf-8", newline="\n")
         self.told = []
 
@@ -166,8 +166,8 @@ class SocketApi(bench.BenchTest):
         seen += second.events(lambda e: e["kind"] == "sequence_finished")
         self.assertEqual([e["id"] for e in seen], list(range(1, len(seen) + 1)))
         self.assertEqual(self.softgripd.end(), 0)
-        # A new daemon numbers its events from one. So a client must receive all its events, whatever the
-        # client has seen of the previous daemon.
+        # A new daemon numbers its events from one. A client must therefore receive all events of the new daemon,
+        # regardless of the events that it has received from the previous daemon.
         again = self.daemon(self.rig_path)
         again.wait_for_state("idle")
         third = self.client("watcher")
@@ -180,7 +180,7 @@ class SocketApi(bench.BenchTest):
         slow = self.client("slow")
         slow.ask("subscribe", since=0)
         slow.ask("watch", rate_hz=50)
-        time.sleep(3)  # meanwhile, state lines fill the kernel's buffers of this connection
+        time.sleep(3)  # meanwhile, lines with the state fill the kernel's buffers of this connection
         asking = self.client("busy")
         for _ in range(5):  # each acknowledgement causes an event
             asking.ask("acknowledge")
@@ -191,8 +191,8 @@ class SocketApi(bench.BenchTest):
             try:
                 told.append(slow.line())
             except AssertionError:
-                # On a very busy machine, the daemon may have closed the connection, because a client may not
-                # leave its data unread for more than ten seconds.
+                # The daemon closes a connection whose data the client has not read for ten seconds. On a very busy
+                # machine, this may have happened here.
                 slow = self.client("slow")
                 slow.ask("subscribe", since=ids[-1] if ids else 0)
                 told += slow.told

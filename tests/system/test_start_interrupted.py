@@ -52,7 +52,7 @@ class StartInterrupted(quiet_rig.QuietRigTest):
     def test_the_sequence_of_another_client_goes_on(self):
         process = self.start("--wait", sequence=self.short)
         request = self.wait_until_running()
-        process.send_signal(signal.SIGSTOP)  # pauses the program, so that it does not notice the end of its sequence
+        process.send_signal(signal.SIGSTOP)  # pauses the program, so that it does not detect the end of its sequence
         self.wait_until_ended(request)
         self.softgripd.wait_for_state("idle")
         theirs = self.softgripd.result("start", sequence="long", sequence_text=quiet_rig.LONG)["request"]
@@ -70,7 +70,8 @@ class StartInterrupted(quiet_rig.QuietRigTest):
                 time.sleep(chance.choice((0.01, 0.1)) * chance.random())
                 process.send_signal(signal.SIGINT)
                 code, errors = self.ended_by(process)
-                if code == 0:  # the daemon accepted the start before the signal, and the program did not have to wait
+                if code == 0:  # exit code 0: the daemon accepted the start before the signal, so the program did not
+                               # wait
                     self.wait_until_running()
                     self.softgripd.result("stop")
                 else:
@@ -129,8 +130,8 @@ class StartInterrupted(quiet_rig.QuietRigTest):
                 self.assertIsNone(self.running())
 
     def test_an_older_daemon_is_refused(self):
-        """The simulated daemon answers hello like an early daemon of version 1, in which starts had no ids. The
-        program must not send it a start."""
+        """Tests a simulated daemon that answers hello like an early daemon of version 1. Such a daemon does not know
+        ids of starts, so the program must not send it a start."""
         heard = []
         listener = socket.socket(socket.AF_UNIX)
         self.addCleanup(listener.close)

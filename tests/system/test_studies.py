@@ -56,8 +56,7 @@ class Tune(bench.BenchTest):
         rig = (self.folder / "config/rig.yaml").read_text().replace("rate_hz: 200", "rate_hz: -200")
         done = self.tune("--rig", self.write("config/slow.yaml", rig), "--out", "pid.yaml", expect=3)
         self.assertRegex(done.stderr, r"slow\.yaml:\d+:\d+: ")
-        # The model does not allow the requested feedforward. The command must refuse the input with the
-        # reason.
+        # The model does not permit the requested feedforward. The command must refuse the input and state the reason.
         done = self.softgrip("tune", "--model", "config/models/zhang2025.yaml", "--feedforward", "full_model", "--out",
                              "pid.yaml", expect=3)
         self.assertIn("beta > alpha + 1/k0", done.stderr)

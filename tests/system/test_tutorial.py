@@ -1,4 +1,4 @@
-"""Carries out docs/tutorial. The test runs the commands in the code blocks of the pages."""
+"""Executes the tutorial in docs/tutorial: runs the commands in the code blocks of the pages."""
 
 import html
 import json
@@ -57,7 +57,7 @@ class FirstRun(bench.BenchTest):
         return done.stdout
 
     def status(self):
-        """Returns the status of the daemon, or None while the daemon does not listen yet."""
+        """Returns the status of the daemon. Returns None if the daemon does not listen yet."""
         done = subprocess.run([bench.SOFTGRIP, "status", "--json"], cwd=self.folder, text=True, capture_output=True,
                               env=self.environment)
         return json.loads(done.stdout) if done.returncode == 0 else {}
@@ -123,8 +123,8 @@ LONGEST_S = 60  # longest permitted processor time of a notebook [s]
 
 @unittest.skipUnless(list(MODULE.glob("softgrip/_core.*.so")), "the build has no Python module: pybind11 was missing")
 class Notebooks(bench.BenchTest):
-    """Runs the cells of each docs/tutorial/*.ipynb, one after the other, in one Python process. For cells without
-    magic commands, a Jupyter kernel does the same, but it would need fifty packages."""
+    """Runs the cells of each docs/tutorial/*.ipynb, one after the other, in one Python process. A Jupyter
+    kernel does the same for cells without magic commands, but it would need fifty packages."""
 
     def printed(self, name):
         """Runs the cells of the notebook in the folder of the test. Returns what they print."""

@@ -1,5 +1,5 @@
-"""Tests a rig with pressures from -40 to 60 kPa on the emulated board. Whatever ends a vacuum, the pressure must then
-go to the rest pressure of 0 kPa."""
+"""Tests a rig with pressures from -40 to 60 kPa on the emulated board. After any end of a vacuum, the pressure must
+return to the rest pressure of 0 kPa."""
 
 import os
 import signal
@@ -111,7 +111,7 @@ class Vacuum(bench.BenchTest):
         self.evacuate()
         self.softgripd.kill()
         time.sleep(1)
-        self.assertLess(max(self.board.commands_kpa()), -20)  # without a command, the board keeps its outputs
+        self.assertLess(max(self.board.commands_kpa()), -20)  # without a new command, the board keeps its outputs
         ended = subprocess.run([bench.SOFTGRIPD, "--config", self.rig_path, "--safe-outputs"], capture_output=True,
                                text=True, timeout=bench.PATIENCE_S, check=False,
                                env={**os.environ, "SERVICE_RESULT": "signal"})

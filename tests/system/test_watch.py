@@ -1,5 +1,5 @@
-"""Tests softgrip watch on a terminal. Checks the display, the keys, and that the program restores the terminal at its
-end."""
+"""Tests softgrip watch on a terminal. Checks the display and the keys. At its end, the program must restore the
+terminal."""
 
 import os
 import signal
@@ -84,7 +84,8 @@ class Watch(bench.BenchTest):
         watched.wait_for("fault F202 of left")
         self.emulated.ask("clear blind")
         screen = watched.wait_for("The cause is gone")
-        # A text that is too long for its line continues in the next one, so the remedy's last word is visible, too.
+        # If a text is too long for its line, it continues in the next line. The last word of the remedy must therefore
+        # be visible.
         self.assertIn("measure its electrical signal.", " ".join(screen.split()))
         self.assertIn("s stop  v vent  r release  a acknowledge  g start  q quit", screen)
 

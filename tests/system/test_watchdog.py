@@ -1,5 +1,5 @@
-"""Tests that the daemon notifies the service manager's watchdog while the loop, the bus and the service thread run.
-When one of these threads hangs, the notifications must end."""
+"""Tests that the daemon notifies the watchdog of the service manager while the loop, the bus and the service thread
+run. If one of these threads stalls, the daemon must stop these notifications."""
 
 import contextlib
 import os
@@ -55,7 +55,7 @@ class Watchdog(bench.BenchTest):
         self.addCleanup(self.daemon_.kill)
         if hang.stdout.readline() != "hangs\n":
             self.skipTest("this user may not trace another process")
-        self.notices_for(patience_s)  # the daemon waits for this time before it treats the thread as hanging
+        self.notices_for(patience_s)  # the daemon waits for this time before it treats the thread as stalled
         notices = self.notices_for(2)
         self.assertNotIn("WATCHDOG=1", notices)
         self.assertTrue(self.daemon_.running())  # the daemon must not end by itself; only the service manager ends it

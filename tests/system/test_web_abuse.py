@@ -21,7 +21,7 @@ class Abuse(web.WebTest):
         (self.folder / "runs" / "one" / "picture.svg").write_text("<svg/>")
 
     def check_recordings(self):
-        """Checks nothing, because the only recording here is one that a test makes itself."""
+        """Replaces the check of recordings, because the only recording is one that a test writes itself."""
 
     def connect(self):
         client = socket.create_connection(("127.0.0.1", self.told.port))
@@ -33,8 +33,7 @@ class Abuse(web.WebTest):
         """Sends exactly these bytes. Returns the complete answer."""
         with socket.create_connection(("127.0.0.1", self.told.port)) as client:
             client.settimeout(bench.PATIENCE_S)
-            # the server may close the connection before it has received everything (EPIPE, ECONNRESET,
-            # ENOTCONN)
+            # the server may close the connection before it has received the whole request (EPIPE, ECONNRESET, ENOTCONN)
             with contextlib.suppress(OSError):
                 client.sendall(data)
                 client.shutdown(socket.SHUT_WR)

@@ -34,8 +34,8 @@ class Limits(web.WebTest):
         (self.runs / "one").mkdir(parents=True)
 
     def check_recordings(self):
-        """Checks nothing, because the tests of this file record nothing or fill the folder of recordings
-        themselves."""
+        """Replaces the check of recordings, because the tests of this file record nothing or fill the folder of
+        recordings themselves."""
 
     def send(self, told, path, receive_buffer=None):
         """Opens a connection that sends a request and does not read the answer."""
@@ -104,7 +104,7 @@ class Limits(web.WebTest):
         held = []
         for number in range(600):
             path = ("/recordings/one/run.csv", "/api/stream", "/api/recordings", "/chart.js")[number % 4]
-            # The server may close a connection that exceeds the limit while the client is sending.
+            # The server may close the connection while the client is sending, because the request exceeds the limit.
             with contextlib.suppress(OSError):
                 held.append(self.send(told, path, receive_buffer=4096))
             if number % 50 == 49:
@@ -140,14 +140,14 @@ class Limits(web.WebTest):
         self.assertEqual(told.metrics()["softgrip_web_pages"], 6)
 
     def test_a_list_is_made_once_for_all_who_ask(self):
-        """Six viewers list 20,000 folders. The test measures the processor time for the lists, because all other
-        requests wait for this time."""
+        """Tests six viewers that list 20,000 folders. The test measures the processor time for the lists, because the
+        lists delay all other requests by this time."""
         for number in range(20_000):
             (self.runs / f"run-{number:06}").mkdir()
         (self.runs / "run-999999").mkdir()
         (self.runs / "run-999999" / "run.csv").touch()
         told = self.start_web()
-        time.sleep(2.5)  # waits, because the server reads a recently changed folder a second time
+        time.sleep(2.5)  # waits until the change is old: the server reads a recently changed folder a second time
         lists = []
 
         def view():
@@ -215,7 +215,7 @@ class Limits(web.WebTest):
         time.sleep(4)
         self.assertLess(processor_s(told.child.pid) - before, 0.4, "of 4 s")
         self.assertIn(b"event: state", page.recv(1 << 20), "an open page must continue")
-        self.assert_heard(told)  # the server closes connections that send no request, so this request gets an answer
+        self.assert_heard(told)  # the server closes connections that send no request, so it must answer this request
 
     def test_a_limit_of_descriptors_that_is_lowered_ends_nothing_but_pages(self):
         told = self.start_web()

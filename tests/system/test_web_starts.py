@@ -1,5 +1,5 @@
-"""Tests starts from a browser that does not receive the answer. softgrip-web must stop each of these sequences by the
-id of its start. It must not stop any other sequence."""
+"""Tests starts from a browser that does not receive the reply. softgrip-web must stop the started sequence by the id of
+the start. It must not stop any other sequence."""
 
 import json
 import signal

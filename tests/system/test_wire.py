@@ -1,5 +1,5 @@
-"""Cuts the connection in the middle of a grip. Tests which fault latches and when, how the outputs change, and which
-steps are needed to continue."""
+"""Cuts the connection in the middle of a grip. Tests which fault is latched and when, how the outputs change, and which
+steps are necessary to continue."""
 
 import bench
 
@@ -30,8 +30,8 @@ class Wire(bench.BenchTest):
         self.assertGreaterEqual(missed, bench.BUS_DOWN_CYCLES // 2)
 
     def check_nothing_moves_until_started(self, daemon, rig_process, sequence="pick_stone"):
-        """After the connection is restored, the rig must stay vented and faulted until it is acknowledged. No finger
-        may move until a new start."""
+        """After the connection is restored, the rig must stay vented and faulted until an operator resets the fault. No
+        finger may move until a new start."""
         bench.wait_for("the bus", lambda: daemon.status()["bus"]["connected"])
         for _ in range(20):
             self.assertEqual(daemon.status()["state"], "faulted")
@@ -66,9 +66,9 @@ class Wire(bench.BenchTest):
         daemon.wait_for_event("fault_latched", code="F101")
         bench.wait_for("the end of the recording", lambda: not daemon.status()["recording"]["active"])
         self.check_cycles_to_fault(self.recordings()[0])
-        # The fingers of the new emulator have never moved, so they have no creep, but the daemon's model
-        # still expects creep. So a sequence that detects objects would have to wait. A sequence that only
-        # sets a pressure starts at once.
+        # The fingers of the new emulator have never moved, so they have no creep. However, the model of the daemon
+        # still predicts creep. A sequence that detects objects would therefore have to wait. A sequence that sets a
+        # pressure and detects no objects starts immediately.
         again = self.emulator("--object", "stone", port=port, name="softgrip-rig-again")
         self.check_nothing_moves_until_started(daemon, again, "pressure_staircase")
 

@@ -3,9 +3,8 @@ fault must latch with the correct code."""
 
 import bench
 
-# Maps a permanent fault of the connection to the daemon faults that may latch. An invalid reply ends the
-# session. Depending on the moment, the last error of the daemon is the invalid reply or the failed next
-# session.
+# Maps a permanent fault of the connection to the daemon faults that may be latched. An invalid reply ends the session.
+# The last error of the daemon is then either the invalid reply or the failed attempt to open the next session.
 WIRE = {
     "lost_request": ("", ("F101", "F102")),
     "no_reply": ("", ("F101", "F102")),
@@ -43,7 +42,7 @@ class WireFaults(bench.BenchTest):
     def test_one_bad_reply_is_survived(self):
         for kind in (*WIRE, "repeated_reply"):
             if kind == "disconnect":
-                continue  # a disconnect affects more than one reply, because it lasts until the test clears it
+                continue  # a disconnect affects all replies until the test clears it
             with self.subTest(kind):
                 before = self.softgripd.result("statistics")["bus"]["exchanges"]
                 self.emulated.ask(f"fault {kind}_once")
@@ -51,8 +50,8 @@ class WireFaults(bench.BenchTest):
                                lambda: self.softgripd.result("statistics")["bus"]["exchanges"] > before + 10)
                 self.fresh_readings()
                 self.assertEqual(self.softgripd.status()["state"], "idle", self.softgripd.errors())
-                # A late or repeated reply must not shift the later replies. So the reading must be that of
-                # the finger.
+                # A late or repeated reply must not shift the later replies. The reading must therefore be that of the
+                # finger.
                 for channel in self.softgripd.status()["channels"]:
                     self.assertAlmostEqual(channel["displacement_mm"], 0, delta=0.3)
 

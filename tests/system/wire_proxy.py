@@ -1,8 +1,8 @@
 """A Modbus TCP proxy between daemon and board. It can disturb the connection, and it records the written values.
 
 The proxy uses the addresses of the shipped ADAM-6024 map: six inputs from 0, two outputs from 10, input status from
-20. KINDS contains the names of the disturbances. fault_matrix.yaml describes the class of faults that each
-disturbance represents."""
+20. KINDS contains the names of the disturbances. For each disturbance, fault_matrix.yaml describes the class of
+faults that it represents."""
 
 import contextlib
 import math
@@ -64,7 +64,7 @@ class Fault:
         self.keys = keys
         self.random = random.Random(seed)
         self.first_touch = None  # time.monotonic() of the first message that the fault changed
-        self.memory = {}  # values that a disturbance keeps from one message to the next
+        self.memory = {}  # values that a disturbance stores between messages
 
     def touch(self):
         """Returns True if the fault must change this message."""
@@ -135,7 +135,7 @@ class Session:
         self.send(reply.bytes())
 
     def wait_until_gone(self):
-        """Sends no further message. Returns when the daemon closes the session."""
+        """Stops sending messages in this session. Returns when the daemon closes the session."""
         while not self.proxy.closed:
             ready, _, _ = select.select([self.client], [], [], 0.05)
             if ready and not self.client.recv(4096):
@@ -146,8 +146,8 @@ class Session:
             end.close()
 
 
-# Functions that disturb a request and its reply. They return True if they have handled the message, and False
-# if the fault does not apply to this message.
+# Functions that disturb a request and its reply. A function returns True if it has handled the message, and False if
+# the fault does not apply to this message.
 
 def noticeable(words, others):
     return any(abs(a - b) > TOLERATED_RAW for a, b in zip(words, others))
@@ -189,13 +189,13 @@ def repeated(session, fault, request):
 
 
 def replayed(session, fault, request):
-    """Replies with old contents in a frame with valid numbers, like a gateway with a cache."""
+    """Replies with old contents in a valid frame, like a gateway with a cache."""
     reply = session.ask_board(request)
     session.proxy.note(request)
     if request.function == 4:
         old = fault.memory.setdefault((request.address(), len(reply.pdu)), bytes(reply.pdu))
-        # The daemon cannot notice old sensor readings that differ only by noise. However, it can notice old
-        # outputs that do not follow its commands.
+        # Old sensor readings differ from new ones by noise only, so the daemon cannot detect them. However, the daemon
+        # can detect old outputs that do not follow its commands.
         true = reply.words()
         reply.pdu = bytearray(old)
         if request.address() == OUTPUTS and noticeable(true, reply.words()):
@@ -295,7 +295,7 @@ def corrupted_header(session, fault, request):
 
 
 def changed_words(session, fault, request, change):
-    """Passes the reply to a read of the inputs on, after `change` has changed its register values."""
+    """Forwards the reply to a read of the inputs. Before, `change` changes the register values of the reply."""
     reply = session.ask_board(request)
     session.proxy.note(request)
     if is_read_of(request, INPUTS) and len(reply.pdu) > 2 and reply.function == 4 and fault.touch():
@@ -384,7 +384,7 @@ def asymmetric(session, fault, request):
 
 
 def received_by_some(session, fault, request):
-    """Passes the value for the right output on. The left output keeps the value that it had at the beginning of the
+    """Forwards the value for the right output. The left output keeps the value that it had at the beginning of the
     fault."""
     def change(words):
         words[0] = fault.memory.setdefault("word", words[0])
@@ -392,7 +392,7 @@ def received_by_some(session, fault, request):
 
 
 def blocked(session, fault, request):
-    """Simulates another sender on the line that sends without a pause, so that no reply arrives."""
+    """Simulates another sender on the line. It sends without a pause, so that no reply arrives."""
     if not fault.touch():
         return False
     session.ask_board(request)
@@ -412,7 +412,7 @@ def reset(session, fault, request):
 
 
 def half_open(session, fault, request):
-    """Makes this session fail without a message to the daemon or the board. New sessions work normally."""
+    """Stops this session without a message to the daemon or the board. New sessions work normally."""
     sessions = fault.memory.setdefault("dead", set())
     if not sessions:
         sessions.add(id(session))
@@ -453,7 +453,7 @@ def stalled(session, fault, request):
 
 
 def exception(session, fault, request):
-    """Answers every request with a Modbus exception, and carries out no request."""
+    """Answers every request with a Modbus exception and executes no request."""
     if not fault.touch():
         return False
     request.pdu = bytearray([request.function | 0x80, fault.key("code", 4)])
@@ -477,7 +477,7 @@ KINDS = {f.__name__: f for f in (
 
 class Proxy:
     """Accepts the connection of the daemon and connects to the board. `writes` contains (time.monotonic(), [raw
-    outputs]) of each write that was passed on."""
+    outputs]) of each write that the proxy has forwarded."""
 
     def __init__(self, board_port):
         self.board_port = board_port

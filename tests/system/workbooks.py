@@ -46,8 +46,8 @@ def letters(column):
 
 
 def sheet(rows, strings, first_row=1, first_column=0, below="", row_attributes=""):
-    """Returns the XML of a sheet with these rows of cells. The file does not contain cells and rows that are None.
-    New texts are added to `strings`."""
+    """Returns the XML of a sheet with these rows of cells. Omits cells and rows that are None. Adds new texts to
+    `strings`."""
     lines = []
     for number, row in enumerate(rows, first_row):
         if row is None:
@@ -71,7 +71,7 @@ def sheet(rows, strings, first_row=1, first_column=0, below="", row_attributes="
 
 def package(sheets, strings=(), from_1904=False, changed=None):
     """Returns the bytes of a workbook. `sheets` maps names to XML. `changed` maps files of the workbook to their new
-    content, or to None to leave a file out."""
+    content; a file that is mapped to None is omitted."""
     relations, listed, parts = [], [], {}
     for number, (name, xml) in enumerate(sheets.items(), 1):
         relations.append((f"rId{number}", "worksheet", f"worksheets/sheet{number}.xml"))

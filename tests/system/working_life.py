@@ -12,8 +12,8 @@ import subprocess
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 MODEL = SOURCE / "config/models/bench_twin.yaml"
-# The model parameters that increase with the gain (GAINS), and those that decrease when the gain increases
-# (STIFFNESSES).
+# Model parameters that increase with the gain of the finger (GAINS), and model parameters that decrease when the gain
+# increases (STIFFNESSES).
 GAINS = {"alpha_mm_per_kpa": 0.21105, "beta_mm_per_kpa": 0.1713}
 STIFFNESSES = {"k0_kpa_per_mm": 325.9, "k1_kpa_per_mm": 18.16, "c1_kpa_s_per_mm": 299.8, "k2_kpa_per_mm": 2.761,
                "c2_kpa_s_per_mm": 1.621}
@@ -27,7 +27,7 @@ class Finger:
     """Describes how a simulated finger differs from the healthy finger."""
     gain: float = 1
     zero_mm: float = 0
-    leak: float = 0  # share of the pressure that a leak removes
+    leak: float = 0  # fraction of the pressure that the finger loses by a leak
     valve_lag_s: float = VALVE_LAG_S
     gain_per_c: float = 0
 

@@ -4,12 +4,13 @@
 # SOURCE is the folder systemd/.
 set -euo pipefail
 unit=$2 source=$3
-# The largest accepted exposure level of systemd-analyze, 1.5 of 10, in tenths.
+# Largest accepted exposure level of systemd-analyze, in tenths. The level 1.5 of 10 is accepted.
 most_exposure=15
 
 case $1 in
   verify)
-    # For unknown keys, systemd prints a message but returns 0. Therefore, any output is a failure.
+    # If a key is unknown, systemd prints a message but returns 0. Therefore, the check fails if systemd prints
+    # anything.
     said=$(systemd-analyze verify --man=no "$unit" 2>&1) || true
     [ -z "$said" ] || { echo "$said"; exit 1; }
     ;;
@@ -26,8 +27,8 @@ case $1 in
     grep '^dialout:x:20:softgrip$' "$root/etc/group"
     ;;
   folders)
-    # As root, systemd-tmpfiles creates the folders and removes old files from one of them. Without root, it
-    # only reads its configuration file.
+    # If the test runs as root, systemd-tmpfiles creates the folders and removes old files from one of them. Otherwise,
+    # systemd-tmpfiles only reads its configuration file.
     root=$(mktemp -d) && trap 'rm -rf "$root"' EXIT
     mkdir "$root/etc"
     printf 'softgrip:x:%s:%s::/:/\n' "$(id -u)" "$(id -g)" >"$root/etc/passwd"
@@ -38,7 +39,7 @@ case $1 in
     mkdir "$runs/kept" && touch "$runs/kept/run.csv" "$runs/health/notes.yaml"
     systemd-tmpfiles --root="$root" --clean "$source/softgrip.tmpfiles"
     [ -f "$runs/kept/run.csv" ]
-    # This copy of the configuration file removes files after 1 s instead of 90 days.
+    # In this copy of the configuration file, files are removed after 1 s instead of 90 days.
     sed 's/90d$/1s/' "$source/softgrip.tmpfiles" >"$root/etc/softgrip.conf"
     sleep 1.5
     systemd-tmpfiles --root="$root" --clean "$root/etc/softgrip.conf"
@@ -46,14 +47,16 @@ case $1 in
     [ -f "$runs/health/notes.yaml" ]
     ;;
   rules)
-    # Each rule gives the group access to a GPIO chip or a converter. Before that, the rule must ask the
+    # Each udev rule gives the group access to a GPIO chip or a converter. Before a rule gives access, it must ask the
     # daemon if the rig file names this device.
     rules=$source/softgrip.rules.in
     asks='PROGRAM="@CMAKE_INSTALL_FULL_BINDIR@/softgripd --config @SOFTGRIP_CONFIGURATION@/rig_service.yaml --device %k"'
     grep -E 'SUBSYSTEM=="(gpio|iio)"' "$rules" >/dev/null
     if grep -E 'SUBSYSTEM=="(gpio|iio)"' "$rules" | grep -vF "$asks"; then exit 1; fi
-    # The daemon answers with its exit code. 0: the rig file names the device. 6: the rig file does not name
-    # the device. 3: the rig file cannot be read.
+    # The daemon answers with its exit code:
+    # 0: the rig file names the device;
+    # 6: the rig file does not name the device;
+    # 3: the rig file cannot be read.
     softgripd=$(sed -n 's/^ExecStart=\([^ ]*\) .*/\1/p' "$unit")
     folder=$(mktemp -d) && trap 'rm -rf "$folder"' EXIT
     cp -r "$source/../config" "$folder"

@@ -1,5 +1,5 @@
 #pragma once
-// Lines as softgripd sends them, and damaged copies of these lines.
+// Lines in the form in which softgripd sends them, and damaged copies of these lines.
 
 #include <algorithm>
 #include <string>
@@ -78,8 +78,8 @@ inline std::vector<Json> good_lines() {
   };
 }
 
-/// Returns damaged copies of a line. For each value in the line, there is a copy without it, and one copy per
-/// other kind of value in its place.
+/// Returns damaged copies of a line. In each copy, one value of the line is missing or replaced by another
+/// JSON value.
 inline std::vector<Json> damaged(const Json& line) {
   const Json others =
       Json::parse(R"([null, true, 0, -1, 1.5, 1e300, "", "x", [], [1], [[]], {}, {"a": null}])");
@@ -87,7 +87,8 @@ inline std::vector<Json> damaged(const Json& line) {
   const Json flat = line.flatten();
   std::vector<std::string> places;
   for (const auto& [leaf, value] : flat.items()) {
-    // Add the path of each value on the way from the root of the line to the present leaf, each path once.
+    // Add the path of each value between the root of the line and this leaf. Skip paths that the list already
+    // contains.
     for (std::size_t end = 0; end != std::string::npos;) {
       end = leaf.find('/', end + 1);
       const std::string place = leaf.substr(0, end);

@@ -1,5 +1,5 @@
 #pragma once
-// A board that forwards every call to another board. A test overrides the calls whose behaviour it changes.
+// A board that forwards every call to another board. A test overrides single calls to change their behaviour.
 
 #include "drivers/board/board.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Virtual time for commands that move a rig without a daemon. It advances only during sleeps.
+// Virtual time for commands that move a rig without a daemon. The time advances only during sleeps.
 
 #include <limits>
 
@@ -10,7 +10,7 @@ namespace softgrip::tools::testing {
 
 struct VirtualTime {
   VirtualTime() { clock.set(1'000'000'000); }
-  /// Returns a function that requests a stop from the time `stop_at` on.
+  /// Returns a function that requests a stop when the time `stop_at` is reached.
   [[nodiscard]] StopRequest stop() {
     return [this] { return clock.now() >= stop_at; };
   }

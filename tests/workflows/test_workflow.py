@@ -1,5 +1,5 @@
-"""Tests the workflow with small logs: a table with a wrong row, a killed run that the next call continues, and the
-steps that are run a second time."""
+"""Tests the workflow with small logs. Covers a table with a wrong row, a killed run that the next call continues, and
+the steps that then run a second time."""
 
 import json
 import os
@@ -15,7 +15,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("SOFTGRIP_BUILD", SOURCE / "build" / "release"))
 RUN = SOURCE / "workflows/run.py"
 TWIN = SOURCE / "config/models/bench_twin.yaml"
-SLOW = "--starts 250"  # makes a step long, so that the test can kill the run during the step
+SLOW = "--starts 250"  # makes a step slow, so that the test can kill the run during this step
 
 
 class Workflow(unittest.TestCase):
@@ -104,8 +104,8 @@ class Workflow(unittest.TestCase):
         self.run_table(table)
         after = self.written()
         self.assertEqual(len(after), len(names))
-        # Two cores run steps. Snakemake may not have recorded the last finished step of each core, so up to
-        # two steps are run twice.
+        # Steps run on two cores. If the run is killed, Snakemake may not have recorded the last finished step of each
+        # core. Up to two steps are therefore run twice.
         self.assertLessEqual(sum(after[name] != when for name, when in before.items()), 2,
                              "finished steps are not run again")
         self.assertEqual(list((self.folder / "out").glob("*/*/running-*")), [])

@@ -22,28 +22,27 @@ constexpr const char* ends_with_block = "the end of a Python block stops its seq
 constexpr const char* stops_no_other = "leaving a block stops no other start";
 constexpr std::size_t client_count = 2;
 constexpr std::array block_sequences{"free_stroke", "empty_grip", "pressure_staircase", "hand_over"};
-/// Time between two turns in which a client reads the messages of the daemon.
+/// Interval at which a client reads the messages of the daemon.
 constexpr Nanoseconds client_look_pause = ns_per_s / 50;
-/// Longest time for which a client waits for the daemon's response to its request.
+/// Longest time for which a client waits for the response of the daemon to its request.
 constexpr Nanoseconds block_patience = 5 * ns_per_s;
-/// Longest permitted time from the sending of a stop to the end of the sequence. Time during incidents is not
+/// Longest permitted time from a stop request to the end of the sequence. Time during incidents is not
 /// counted.
 constexpr Nanoseconds block_end_bound = 2 * ns_per_s;
-/// Share of the blocks whose program is killed before it sends a stop.
+/// Fraction of the blocks in which the client program is killed before it sends a stop.
 constexpr double killed_share = 0.1;
 constexpr std::uint64_t start_line = 1;
 constexpr std::uint64_t stop_line = 2;
 
-/// A start of a sequence and the later actions of the client that sent it.
+/// A start of a sequence, and the later actions of the client that has requested this start.
 struct Started {
   std::string id;
-  std::uint64_t life = 0;                ///< number of the daemon run (from start to end) in which the start
-                                         ///< was sent
-  std::optional<std::uint32_t> request;  ///< id that the daemon has given to the request; nullopt: not yet
-                                         ///< accepted
-  bool left = false;                     ///< the client has sent a request that stops this start
-  bool confirmed = false;                ///< the daemon has responded to the request that stops this start
-  bool halted = false;     ///< another client has sent a stop, a vent or a release after this start
+  std::uint64_t life = 0;                ///< number of the daemon run in which the client has sent the start
+  std::optional<std::uint32_t> request;  ///< id that the daemon has given to the start request; nullopt: not
+                                         ///< accepted yet
+  bool left = false;                     ///< true: the client has sent a request that stops this start
+  bool confirmed = false;                ///< true: the daemon has confirmed the request that stops this start
+  bool halted = false;     ///< true: another client has sent a stop, a vent or a release after this start
   Nanoseconds waited = 0;  ///< time since the stop request was sent, except during incidents
 };
 
@@ -124,7 +123,7 @@ class BlocksInWorld final : public Guest {
     if (life == life_ && host_.daemon() != nullptr) host_.daemon()->socket->hang_up(client);
   }
 
-  /// Sends the stop request at once, without a status query before it.
+  /// Sends the stop request immediately. Unlike other requests, it is not preceded by a status query.
   void leave(daemon::ClientId client, Started& started, std::uint64_t life) {
     Json line = tools::stop_of(started.id);
     line["id"] = stop_line;

@@ -1,7 +1,7 @@
 #pragma once
-// Simulates clients that start a sequence at the beginning of a block of their program and stop it at the end
-// of the block, like a `with` statement of Python. The Python client and `softgrip start` use the same
-// requests.
+// Simulates clients that start a sequence at the beginning of a block of their program and stop the sequence
+// at the end of the block. A `with` statement of Python works in this way. The Python client and `softgrip
+// start` send the same requests.
 
 #include <memory>
 

@@ -22,12 +22,12 @@ constexpr const char* reaction_kept = "the reaction to a stopped heartbeat is no
 
 constexpr auto start_code = static_cast<std::uint16_t>(plc::CommandCode::start);
 constexpr auto vent_code = static_cast<std::uint16_t>(plc::CommandCode::vent);
-/// Longest permitted time from the time-out of a master's heartbeat until a daemon responds to the stop that
-/// the gateway sends. Time during incidents is not counted.
+/// Longest permitted time from a heartbeat time-out of a master until a daemon responds to the stop that the
+/// gateway then sends. Time during incidents is not counted.
 constexpr Nanoseconds reaction_bound = 2 * ns_per_s;
 
-/// Returns true if the response to a stop is final: the daemon has stopped the sequence, or no sequence was
-/// running.
+/// Returns true if no further stop is necessary after this response: the daemon has stopped the sequence, or
+/// no sequence was running.
 bool answers_for_good(const Json& line) {
   if (line.value("ok", false)) return true;
   constexpr int starting = static_cast<int>(plc::Reason::refusal) + 6;
@@ -48,7 +48,8 @@ void CommandWatch::sent(const Json& line, const std::optional<Block>& cause, Nan
   const std::string name = line["command"];
   const auto id = line["id"].get<std::uint64_t>();
   if (name == "hello" || name == "watch") return;
-  // The simulated masters never command a stop, so the gateway sends this stop because a master is silent.
+  // The simulated masters never command a stop. A stop therefore means that the gateway has detected a silent
+  // master.
   if (name == "stop") {
     look(now);
     ++halts_;

@@ -17,7 +17,7 @@ using daemon::shutdown_deadline;
 constexpr Nanoseconds look_pause = ns_per_s / 20;
 constexpr Nanoseconds service_pause = ns_per_s / 50;
 constexpr Nanoseconds heartbeat_patience = ns_per_s / 2;
-/// Value of WatchdogSec in the systemd unit: longest time between two heartbeats of the daemon.
+/// Longest permitted interval between two heartbeats of the daemon. Equals WatchdogSec in the systemd unit.
 constexpr Nanoseconds manager_patience = 2 * ns_per_s;
 /// Longest time for which a run of one sequence waits until the rig is idle.
 constexpr Nanoseconds one_shot_patience = 10 * ns_per_s;
@@ -99,7 +99,8 @@ void DaemonInWorld::main_body() {
   for (const Part part : {Part::service, Part::recorder}) {
     while (!scheduler_.done(actor(part))) clock.sleep_until(clock.now() + ns_per_s / 1000);
   }
-  // A thread that hangs cannot be joined, so the process ends without waiting for the loop and the bus.
+  // A stalled thread cannot be joined. Therefore the process ends without waiting for the loop and the bus
+  // thread.
   for (const Part part : {Part::loop, Part::bus}) scheduler_.kill(actor(part));
   ended_ = true;
 }
@@ -132,12 +133,12 @@ void DaemonInWorld::serve() {
   service.pump();
   for (auto request = requests_.begin(); request != requests_.end();) {
     const auto id = service.submit(request->kind, request->sequence);
-    if (!id) {  // the service is busy with another request, so the client repeats its request
+    if (!id) {  // the service is busy with another request, so the client repeats this request later
       ++request;
       continue;
     }
     on_submit(request->kind, *id);
-    // While this request waits, the service refuses further requests as busy.
+    // While this request is pending, the service refuses other requests as busy.
     unanswered_[*id] = {request->kind, scheduler_.now()};
     request = requests_.erase(request);
   }

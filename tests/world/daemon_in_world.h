@@ -1,6 +1,7 @@
 #pragma once
-// Simulates one run of the daemon from start to end on the simulated clock. Loop, bus, service and recorder
-// are the same classes as on a real rig. Each runs the same thread body as in daemon/service/real_run.cpp.
+// Simulates one run of the daemon, from start to end, on the simulated clock. Loop, bus, service and recorder
+// are the classes that run on a real rig. Their threads execute the same functions as in
+// daemon/service/real_run.cpp.
 
 #include <functional>
 #include <map>
@@ -26,14 +27,14 @@ namespace softgrip::world {
 enum class Part : std::uint8_t { loop, bus, service, recorder, main };
 inline constexpr std::size_t part_count = 5;
 
-/// A request of a client to which the daemon has not responded.
+/// A request of a client to which the daemon has not responded yet.
 struct Asked {
   control::Request::Kind kind = control::Request::Kind::none;
   Nanoseconds at = 0;
 };
 
-/// The clock of the loop. As on a real machine, any two readings of the clock differ, so the row that is
-/// written at shutdown has another time than all other rows.
+/// The clock of the loop. As on a real machine, any two readings of this clock differ. The row that the
+/// recorder writes at shutdown therefore has another time than all other rows.
 class LoopClock final : public WorldClock {
  public:
   using WorldClock::WorldClock;
@@ -50,11 +51,11 @@ class LoopClock final : public WorldClock {
 /// The settings in which two runs of the daemon can differ.
 struct Life {
   std::string folder;         ///< folder for the recordings of this run
-  std::string record_folder;  ///< folder of all recordings, in place of the folder of the rig file; empty:
-                              ///< not set
+  std::string record_folder;  ///< folder of all recordings, instead of the one in the rig file; empty: not
+                              ///< set
   std::shared_ptr<const daemon::LoadedSequence>
-      sequence;  ///< sequence of a run that ends with this sequence, as in `softgrip run`; null: the daemon
-                 ///< runs as a service
+      sequence;  ///< sequence after which the daemon ends, as in `softgrip run`; null: the daemon runs as a
+                 ///< service
   std::shared_ptr<const daemon::SequenceLoader> loader;  ///< loads the sequences of clients; null: the daemon
                                                          ///< has no socket
 };
@@ -72,18 +73,19 @@ class DaemonInWorld {
   /// Sends a request as a client does. The service thread receives the request in its next turn. `sequence`
   /// is the sequence of a start request.
   void ask(control::Request::Kind kind, std::shared_ptr<const daemon::LoadedSequence> sequence = nullptr);
-  /// Requests that the daemon ends, like SIGTERM.
+  /// Requests that the daemon ends, as SIGTERM does.
   void terminate() noexcept { asked_to_end_ = true; }
-  /// Ends the daemon at once, like SIGKILL.
+  /// Ends the daemon immediately, as SIGKILL does.
   void kill();
 
   [[nodiscard]] ActorId actor(Part part) const { return actors_[static_cast<std::size_t>(part)]; }
   [[nodiscard]] bool owns(ActorId id) const;
   [[nodiscard]] bool ended() const noexcept { return ended_; }
   [[nodiscard]] bool safe_state_confirmed() const { return shared.safe_state_confirmed.load(); }
-  /// Returns the outcome of a run of one sequence after its end.
+  /// Returns the outcome of a daemon that ran one sequence. Call it after the end of the daemon.
   [[nodiscard]] daemon::Outcome outcome();
-  /// Returns true if the heartbeat to the service manager has stopped. The manager then kills the daemon.
+  /// Returns true if the daemon sends no heartbeats to the service manager any more. The manager then kills
+  /// the daemon.
   [[nodiscard]] bool starved() const noexcept { return starved_; }
   [[nodiscard]] const std::map<std::uint32_t, Asked>& unanswered() const noexcept { return unanswered_; }
 

@@ -1,6 +1,6 @@
-// swapcontext() sets the kernel's signal mask at every switch between fibres, which took 40 % of the time of
-// a world. Therefore setcontext() is used only to enter a fibre for the first time. Later switches use
-// _setjmp() and _longjmp(), as in QEMU's coroutines.
+// swapcontext() sets the signal mask of the kernel at every switch between fibres. This took 40 % of the
+// processor time of a simulation. Therefore setcontext() is used only for the first entry into a fibre. Later
+// switches use _setjmp() and _longjmp(), as the coroutines of QEMU do.
 #include "tests/world/fibre.h"
 
 #include <utility>
@@ -9,8 +9,8 @@ namespace softgrip::world {
 namespace {
 
 constexpr std::size_t stack_bytes = 512 * 1024;
-/// The fibre that is being entered for the first time. It is a global variable because makecontext() passes
-/// no pointer to the body.
+/// Fibre whose first entry is in progress. This is a global variable, because makecontext() passes no pointer
+/// to the function of the fibre.
 thread_local Fibre* entered = nullptr;
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
-// Runs a function on a stack of its own. The function can return control to its caller before it ends, and
-// continue later. All fibres run in one thread.
+// Runs a function on a stack of its own. The function can return control to its caller before its end and
+// continue later. All fibres run in the same thread.
 
 #include <ucontext.h>
 
@@ -11,8 +11,8 @@
 
 namespace softgrip::world {
 
-/// A function with a stack of its own. If the function has not ended, the destructor frees the stack without
-/// destroying the objects on it, as if a thread were killed.
+/// A function with a stack of its own. If the function has not ended, the destructor frees the stack. It does
+/// not destroy the objects on the stack, as if a thread had been killed.
 class Fibre {
  public:
   explicit Fibre(std::function<void()> body);

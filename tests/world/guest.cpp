@@ -31,8 +31,8 @@ std::unique_ptr<Guest> make_guest(Tool tool, Host& host) {
 RigShape shape_for(Tool tool, const rig::RigFile& example, std::uint64_t seed, bool always_habits) {
   RigShape shape = draw_shape(example, seed);
   draw_habits(shape, always_habits);
-  // An experiment ends at once if an object obstructs the finger. The rigs for experiments therefore have no
-  // objects.
+  // An experiment ends immediately if an object obstructs the finger. The rigs for experiments therefore
+  // contain no objects.
   if (tool == Tool::baseline || tool == Tool::experiment) {
     for (auto& channel : std::get<simulation::SimulatedBoardSettings>(shape.rig.board).channels)
       channel.plant.object.reset();

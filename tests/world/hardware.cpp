@@ -10,7 +10,7 @@ using drivers::BusStatus;
 
 namespace {
 
-/// One exchange in this number of exchanges begins with a reading of the outputs, as in the Modbus driver.
+/// Number of exchanges of which one begins with a reading of the outputs, as in the Modbus driver.
 constexpr unsigned looks_first_every = 8;
 
 }  // namespace
@@ -25,7 +25,7 @@ void Hardware::put_out() {
   for (std::size_t i = 0; i < plants_.size(); ++i) plants_[i].command(outputs_kpa_[i]);
 }
 
-/// Advances the simulated plants in whole steps. If a value is written during a step, it takes effect in the
+/// Advances the simulated plants in whole steps. A value that is written during a step takes effect in the
 /// next step.
 void Hardware::advance_plants(Nanoseconds until) {
   const double step_s = seconds(settings_.plant_step);
@@ -39,7 +39,7 @@ void Hardware::move_to(Nanoseconds now) {
     begun_ = true;
     plants_at_ = now;
   }
-  // As on commercial boards, the watchdog time begins with the first request.
+  // The watchdog time begins with the first request, as on commercial boards.
   if (settings_.watchdog > 0 && !tripped_ && fed_at_ > 0 && fed_at_ + settings_.watchdog < now) {
     advance_plants(fed_at_ + settings_.watchdog);
     tripped_ = true;
@@ -122,7 +122,7 @@ void WorldBoard::carry() {
 }
 
 /// Sends the request, repeats it if necessary, and waits for the response. Returns false if no response has
-/// arrived at the time `end`.
+/// arrived until the time `end`.
 bool WorldBoard::ask(Request request, Nanoseconds end, bool lost) {
   for (;; request.again = true) {
     const Nanoseconds sent = scheduler_.now();
@@ -181,7 +181,7 @@ BusStatus WorldBoard::exchange(std::span<const double> commands_kpa, std::span<m
   bool taken = true;
   bool answered = true;
   bool arrives = !lost || line_.reply_lost;
-  // If the outputs are read by a request of their own, this last request writes no channel.
+  // If a separate request reads the outputs, this request is the last one and writes no channel.
   const std::size_t requests_end = channels + (habits_.reads_apart ? 1 : 0);
   for (std::size_t first = 0; first < requests_end && arrives;
        first = std::max(first + 1, std::min(first + at_once, channels))) {
@@ -208,7 +208,7 @@ BusStatus WorldBoard::exchange(std::span<const double> commands_kpa, std::span<m
     left_.clear();
     return BusStatus::overwritten;
   }
-  left_.clear();  // the outputs are unknown until the next confirmed exchange
+  left_.clear();  // the outputs are unknown until the next exchange is confirmed
   if (!taken) return BusStatus::watchdog_tripped;
   bool as_written = true;
   for (std::size_t i = 0; i < readings.size(); ++i) {

@@ -50,7 +50,7 @@ constexpr std::array<const char*, 31> names{"start",
                                             "daemon dies and plc silent"};
 constexpr std::array<const char*, part_count> parts{"loop", "bus", "service", "recorder", "main"};
 
-/// Relative frequency with which a kind of incident is drawn.
+/// Relative frequency of one kind of incident.
 struct Share {
   Kind kind;
   double share;
@@ -68,7 +68,7 @@ constexpr std::array shares{
 
 constexpr double mean_time_between_stalls_s = 20;
 
-/// Incidents of softgrip-plc and its masters, with their relative frequencies.
+/// Kinds of incidents of softgrip-plc and its masters, with their relative frequencies.
 constexpr std::array plc_shares{
     Share{Kind::plc_command, 60},   Share{Kind::plc_silent, 8},     Share{Kind::plc_cut, 14},
     Share{Kind::plc_half, 6},       Share{Kind::gateway_paused, 6}, Share{Kind::gateway_dies, 2},
@@ -99,8 +99,8 @@ Kind draw_kind(Drawing& drawing, std::span<const Share> of) {
   return of.front().kind;
 }
 
-/// Draws a pause [s] that is shorter or longer than the time-out of the board's watchdog. Half of the pauses
-/// are close to this time-out.
+/// Draws the duration [s] of a pause, shorter or longer than the watchdog time-out of the board. Half of the
+/// drawn pauses are close to this time-out.
 double pause_s(Drawing& drawing, Nanoseconds watchdog) {
   const double limit_s = watchdog > 0 ? seconds(watchdog) : 0.5;
   return drawing.uniform() < 0.5 ? limit_s * (0.9 + 0.4 * drawing.uniform()) : drawing.between(0.002, 3);
@@ -158,8 +158,8 @@ bool lasts(Kind kind) {
   return kind >= Kind::pause && kind != Kind::plc_command && kind != Kind::gateway_dies;
 }
 
-/// Draws stalls of the clock with a separate seed, so that all other incidents are equal with and without
-/// stalls.
+/// Draws stalls of the clock with a separate seed. All other incidents are therefore the same with and
+/// without stalls.
 void draw_stalls(const Draw& draw, std::vector<Incident>& incidents) {
   Drawing drawing(derived_seed(draw.seed, 3));
   for (double at_s = 1;;) {
@@ -170,8 +170,8 @@ void draw_stalls(const Draw& draw, std::vector<Incident>& incidents) {
   }
 }
 
-/// Draws random incidents of softgrip-plc. No incident begins in the first second, because the PLC clients
-/// connect to softgrip-plc in this time.
+/// Draws random incidents of softgrip-plc. The PLC clients connect to softgrip-plc in the first second, so no
+/// incident begins in this second.
 void draw_plc(const Draw& draw, std::vector<Incident>& incidents) {
   Drawing drawing(derived_seed(draw.seed, 5));
   for (double at_s = 1;;) {
@@ -180,8 +180,8 @@ void draw_plc(const Draw& draw, std::vector<Incident>& incidents) {
     if (one.at >= draw.length) return;
     one.target = drawing.uniform() < 0.75 ? 0 : 1;
     if (one.kind == Kind::plc_command) {
-      // Command codes of the masters. Most are starts; the others are vent, release and acknowledge. Stop is
-      // missing, because it must come only from the gateway when a master becomes silent.
+      // Command codes of the masters. Most of them are starts; the others are vent, release and acknowledge.
+      // The list contains no stop: a stop must come from the gateway only, when a master becomes silent.
       constexpr std::array codes{1, 1, 1, 3, 4, 5, 5};
       one.value = codes[drawing.below(codes.size())];
     } else {
@@ -242,8 +242,8 @@ std::string text_of(const Incident& incident) {
 
 std::vector<Incident> draw_incidents(const Draw& draw) {
   Drawing drawing(derived_seed(draw.seed, 1));
-  // The mean time between incidents is random: in some worlds incidents are so rare that sequences finish, in
-  // others they are frequent.
+  // The mean time between incidents is drawn for each simulation. With a long time, sequences can finish.
+  // With a short time, incidents are frequent.
   const double mean_pause_s = draw.calm * drawing.between(0.25, 4);
   std::vector<Incident> incidents;
   double at_s = 1 + drawing.uniform();
@@ -253,7 +253,7 @@ std::vector<Incident> draw_incidents(const Draw& draw) {
     const Nanoseconds at = nanoseconds(at_s);
     if (at >= draw.length) break;
     incidents.push_back(draw_one(drawing, draw, at));
-    // In most cases, a client resets the fault before the start.
+    // Before 70 % of the starts, a client sends a request that resets the fault.
     if (incidents.back().kind != Kind::start || drawing.uniform() < 0.3) continue;
     Incident clear;
     clear.at = at - ns_per_s / 10;

@@ -1,4 +1,4 @@
-// softgrip-world: simulates whole rigs. A seed determines each simulation completely.
+// softgrip-world simulates whole rigs. A seed determines each simulation completely.
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -32,14 +32,14 @@ struct Options {
   bool habits = false;
 };
 
-/// Smallest number of simulated worlds in which every kind of incident must occur at least once.
+/// Number of simulated worlds from which on every kind of incident must have occurred at least once.
 constexpr std::uint64_t enough_worlds = 10;
 
 struct Sum {
   std::uint64_t worlds = 0, failed = 0, ticks = 0, writes = 0, sequences = 0, holdings = 0, faults = 0,
                 trips = 0, rows = 0, incidents = 0;
-  /// Largest growth of the heap and largest number of descriptors over all worlds. The other members are
-  /// sums.
+  /// growth_bytes is the largest growth of the heap, and descriptors the largest number of descriptors, over
+  /// all worlds. The other members are sums.
   std::uint64_t growth_bytes = 0, descriptors = 0;
   struct Tools {
     std::uint64_t worlds = 0, failed = 0;
@@ -86,19 +86,19 @@ void add(Sum& sum, Tool tool, const WorldResult& result) {
   add(sum, one);
 }
 
-/// Option value that runs a list of tools, one per seed. Experiments take the longest time, so they occur
-/// only once in the list.
+/// Option value for which the seed selects a tool from the list `turns`. Experiments take the longest time,
+/// so this list contains only one of them.
 constexpr const char* all_tools = "tools";
 constexpr std::array turns{
     Tool::calibrate, Tool::plc,    Tool::doctor,     Tool::run, Tool::blocks, Tool::plc,
     Tool::calibrate, Tool::doctor, Tool::baseline,   Tool::run, Tool::plc,    Tool::blocks,
     Tool::calibrate, Tool::doctor, Tool::experiment, Tool::run, Tool::plc};
 
-/// Factor by which --seconds is multiplied for each tool, because experiments take minutes.
+/// Factor on --seconds for each tool. Experiments take minutes, so their factor is larger.
 constexpr std::array<double, tool_count> lives{1, 1, 1, 1, 5, 3, 1, 1};
 
-/// Returns the tool that the user requested. Without a request, returns the tool that `turns` contains for
-/// this seed.
+/// Returns the tool that the user has requested. If the user has requested no tool, returns the tool that
+/// `turns` contains for this seed.
 Tool tool_of(const Options& options, std::uint64_t seed) {
   const auto found = std::find(tool_names.begin(), tool_names.end(), options.tool);
   if (found != tool_names.end()) return static_cast<Tool>(found - tool_names.begin());
@@ -109,8 +109,8 @@ std::string of_tool(Tool tool) {
   return tool == Tool::none ? "" : fmt::format("{}; ", tool_names[static_cast<std::size_t>(tool)]);
 }
 
-/// Prints the data that explain a violation: the shortest list of incidents that causes the violation, and
-/// the end of the trace.
+/// Prints an explanation of a violation: the shortest list of incidents that causes this violation, and the
+/// end of the trace.
 void explain(const Library& library, std::uint64_t seed, const WorldResult& failed,
              const WorldOptions& options) {
   WorldOptions again = options;
@@ -156,7 +156,7 @@ Sum run_share(const Library& library, const Options& options, unsigned job) {
   return sum;
 }
 
-/// Runs each job in a separate process, so that a crash in one world does not affect other jobs.
+/// Runs each job in a separate process, so that a crash in one world does not affect the other jobs.
 Sum run_jobs(const Library& library, const Options& options) {
   if (options.jobs <= 1) return run_share(library, options, 0);
   std::vector<int> ends;
@@ -191,9 +191,10 @@ Sum run_jobs(const Library& library, const Options& options) {
   return all;
 }
 
-/// Prints one line per tool. Returns false if a tool was tested in at least `enough_worlds` simulated worlds
-/// and one of its counts (calls, results, pauses, gaps or faults) is 0. If the tools take turns in
-/// sufficiently many worlds, also returns false if a tool was tested in fewer than `enough_worlds` worlds.
+/// Prints one line per tool. Returns false if the simulated worlds do not test a tool sufficiently. This is
+/// the case if at least `enough_worlds` worlds have run the tool and one of its counts (calls, results,
+/// pauses, gaps or faults) is 0. If the option value is `tools` and the number of seeds is sufficient, each
+/// tool must also have run in at least `enough_worlds` worlds.
 bool tell_tools(const Options& options, const Sum& sum) {
   bool eventful = true;
   for (std::size_t i = 1; i < tool_count; ++i) {

@@ -6,8 +6,8 @@
 namespace softgrip::world {
 namespace {
 
-/// Longest time for which a master waits for the end of a command. After this time, it synchronises its
-/// counter again.
+/// Longest time for which a master waits for the end of a command. After this time, the master synchronises
+/// its counter with the gateway.
 constexpr Nanoseconds master_patience = 3 * ns_per_s;
 constexpr std::size_t most_wanted = 3;
 constexpr auto vent_command = static_cast<std::uint16_t>(plc::CommandCode::vent);
@@ -40,7 +40,7 @@ MasterInWorld::Read MasterInWorld::read(const End& end, const Block& of, Nanosec
     command_ = -1;
     return read;
   }
-  // If one of these values differs, the response belongs to an earlier block.
+  // If one of these values differs from the present block, the response belongs to an earlier block.
   if (of.words[0] != counter_ || of.words[1] != code_ || of.command != command_) return read;
   if (end.outcome == plc::Outcome::refused && end.reason == plc::Reason::not_next) {
     read.refused = command_;

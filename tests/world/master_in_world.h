@@ -1,6 +1,6 @@
 #pragma once
-// Simulates a Modbus master that follows docs/reference/plc-map.md. Defines the blocks of registers that it
-// sends to softgrip-plc.
+// Simulates a Modbus client (master) that follows docs/reference/plc-map.md. Defines the blocks of registers
+// that the master sends to softgrip-plc.
 
 #include <array>
 #include <cstdint>
@@ -18,20 +18,21 @@ namespace softgrip::world {
 struct Block {
   std::array<std::uint16_t, 7> words{};
   bool only_reads = false;
-  int command = -1;         ///< index of the command among all commands of the world; -1: no command
-  std::uint64_t halts = 0;  ///< number of stops and vents that had been executed when the block was written
+  int command = -1;         ///< index of the command in the list of all commands of the world; -1: no command
+  std::uint64_t halts = 0;  ///< number of stops and vents that were executed before the block was written
 
   [[nodiscard]] modbus::Bytes bytes() const;
 };
 
-/// The result of a command. A master reads it after the response to its block.
+/// The result of a command. A master reads the result after the response to its block.
 struct End {
   std::uint16_t done = 0;
   plc::Outcome outcome = plc::Outcome::none;
   plc::Reason reason = plc::Reason::none;
 };
 
-/// A connection of a master. The master sends a request after the response to its previous request.
+/// A connection of a master. The master sends a request after it has received the response to its previous
+/// request.
 struct Wire {
   std::size_t master = 0;
   plc::Masters::Id id = 0;
@@ -41,7 +42,7 @@ struct Wire {
   std::size_t arrived_bytes = 0;  ///< number of bytes of the pending block that the gateway has received
   bool left = false;              ///< true: the master has opened a newer connection
   std::optional<End> reply;
-  std::optional<std::uint16_t> heartbeat;  ///< the last heartbeat that the gateway received on this
+  std::optional<std::uint16_t> heartbeat;  ///< last heartbeat that the gateway has received on this
                                            ///< connection
 };
 
@@ -49,10 +50,10 @@ class MasterInWorld {
  public:
   enum class Progress : std::uint8_t { begins, synchronises, ready, waits };
 
-  /// Queues a command. The master sends it when the handshake permits.
+  /// Queues a command. The master sends the command when the handshake permits it.
   void want(std::uint16_t code);
-  /// Evaluates the last response and continues the handshake. Returns the index of the command whose refusal
-  /// the master has read, or -1.
+  /// Evaluates the last response and continues the handshake. If the master has read that a command was
+  /// refused, returns the index of the command; otherwise returns -1.
   struct Read {
     int refused = -1;
     bool accepted = false;
@@ -60,13 +61,13 @@ class MasterInWorld {
   Read read(const End& end, const Block& of, Nanoseconds now);
   /// Begins the next queued command and gives it the index `number`. Returns false if no command can begin.
   bool next(int number, Nanoseconds now);
-  /// Returns the block of registers that the master writes now.
+  /// Returns the block of registers that the master would write at this moment.
   [[nodiscard]] Block block(std::uint64_t halts);
 
-  bool alive = true;        ///< false: the program of the master has stopped, but its last block is sent
+  bool alive = true;        ///< false: the program of the master has stopped, but the last block is sent
                             ///< repeatedly
   bool beats = true;        ///< true: the master changes its heartbeat
-  std::uint16_t heard = 0;  ///< the last heartbeat of this master that the gateway received
+  std::uint16_t heard = 0;  ///< last heartbeat of this master that the gateway has received
   [[nodiscard]] std::uint16_t counter() const noexcept { return counter_; }
   [[nodiscard]] std::uint16_t code() const noexcept { return code_; }
 

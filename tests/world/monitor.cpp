@@ -12,23 +12,24 @@ namespace {
 
 using control::State;
 
-/// Largest difference between two pressures that differ only by rounding [kPa].
+/// Tolerance for rounding errors when two pressures are compared [kPa].
 constexpr double equal_kpa = 1e-9;
-/// Longest permitted time from a client's vent request until the commands are at rest. The time that the slew
-/// limits need is added.
+/// Longest permitted time from a vent request of a client until the commands are at rest. The time that the
+/// slew limits require is not included.
 constexpr Nanoseconds vent_bound = ns_per_s / 10;
 /// Longest permitted time from a watchdog trip of the board until the daemon latches the fault.
 constexpr Nanoseconds trip_bound = ns_per_s / 2;
-/// Longest permitted time from the first write of another client until the daemon latches the fault. One
-/// exchange in 8 begins with a reading, and the other client can write between two writes of the daemon.
+/// Longest permitted time from the first write of another client until the daemon latches the fault. The
+/// daemon reads the outputs first in only 1 of 8 exchanges, and the other client can write between two writes
+/// of the daemon.
 constexpr Nanoseconds foreign_bound = ns_per_s / 2;
 
 double rest_of(const control::RigSettings& rig, std::size_t channel) {
   return control::resting_kpa(rig.channels[channel].limits);
 }
 
-/// Returns the distance of a pressure from rest on one side [kPa]: above rest if `side` is 1, below rest if
-/// it is -1. Returns 0 on the other side.
+/// Returns the distance of a pressure from the rest pressure [kPa]. If `side` is 1, pressures below rest give
+/// 0; if `side` is -1, pressures above rest give 0.
 double away_kpa(double rest_kpa, double kpa, double side) {
   return std::max(0.0, side * (kpa - rest_kpa));
 }
@@ -146,10 +147,10 @@ void Monitor::watch_grips(Nanoseconds now, const control::TickOutput& output) {
     const control::ChannelOutput& channel = output.channels[i];
     const bool new_grip = channel.result == control::GripResult::holding && results_[i] != channel.result;
     results_[i] = channel.result;
-    // The sequence uses the readings of the previous tick for its decisions.
+    // The sequence decides with the readings of the previous tick.
     const Seen seen = std::exchange(seen_by_[i], {now, now - nanoseconds(channel.age_s), channel.validity});
     const bool old = now - seen.at > nanoseconds(rig_.channels[i].plausibility.max_age_s);
-    // A grip result ends its step, so compare the time of the reading with the beginning of this step.
+    // A grip result ends the grip step. The reading must therefore be newer than the beginning of this step.
     if (new_grip && channel.evidence == control::GripEvidence::displacement &&
         (seen.validity != model::Validity::valid || old || seen.sampled < step_began_[i]))
       violate(now, "HOLDING is based on new readings",
@@ -166,7 +167,7 @@ void Monitor::watch_grips(Nanoseconds now, const control::TickOutput& output) {
 void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> outputs_kpa,
                     std::span<const double> commands_kpa, bool safe_outputs) {
   const double period_s = 1 / rig_.rate_hz;
-  // An exchange may write several times. The elapsed time is measured at the first write.
+  // An exchange may consist of several writes. The elapsed time is measured at the first write.
   if (began != last_began_)
     elapsed_s_ = last_began_ == 0 ? period_s : seconds(began - last_began_) + 2 * period_s;
   if (watch_gap(began, now, commands_kpa)) safe_outputs = true;
@@ -191,18 +192,18 @@ void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> 
   foreign_ = false;
 }
 
-/// Returns the output that the daemon must assume, which is normally the actual output. There are two
-/// exceptions: another client has written and the daemon has not read the outputs since, or the daemon's safe
-/// action is to hold.
+/// Returns the output that the daemon must assume for its next write. This is normally the actual output. If
+/// another client has written the output, it is the last command in two cases: the daemon has not read the
+/// outputs since then, or its safe action is to hold.
 double Monitor::known_kpa(std::size_t channel, double output_kpa) const {
   const bool unread = foreign_read_ != foreign_writes_;
   const bool holds = safe_at_entry_[channel] != rest_of(rig_, channel);
   return foreign_left_[channel] && (unread || holds) ? last_kpa_[channel] : output_kpa;
 }
 
-/// Checks that the daemon writes the rest pressures after a gap in communication that is so long that the
-/// board may have vented. Returns true if the daemon wrote the rest pressures after such a gap. The daemon
-/// reads its clock after it wakes up and before the exchange begins.
+/// Checks the first write after a gap in communication. If the gap is so long that the board may have vented,
+/// the daemon must write the rest pressures. Returns true if the daemon wrote the rest pressures after such a
+/// gap. The daemon reads its clock after it wakes up and before the exchange begins.
 bool Monitor::watch_gap(Nanoseconds began, Nanoseconds now, std::span<const double> commands_kpa) {
   if (watchdog_ == 0 || last_began_ == 0 || woke_ == 0) return false;
   bool rested = true;
@@ -215,13 +216,14 @@ bool Monitor::watch_gap(Nanoseconds began, Nanoseconds now, std::span<const doub
   return rested && began - last_woke_ >= longest;
 }
 
-/// Checks the slew limits of a channel above and below the rest pressure, and when the pressure crosses the
-/// rest pressure.
+/// Checks the slew limits of a channel in three cases: above the rest pressure, below it, and when the
+/// pressure crosses it.
 void Monitor::watch_way(Nanoseconds now, std::size_t channel, double output_kpa, double command_kpa,
                         double elapsed_s, bool safe_outputs) {
   const control::LimitSettings& limits = rig_.channels[channel].limits;
   const double rest_kpa = rest_of(rig_, channel);
-  // Compare with the last written value, because the output does not follow if the board refuses writes.
+  // If the board refuses writes, the output does not follow. Therefore compare the command with the last
+  // written value.
   const double last_kpa = last_kpa_[channel];
   const double slew = command_kpa > last_kpa ? limits.slew_up_kpa_per_s : limits.slew_down_kpa_per_s;
   const bool crosses = (command_kpa - rest_kpa) * (last_kpa - rest_kpa) < 0;
@@ -244,9 +246,10 @@ void Monitor::watch_way(Nanoseconds now, std::size_t channel, double output_kpa,
 
 void Monitor::tripped(bool has_spoken) {
   armed_ = armed_at_entry_ = false;
-  // The slew limits of the next write start from the rest pressures.
+  // After a trip, the outputs are at rest, so the slew limits of the next write start from the rest
+  // pressures.
   for (std::size_t i = 0; i < last_kpa_.size(); ++i) last_kpa_[i] = rest_of(rig_, i);
-  // A daemon that has had no successful exchange cannot know of the trip.
+  // If a daemon has had no successful exchange yet, it cannot know of the trip.
   if (!trip_untold_ && has_spoken) trip_untold_ = 0;
 }
 
@@ -304,8 +307,8 @@ void Monitor::foreign_wrote(std::span<const double> outputs_kpa) noexcept {
 
 void Monitor::watch_foreign(Nanoseconds now, const Excuse& excuse, Nanoseconds duration) {
   if (!foreign_unseen_ || excuse.paused || excuse.line_but_for_foreign) return;
-  // A daemon that is faulted or starting writes the rest pressures. It need not report the writes of another
-  // client.
+  // A faulted or starting daemon writes the rest pressures. In these states, the daemon need not report the
+  // writes of another client.
   const bool answered = state_ == State::faulted || state_ == State::starting;
   foreign_unseen_ = answered ? 0 : *foreign_unseen_ + duration;
   if (*foreign_unseen_ > foreign_bound)

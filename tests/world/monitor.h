@@ -1,5 +1,5 @@
 #pragma once
-// Checks the invariants of the daemon whenever a write reaches the board and after every tick.
+// Checks the invariants of the daemon before every write that reaches the board and after every tick.
 
 #include <array>
 #include <cstdint>
@@ -17,18 +17,18 @@ namespace softgrip::world {
 
 struct Violation {
   Nanoseconds at = 0;
-  std::string invariant;  ///< name of the invariant that was violated
+  std::string invariant;  ///< name of the violated invariant
   std::string text;
 };
 
-/// Disturbances of the daemon and its surroundings at this moment. Time limits do not count the time during a
+/// Disturbances of the daemon, the line and the board at this moment. Time limits do not count the time of a
 /// disturbance.
 struct Excuse {
   bool paused = false;   ///< true: a thread or the whole daemon process is paused
-  bool no_line = false;  ///< the line or the board prevents exchanges, or has done so and no exchange has
-                         ///< succeeded since
-  bool line_but_for_foreign = false;  ///< the line or the board prevents exchanges as for no_line; writes of
-                                      ///< another client are not counted as a disturbance
+  bool no_line = false;  ///< true: the line or the board prevents exchanges, or no exchange has succeeded
+                         ///< since they did
+  bool line_but_for_foreign = false;  ///< like no_line, but writes of another client do not count as a
+                                      ///< disturbance
   bool no_daemon = false;
 };
 
@@ -37,49 +37,49 @@ class Monitor {
   /// Creates a monitor. `margin` is the result of rig::watchdog_margin().
   Monitor(const control::RigSettings& rig, Nanoseconds watchdog, Nanoseconds margin);
 
-  /// Called after a tick of the loop. `now` is the time that the daemon's clock shows.
+  /// Called after a tick of the loop. `now` is the time on the clock of the daemon.
   void ticked(Nanoseconds now, const control::TickOutput& output);
-  /// Called before a write of the daemon reaches the board, which has the given outputs. `began` is the start
-  /// time of the exchange.
+  /// Called before a write of the daemon reaches the board. `outputs_kpa` are the outputs of the board before
+  /// the write, and `began` is the start time of the exchange.
   void write(Nanoseconds began, Nanoseconds now, std::span<const double> outputs_kpa,
              std::span<const double> commands_kpa, bool safe_outputs);
-  /// Called when an exchange begins at `now`, immediately after the daemon has read whether it may move.
-  /// `woke` is the time at which its bus thread last read the clock; 0: unknown. The daemon measures the gap
-  /// since the last exchange with this time.
+  /// Called when an exchange begins at `now`, immediately after the daemon has read if it may move. `woke` is
+  /// the time at which the bus thread last read the clock; 0: unknown. The daemon uses `woke` to measure the
+  /// gap since the last exchange.
   void exchange_begins(Nanoseconds now = 0, Nanoseconds woke = 0) noexcept {
     armed_at_entry_ = armed_;
     safe_at_entry_ = safe_kpa_;
     before_ = std::exchange(exchange_, now);
     woke_ = woke;
   }
-  /// States whether a program without a control loop may move pressures away from rest.
+  /// Specifies for a program without a control loop if it may move pressures away from rest.
   void may_rise(bool allowed) noexcept { armed_ = allowed; }
-  /// Called when another client has written these outputs. Before the daemon has read them, it may move the
-  /// outputs within the slew limits, up to its own last command. After the reading, it may do so only if its
+  /// Called when another client has written these outputs. Until the daemon has read the outputs, it may move
+  /// them within the slew limits up to its own last command. After this reading, it may do so only if its
   /// safe action is to hold.
   void foreign_wrote(std::span<const double> outputs_kpa) noexcept;
   void foreign_ended() noexcept { foreign_unseen_.reset(); }
   /// Called when the daemon has read the outputs. `foreign_writes` is the number of writes that another
-  /// client has made before this reading.
+  /// client had made before the daemon read the outputs.
   void outputs_read(std::uint64_t foreign_writes) noexcept { foreign_read_ = foreign_writes; }
-  /// Called when the board's watchdog has vented. `has_spoken` is true if the daemon has had a successful
-  /// exchange, so that it can know of the trip.
+  /// Called when the watchdog of the board has vented. `has_spoken` is true if the daemon has had a
+  /// successful exchange before and can therefore know of the trip.
   void tripped(bool has_spoken);
   void asked(control::Request::Kind kind);
   void submitted(control::Request::Kind kind, std::uint32_t id);
-  /// Called when simulated time has passed while the board had these outputs.
+  /// Called when simulated time has passed. The board had the outputs `outputs_kpa` during this time.
   void passed(Nanoseconds now, const Excuse& excuse, std::span<const double> outputs_kpa);
-  /// Called when a daemon starts. Discards the data about the previous daemon.
+  /// Called when a daemon starts. Deletes the data about the previous daemon.
   void boots();
-  /// Called when the daemon has written its safe outputs and then ended by itself.
+  /// Called when the daemon has written its safe outputs and has then ended without being killed.
   void left(Nanoseconds now, std::span<const double> outputs_kpa);
   void answer_is_late(Nanoseconds now, Nanoseconds asked_at);
-  /// Reports the violation that the board has vented, but that the daemon's message to the user (`otherwise`)
-  /// does not say so.
+  /// Reports a violation: the board has vented, but the message of the daemon to the user does not say so.
+  /// `otherwise` describes the missing message.
   void told_nobody(Nanoseconds now, const char* otherwise) {
     violate(now, "a tripped watchdog causes a fault", otherwise);
   }
-  /// Reports that a command or its exit code violates an invariant.
+  /// Reports that the result or the exit code of a command violates an invariant.
   void command_breaks(Nanoseconds now, const char* invariant, std::string text) {
     violate(now, invariant, std::move(text));
   }
@@ -104,27 +104,27 @@ class Monitor {
   Nanoseconds watchdog_;
   Nanoseconds margin_;
   std::optional<Violation> violation_;
-  bool armed_ = false;  // a start was accepted, and no later event forbids motion away from rest
+  bool armed_ = false;  // true: a start was accepted, and no later event forbids a motion away from rest
   bool armed_at_entry_ = false;
   [[nodiscard]] double known_kpa(std::size_t channel, double output_kpa) const;
-  bool foreign_ = false;              // another client has written after the daemon's last write
-  std::uint64_t foreign_writes_ = 0;  // number of writes by another client since the start
+  bool foreign_ = false;              // true: another client has written after the last write of the daemon
+  std::uint64_t foreign_writes_ = 0;  // number of writes by another client since the start of the simulation
   std::uint64_t foreign_read_ =
-      0;  // number of writes by another client before the daemon last read the outputs
-  std::vector<bool> foreign_left_;  // per channel: the output still has the value that another client wrote
-  Nanoseconds last_began_ = 0;      // start time of the last exchange that wrote
-  double elapsed_s_ = 0;            // time between the last two exchanges that wrote
-  Nanoseconds exchange_ = 0;        // start time of the newest exchange, even if it did not write [ns]
+      0;  // number of writes by another client when the daemon last read the outputs
+  std::vector<bool> foreign_left_;  // per channel; true: the output still has the value that another client
+                                    // wrote
+  Nanoseconds last_began_ = 0;      // start time of the last exchange with a write
+  double elapsed_s_ = 0;            // time between the last two exchanges with a write [s]
+  Nanoseconds exchange_ = 0;        // start time of the newest exchange, with or without a write [ns]
   Nanoseconds before_ = 0;          // start time of the exchange before the newest exchange [ns]
   Nanoseconds woke_ = 0;
-  Nanoseconds last_woke_ = 0;  // last reading of the clock (woke_) before the exchange that began at
-                               // last_began_
+  Nanoseconds last_woke_ = 0;  // time at which the bus thread last read the clock before last_began_
   Nanoseconds seen_ = 0;
   std::uint32_t halted_by_ = 0;  // id of the newest stop or vent request of a client
   control::State state_ = control::State::starting;
   std::vector<double> safe_kpa_;
   std::vector<double> safe_at_entry_;
-  std::vector<double> last_kpa_;  // the commands of the last write, one per channel [kPa]
+  std::vector<double> last_kpa_;  // commands of the last write, one per channel [kPa]
   struct Seen {                   // a reading, stored until the next tick
     Nanoseconds at = 0;
     Nanoseconds sampled = 0;
@@ -134,12 +134,12 @@ class Monitor {
   std::array<control::GripResult, control::max_channels> results_{};
   std::array<std::uint16_t, control::max_channels> steps_{};
   std::array<Nanoseconds, control::max_channels> step_began_{};
-  std::optional<Nanoseconds> vent_waits_;      // time since a client requested a vent, except during
-                                               // disturbances; nullopt: none pending
-  std::optional<Nanoseconds> foreign_unseen_;  // time since another client changed the outputs, except during
+  std::optional<Nanoseconds> vent_waits_;      // time since a client requested a vent, without disturbances;
+                                               // nullopt: no vent requested
+  std::optional<Nanoseconds> foreign_unseen_;  // time since another client changed the outputs, without
                                                // disturbances; nullopt: not changed
-  std::optional<Nanoseconds> trip_untold_;     // time since the board vented, except during disturbances;
-                                               // nullopt: the daemon knows of it
+  std::optional<Nanoseconds> trip_untold_;     // time since the board vented, without disturbances; nullopt:
+                                               // the daemon knows of the vent
   std::optional<Nanoseconds> dead_;            // time since the last daemon ended; nullopt: a daemon runs
 };
 

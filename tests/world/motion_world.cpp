@@ -22,11 +22,12 @@ using Kind = Incident::Kind;
 /// Pause between the end of one command and the start of the next command.
 constexpr Nanoseconds call_pause = ns_per_s;
 constexpr double longest_answer_s = 1.5;
-/// Largest number of writes of the program that may replace another client's values. The number exceeds 1,
-/// because the driver reads the outputs before a write only in 1 of 8 exchanges.
+/// Largest number of writes of the program that may replace values of another client. The driver reads the
+/// outputs before a write in only 1 of 8 exchanges, so this number is larger than 1.
 constexpr unsigned most_overwritten = 32;
 
-/// A simulated operator who enters the true values of gauge and manometer after a delay.
+/// A simulated operator who reads the gauge and the manometer. After a delay, the operator enters the true
+/// value.
 class PersonInWorld final : public tools::calibrate::Operator {
  public:
   PersonInWorld(Surroundings& around, std::size_t channel, std::uint64_t seed)
@@ -68,7 +69,7 @@ class MotionWorld {
       wrote(began, commands);
     };
     around_.on_exchange = [this] {
-      // The previous exchange has ended. `good_` states whether an incident hindered it.
+      // The previous exchange has ended. `good_` is true if no incident prevented this exchange.
       spoke_ = spoke_ || good_;
       good_ = around_.line.status == drivers::BusStatus::ok;
       spoke_since_trip_ = true;
@@ -101,7 +102,7 @@ class MotionWorld {
  private:
   [[nodiscard]] double drawn() { return uniform_at(seed_, ++drawn_); }
 
-  /// Calls the command again and again until the world ends.
+  /// Calls the command repeatedly until the simulation ends.
   void call() {
     actor_ = around_.scheduler.add("tool", [this] {
       for (;;) {
@@ -149,8 +150,8 @@ class MotionWorld {
     if (session.leave()) left();
   }
 
-  /// Runs one of the calibration procedures. Returns the reason why the procedure has no result, or "" if it
-  /// has one.
+  /// Runs one of the calibration procedures. Returns "" if the procedure has a result. Otherwise returns the
+  /// reason why it has no result.
   [[nodiscard]] std::string measure(tools::MotionSession& session, PersonInWorld& person,
                                     const tools::calibrate::Settings& settings) {
     const rig::RigFile& rig = around_.shape.rig;
@@ -211,8 +212,8 @@ class MotionWorld {
     up_ = false;
     for (std::size_t i = 0; i < commands.size(); ++i)
       up_ = up_ || commands[i] != control::resting_kpa(around_.shape.rig.settings.channels[i].limits);
-    // The slew limits do not apply after a lost exchange or a gap: the pressure may then fall in a single
-    // step.
+    // After a lost exchange or a gap, the pressure may fall in a single step, so the slew limits do not
+    // apply.
     const bool safe_outputs = !up_ || around_.excuse().no_line;
     around_.monitor.write(began, around_.scheduler.now(), outputs, commands, safe_outputs);
     around_.note_write(outputs, commands);
@@ -225,8 +226,8 @@ class MotionWorld {
     }
     if (!begins || !alive_) return;
     const Nanoseconds until = around_.scheduler.now() + incident.duration;
-    // If any write clears the board's watchdog trip, no program can notice a pause between its reading of the
-    // clock and its write.
+    // On some boards, any write clears a watchdog trip. With such a board, no program can detect a pause
+    // between its reading of the clock and its write.
     const bool may_be_late = around_.shape.may_pause_late();
     switch (incident.kind) {
       case Kind::stop:
@@ -290,15 +291,15 @@ class MotionWorld {
   ActorId actor_ = 0;
   bool alive_ = false;             // true: the command is running
   bool interrupted_ = false;       // true: the operator has pressed Ctrl-C
-  bool up_ = false;                // the last write of the command contained a pressure that is not the rest
-                                   // pressure
-  bool vented_ = false;            // true: the board has vented while the command had applied pressure
-  bool good_ = false;              // true: no incident has hindered the present exchange so far
-  bool spoke_ = false;             // the command has had a successful exchange, so that it can notice a gap
-  bool spoke_since_trip_ = false;  // an exchange has begun since the watchdog trip, so that the command can
-                                   // notice the trip
-  std::vector<double> written_;    // values of the last write of the command that reached the board
-  unsigned overwritten_ = 0;       // number of writes of the command that replaced another client's values
+  bool up_ = false;                // true: the last write of the command contained a pressure other than the
+                                   // rest pressure
+  bool vented_ = false;            // true: the board has vented while the command applied a pressure
+  bool good_ = false;              // true: no incident has prevented the present exchange so far
+  bool spoke_ = false;             // true: the command has had a successful exchange, so it can detect a gap
+  bool spoke_since_trip_ = false;  // true: an exchange has begun since the watchdog trip, so the command can
+                                   // detect the trip
+  std::vector<double> written_;    // values of the last write of the command that has reached the board
+  unsigned overwritten_ = 0;       // number of writes of the command that replaced values of another client
   std::uint64_t foreign_writes_ = 0;
   Nanoseconds again_at_ = 0;
 };

@@ -1,6 +1,6 @@
 #pragma once
-// Simulates a rig without a daemon, whose board is driven by `softgrip calibrate --move` or `softgrip doctor
-// --move`. A simulated operator reads gauges and sometimes presses Ctrl-C.
+// Simulates a rig without a daemon. `softgrip calibrate --move` or `softgrip doctor --move` controls the
+// board. A simulated operator reads gauges and sometimes presses Ctrl-C.
 
 #include "tests/world/world.h"
 

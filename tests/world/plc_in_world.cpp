@@ -30,7 +30,7 @@ constexpr std::array master_addresses{"10.0.0.1", "10.0.0.2"};
 constexpr Nanoseconds master_period = ns_per_s / 20;
 constexpr Nanoseconds wire_latency = ns_per_s / 500;
 constexpr Nanoseconds gateway_pause = ns_per_s;
-/// Pause between two connection attempts of the gateway, as in tools/client/daemon_link.cpp.
+/// Pause between two attempts of the gateway to connect, as in tools/client/daemon_link.cpp.
 constexpr Nanoseconds retry_pause = ns_per_s / 4;
 constexpr const char* config_folder = SOFTGRIP_SOURCE_DIR "/config/";
 
@@ -51,7 +51,7 @@ class PlcInWorld final : public Guest {
         clock_(around_.scheduler),
         loader_(std::make_shared<const daemon::SequenceLoader>(around_.shape.rig.settings,
                                                                std::string(config_folder) + "sequences")) {
-    // This master's heartbeat never changes, so the gateway must not watch it.
+    // The heartbeat of this master never changes, so the gateway must not monitor this master.
     masters_[1].beats = false;
     watch_.on_break = [this](const char* invariant, std::string text) {
       around_.monitor.command_breaks(around_.scheduler.now(), invariant, std::move(text));
@@ -117,7 +117,7 @@ class PlcInWorld final : public Guest {
   }
 
  private:
-  // The functions of softgrip-plc. They make the same steps in the same order as tools/plc/server.cpp.
+  // Functions of softgrip-plc. They perform the same steps as tools/plc/server.cpp, in the same order.
   void start_gateway() {
     around_.trace("softgrip-plc starts");
     gateway_.emplace(settings_);
@@ -184,7 +184,7 @@ class PlcInWorld final : public Guest {
     if (!gateway_->handshake().waits()) waiting_.reset();
     answered_[wire.id] = block;
     wire.reply = read_end(wire.id, now);
-    // If the master has opened a newer connection, it closes this connection.
+    // A master that has opened a newer connection closes its old one.
     if (wire.left) gateway_->masters().leave(wire.id);
   }
 
@@ -226,8 +226,8 @@ class PlcInWorld final : public Guest {
     watch_.daemon_died();
   }
 
-  /// Sends the messages of the gateway immediately. `cause` is the block of a master because of which they
-  /// are sent; nullopt: none.
+  /// Sends the messages of the gateway immediately. `cause` is the block of registers that made the gateway
+  /// send these messages; nullopt: no block.
   void send(Nanoseconds now, const std::optional<Block>& cause) {
     for (const Json& line : gateway_->lines_to_daemon()) {
       around_.trace("softgrip-plc to the daemon: {}", line.dump());
@@ -255,7 +255,7 @@ class PlcInWorld final : public Guest {
     wires_.push_back({master, *id, {}, {}, 0, 0, false, {}, {}});
     return &wires_.back();
   }
-  /// Returns the time that the daemon's clock shows, for an actor that sleeps by the true time.
+  /// Returns the time on the clock of the daemon. Used by simulated threads that sleep by the true time.
   [[nodiscard]] Nanoseconds clock_seen() const { return around_.scheduler.shown(); }
 
   void cycle(std::size_t index) {
@@ -286,8 +286,8 @@ class PlcInWorld final : public Guest {
     around_.scheduler.wake(actor_);
   }
 
-  /// Opens another connection for the master. The last block that the master has sent arrives late on the old
-  /// connection.
+  /// Opens an additional connection for the master. The last block that the master has sent then arrives late
+  /// on the old connection.
   void cut(const Incident& incident) {
     const std::size_t index = incident.target % master_count;
     Wire* const wire = wire_of(index);
@@ -312,7 +312,7 @@ class PlcInWorld final : public Guest {
   std::shared_ptr<const daemon::SequenceLoader> loader_;
   std::optional<Gateway> gateway_;
   ActorId actor_ = 0;
-  Nanoseconds again_at_ = 0;  // time at which the gateway process is started again
+  Nanoseconds again_at_ = 0;  // time at which the gateway process is restarted
   std::optional<daemon::ClientId> client_;
   Nanoseconds tried_at_ = 0;
   std::array<MasterInWorld, master_count> masters_;

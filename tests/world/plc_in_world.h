@@ -1,6 +1,6 @@
 #pragma once
-// Simulates softgrip-plc (the gateway), two masters, and the register blocks that travel between gateway and
-// masters. The daemon runs in the same world.
+// Simulates softgrip-plc (the gateway), two masters, and the register blocks that they exchange with the
+// gateway. The daemon runs in the same simulated world.
 
 #include <memory>
 

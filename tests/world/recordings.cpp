@@ -32,14 +32,14 @@ RecordingsRead check_recordings(const std::string& folder, const std::vector<Nan
     const std::vector<Nanoseconds> times = times_of(entry.path());
     read.rows += times.size();
     if (times.empty()) continue;
-    // The times of a recording are relative to its first row, while the ticks have the daemon's time. Hence
-    // only time differences are compared.
+    // The times of a recording are relative to its first row, but the ticks have the time of the daemon.
+    // Therefore only time differences are compared.
     bool found = false;
     for (std::size_t first = 0; first < ticks.size() && !found; ++first) {
       bool all = true;
       for (std::size_t row = 0; row < times.size() && all; row += channels) {
         const std::size_t tick = first + row / channels;
-        // The row that is written at shutdown has no tick.
+        // The recorder writes one row at shutdown, for which no tick exists.
         if (tick >= ticks.size()) {
           all = row + channels >= times.size();
           break;

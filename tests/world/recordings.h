@@ -16,8 +16,8 @@ struct RecordingsRead {
 };
 
 /// Checks every recording in `folder`. Between its first and its last row, a recording must contain one row
-/// per channel for each tick. `ticks` contains the times of the loop's ticks in order, relative to the
-/// daemon's origin.
+/// per channel for each tick of the loop. `ticks` contains the times of the ticks in order, relative to the
+/// origin of the daemon's clock.
 [[nodiscard]] RecordingsRead check_recordings(const std::string& folder,
                                               const std::vector<Nanoseconds>& ticks, std::size_t channels);
 

@@ -28,8 +28,8 @@ RigShape draw_shape(const rig::RigFile& example, std::uint64_t seed) {
       one_of(control::SafeAction::hold, control::SafeAction::vent);
   settings.safety.on_emergency_stop =
       one_of(control::SafeAction::vent, control::SafeAction::vent, control::SafeAction::hold);
-  // Largest delay of the bus fault that a rig file may set [cycles]. The delay must be shorter than the
-  // time-out of the board's watchdog.
+  // Largest permitted delay of the bus fault [cycles]. With a larger delay, the watchdog of the board could
+  // trip before the daemon latches the fault.
   const double most_cycles = watchdog_s > 0 ? 0.8 * watchdog_s * settings.rate_hz : 200;
   settings.faults.bus_down_cycles =
       static_cast<std::uint32_t>(std::clamp(one_of(2.0, 5.0, 30.0, most_cycles), 1.0, most_cycles));
@@ -70,7 +70,7 @@ void draw_habits(RigShape& shape, bool always) {
   Habits& habits = shape.habits;
   const double deaf_s = one_of(0.0, 0.05, 0.15, 0.4);
   habits.deaf = nanoseconds(deaf_s);
-  // In one of 4 rig files, `settle_s` is 0.
+  // One of 4 boards gets a `settle_s` of 0 in the rig file.
   habits.settle = nanoseconds(one_of(1.0, 1.0, 1.0, 0.0) * (deaf_s + 0.02));
   habits.repeat_after = nanoseconds(one_of(0.0, 0.2, 0.4) * shape.rig.loop.exchange_deadline_s);
   habits.channels_at_once = static_cast<std::size_t>(one_of(0, 1));

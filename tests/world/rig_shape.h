@@ -1,6 +1,6 @@
 #pragma once
-// Creates the rigs of the simulated worlds. They are variants of the example rig with other rates, fault
-// delays, slew limits and watchdogs.
+// Creates the rigs of the simulated worlds. The rigs are variants of the example rig with different rates,
+// fault delays, slew limits and watchdogs.
 
 #include <cstdint>
 #include <string>
@@ -18,16 +18,16 @@ struct RigShape {
   Habits habits;
   std::string text;
 
-  /// Returns true if the world may pause the bus thread after the thread has read the clock. If the board has
-  /// a settle time, the thread reads the clock after it has fixed its commands. A pause after this reading
-  /// delays the write of these commands, which the daemon cannot prevent.
+  /// Returns true if the bus thread may be paused after it has read the clock. If the board has a settle
+  /// time, the thread determines its commands before it reads the clock. A pause after this reading would
+  /// delay the write of these commands, and the daemon could not prevent the late write.
   [[nodiscard]] bool may_pause_late() const noexcept {
     return (trip_latches || watchdog == 0) && habits.settle == 0;
   }
 };
 
 [[nodiscard]] RigShape draw_shape(const rig::RigFile& example, std::uint64_t seed);
-/// Gives the board peculiarities for 1 seed in 5, or for every seed if `always` is true.
+/// Gives unusual properties to the boards of 1 seed in 5, or to all boards if `always` is true.
 void draw_habits(RigShape& shape, bool always);
 
 }  // namespace softgrip::world

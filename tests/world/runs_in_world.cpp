@@ -18,10 +18,10 @@ namespace {
 
 /// Pause between the end of one command and the start of the next command.
 constexpr Nanoseconds run_pause = ns_per_s;
-/// Interval between two checks of the running daemon.
+/// Interval between two checks of the running daemon by the command.
 constexpr Nanoseconds daemon_look_pause = ns_per_s / 100;
 
-/// A guest that calls a command again and again.
+/// A guest program that calls a command repeatedly.
 class Caller : public Guest {
  public:
   Caller(Host& host, const char* name) : host_(host), name_(name) {}
@@ -51,7 +51,8 @@ class Caller : public Guest {
   virtual bool call() = 0;
   [[nodiscard]] bool ending() const noexcept { return ending_; }
 
-  /// Runs a daemon to its end in the thread of the command. Returns nullopt if the daemon was killed.
+  /// Runs a daemon to its end in the thread of the command. Returns the outcome, or nullopt if the daemon was
+  /// killed.
   [[nodiscard]] std::optional<daemon::Outcome> play(Life life) {
     Scheduler& scheduler = host_.around().scheduler;
     host_.boot(std::move(life));
@@ -83,14 +84,15 @@ class Caller : public Guest {
 class Run final : public Caller {
  public:
   explicit Run(Host& host) : Caller(host, "softgrip run"), seed_(derived_seed(host.around().shape.seed, 6)) {}
-  /// For odd seeds, the command has the option --no-socket, so that clients cannot connect.
+  /// For odd seeds, the command has the option --no-socket, so that no client can connect.
   [[nodiscard]] bool listens() const override { return host_.around().shape.seed % 2 == 0; }
   [[nodiscard]] double calm() const override { return 4; }
 
  private:
   bool call() override {
     const auto& sequences = host_.library().sequences;
-    // About half of the runs play the first sequence, because its part is present, so that some runs finish.
+    // About half of the runs play the first sequence. The part for this sequence is present, so that some
+    // runs finish.
     const double drawn = std::max(0.0, 2 * uniform_at(seed_, met().calls) - 1);
     Life life;
     life.sequence = sequences[static_cast<std::size_t>(drawn * static_cast<double>(sequences.size()))];
@@ -101,7 +103,7 @@ class Run final : public Caller {
   std::uint64_t seed_;
 };
 
-/// A simulated command that plays experiments on the rig.
+/// Simulates a command that plays experiments on the rig.
 class Experiments : public Caller {
  public:
   using Caller::Caller;

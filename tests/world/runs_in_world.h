@@ -1,5 +1,5 @@
 #pragma once
-// Simulated commands that run the daemon in their own process, once for each sequence.
+// Simulates commands that run the daemon in their own process, once for each sequence.
 
 #include <memory>
 
@@ -7,13 +7,13 @@
 
 namespace softgrip::world {
 
-/// Returns a guest that calls `softgrip run` repeatedly.
+/// Returns a guest program that calls `softgrip run` repeatedly.
 [[nodiscard]] std::unique_ptr<Guest> make_run(Host& host);
-/// Returns a guest that calls `softgrip baseline` with one experiment. The rests before the experiment are
-/// omitted.
+/// Returns a guest program that calls `softgrip baseline` with one experiment. The program omits the rests
+/// before the experiment.
 [[nodiscard]] std::unique_ptr<Guest> make_baseline(Host& host);
-/// Returns a guest that plays one experiment after the other, as `softgrip investigate` does. The diagnosis
-/// is omitted, because it moves no finger.
+/// Returns a guest program that plays one experiment after the other, as `softgrip investigate` does. The
+/// program omits the diagnosis, because the diagnosis moves no finger.
 [[nodiscard]] std::unique_ptr<Guest> make_experiment(Host& host);
 
 }  // namespace softgrip::world

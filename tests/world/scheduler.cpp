@@ -8,7 +8,8 @@
 namespace softgrip::world {
 namespace {
 
-/// Largest time by which an actor wakes up too late after a sleep [ns]. Most delays are much smaller.
+/// Longest delay between the end of a sleep and the continuation of a simulated thread [ns]. Most delays are
+/// much smaller.
 constexpr double latest_wake_ns = 300'000;
 
 }  // namespace
@@ -60,7 +61,8 @@ void Scheduler::run_until(Nanoseconds end, const std::function<void(ActorId)>& a
     inside_ = true;
     actor->fibre->resume();
     inside_ = false;
-    // The vector may have grown while the actor ran, so the reference to the actor must be taken again.
+    // The vector may have grown while the simulated thread ran, so read the reference to its entry a second
+    // time.
     Actor& ran = actors_[running_];
     if (ran.fibre->done()) ran.over = true;
     after(running_);

@@ -1,6 +1,6 @@
 #pragma once
-// Runs the threads of a daemon as fibres on one simulated clock. One fibre runs at a time. The order of the
-// fibres depends only on the seed. A fibre can be paused while it sleeps, or immediately after it has read
+// Runs the threads of a daemon as fibres on one simulated clock. One fibre runs at a time, and the seed alone
+// determines the order of the fibres. A fibre can be paused while it sleeps, or immediately after it has read
 // the clock.
 
 #include <cstddef>
@@ -22,42 +22,42 @@ class Scheduler {
  public:
   explicit Scheduler(std::uint64_t seed, Nanoseconds begin) : seed_(seed), now_(begin) {}
 
-  /// Adds a thread, which starts at the present time.
+  /// Adds a simulated thread (actor). It starts at the present time.
   ActorId add(std::string name, std::function<void()> body);
-  /// Ends the actor. It never runs again.
+  /// Ends the simulated thread immediately. It never continues.
   void kill(ActorId actor);
   [[nodiscard]] bool done(ActorId actor) const { return actors_[actor].over; }
 
-  /// Pauses the actor until the time `until`.
+  /// Pauses the simulated thread until the time `until`.
   void pause(ActorId actor, Nanoseconds until);
-  /// Pauses the actor for `duration` immediately after it has next read the clock, so that it continues with
-  /// an outdated time.
+  /// Pauses the simulated thread for `duration` immediately after its next reading of the clock. The thread
+  /// then continues with an outdated time.
   void pause_after_look(ActorId actor, Nanoseconds duration) { actors_[actor].pause_after_look = duration; }
   [[nodiscard]] bool paused(ActorId actor) const;
-  /// Ends the sleep of an actor, because the event for which it waits has occurred.
+  /// Ends the sleep of a simulated thread, because the awaited event has occurred.
   void wake(ActorId actor);
 
-  /// Runs all actors whose time is not later than `end`. Each time an actor goes to sleep, calls `after` with
-  /// its id.
+  /// Runs all simulated threads whose wake-up time is not later than `end`. Calls `after` with the id of a
+  /// thread each time this thread begins to sleep.
   void run_until(Nanoseconds end, const std::function<void(ActorId)>& after);
   void stop() noexcept { stopped_ = true; }
 
   [[nodiscard]] Nanoseconds now() const noexcept { return now_; }
 
-  /// Stops the daemon's clock for `duration`, after which the clock shows the true time. Actors that sleep by
-  /// this clock continue to sleep, and paused actors remain paused. If paused actors ran during a stall, a
-  /// long pause would look short to the daemon, and a board whose watchdog trip is cleared by any write could
-  /// not reveal the pause. A stall during another stall has no effect.
+  /// Stops the clock of the daemon for `duration`. Afterwards, the clock shows the true time. During the
+  /// stall, threads that sleep by this clock continue to sleep, and paused threads remain paused. Otherwise,
+  /// a long pause would look short to the daemon. On a board where any write clears a watchdog trip, the
+  /// daemon could then not detect the pause. A second stall during a stall has no effect.
   void stall_clock(Nanoseconds duration);
   [[nodiscard]] bool clock_stalled() const noexcept { return now_ < stall_ends_; }
-  /// Returns the time that the daemon's clock shows.
+  /// Returns the time on the clock of the daemon.
   [[nodiscard]] Nanoseconds shown() const noexcept { return clock_stalled() ? stall_shows_ : now_; }
-  /// Sleeps until the daemon's clock shows the time `due`. Called by an actor.
+  /// Sleeps until the clock of the daemon shows the time `due`. Called by a simulated thread.
   void sleep_until_shown(Nanoseconds due);
 
-  /// Sleeps until the time `due` plus a random delay, as in the kernel. Called by an actor.
+  /// Sleeps until the true time `due` plus a random delay, as in the kernel. Called by a simulated thread.
   void sleep_until(Nanoseconds due);
-  /// Called by an actor immediately after it has read the clock.
+  /// Called by a simulated thread immediately after it has read the clock.
   void looked();
 
  private:
@@ -69,7 +69,8 @@ class Scheduler {
     Nanoseconds due = 0;
     Nanoseconds paused_until = 0;
     Nanoseconds pause_after_look = 0;
-    bool by_clock = false;  // the actor sleeps until the daemon's clock, not the true time, reaches its time
+    bool by_clock = false;  // true: the thread sleeps by the daemon's clock; false: it sleeps by the true
+                            // time
     bool over = false;
 
     [[nodiscard]] Nanoseconds goes_on() const noexcept { return due > paused_until ? due : paused_until; }
@@ -101,7 +102,7 @@ class WorldClock : public Clock {
     scheduler_.sleep_until_shown(due);
     slept_ = true;
   }
-  /// Returns the time of the first reading of the clock after the thread's last sleep.
+  /// Returns the first time that the thread read from the clock after its last sleep.
   [[nodiscard]] Nanoseconds woke() const noexcept { return woke_; }
 
  private:

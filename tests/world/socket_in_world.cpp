@@ -44,7 +44,8 @@ void SocketInWorld::take(const Arrival& arrival, Nanoseconds now) {
   if (!arrival.line) return api_.on_closed(arrival.client);
   on_line(*arrival.line);
   api_.on_line(arrival.client, arrival.line->dump(), now);
-  // The sequence loader has a real thread, so wait for it. The simulated time does not advance meanwhile.
+  // The sequence loader runs in a real thread, so wait until it has finished. The simulated time does not
+  // advance during this wait.
   while (api_.loads()) {
     std::this_thread::sleep_for(std::chrono::microseconds(20));
     api_.on_time(now);
@@ -52,8 +53,8 @@ void SocketInWorld::take(const Arrival& arrival, Nanoseconds now) {
 }
 
 void SocketInWorld::serve(Nanoseconds now) {
-  // Send the periodic messages that are due first, so that the number of calls in take() has no effect on
-  // them.
+  // Before the lines of the clients, send the periodic messages that are due. Their contents then do not
+  // depend on the number of lines.
   api_.on_time(now);
   api_.on_time(now);
   while (!arrivals_.empty()) {

@@ -1,6 +1,6 @@
 #pragma once
-// Simulates the daemon's socket API without a socket. The test passes lines of clients to the API and reads
-// the lines of the daemon.
+// Simulates the socket API of the daemon without a socket. The test passes the lines of clients to the API
+// and reads the lines of the daemon.
 
 #include <deque>
 #include <functional>
@@ -21,14 +21,14 @@ class SocketInWorld {
   SocketInWorld(daemon::StatusSources sources, rig::SocketSettings settings,
                 std::shared_ptr<const daemon::SequenceLoader> loader, const daemon::EventLog& events);
 
-  /// Adds a client. The service thread notices the client in its next turn.
+  /// Adds a client. The service thread detects the client in its next turn.
   [[nodiscard]] daemon::ClientId connect();
   void hang_up(daemon::ClientId client);
   void say(daemon::ClientId client, const nlohmann::ordered_json& line);
   /// Returns the lines that the daemon has sent to this client since the last call, oldest first.
   [[nodiscard]] std::vector<nlohmann::ordered_json> hear(daemon::ClientId client);
 
-  /// Runs one turn of the service thread.
+  /// Runs one turn of the service thread: reads the lines of clients and sends the lines of the daemon.
   void serve(Nanoseconds now);
 
   /// Called when the service thread reads a line of a client.
@@ -37,7 +37,7 @@ class SocketInWorld {
  private:
   struct Arrival {
     daemon::ClientId client = 0;
-    std::optional<nlohmann::ordered_json> line;  // text of the line; nullopt: the client has closed its
+    std::optional<nlohmann::ordered_json> line;  // text of the line; nullopt: the client has closed the
                                                  // connection
   };
   void take(const Arrival& arrival, Nanoseconds now);

@@ -1,6 +1,6 @@
 #pragma once
 // Simulates the surroundings of a program that drives a rig: board, line, fingers, a second Modbus client and
-// the clock. Contains the monitor that checks the invariants.
+// the clock. Also contains the monitor that checks the invariants.
 
 #include <functional>
 #include <span>
@@ -28,19 +28,19 @@ class Surroundings {
   Surroundings& operator=(Surroundings&&) = delete;
   ~Surroundings() = default;
 
-  /// Adds an actor that begins and ends each of these incidents at its time. The incidents must outlive the
-  /// actor.
+  /// Adds a simulated thread that begins and ends each of these incidents at its time. The incidents must
+  /// exist longer than this thread.
   void let_happen(const std::vector<Incident>& incidents,
                   std::function<void(const Incident& incident, bool begins)> carry_out);
-  /// Begins or ends an incident of the clock, the line, the board or the fingers.
+  /// Begins or ends an incident that concerns the clock, the line, the board or the fingers.
   void carry_out(const Incident& incident, bool begins);
   [[nodiscard]] static bool concerns(Incident::Kind kind) noexcept {
     return kind == Incident::Kind::clock_stalls ||
            (kind >= Incident::Kind::line && kind <= Incident::Kind::part_gone);
   }
-  /// Records a write that has reached the board. `outputs_kpa` are the outputs before this write.
+  /// Records a write that has reached the board. `outputs_kpa` are the outputs before the write.
   void note_write(std::span<const double> outputs_kpa, std::span<const double> commands_kpa);
-  /// Called when a program starts, because it has had no successful exchange so far.
+  /// Called when a program starts. Such a program has not had a successful exchange yet.
   void nobody_spoke() noexcept { good_since_ = false; }
   /// Returns the disturbances that the line and the second Modbus client cause at this moment.
   [[nodiscard]] Excuse excuse() const noexcept;
@@ -56,8 +56,8 @@ class Surroundings {
   WorldBoard::OnWrite on_write = [](auto, auto) {};
   std::function<void()> on_exchange = [] {};
   std::function<void()> on_trip = [] {};
-  std::function<void()> on_hindered = [] {};  ///< called when a peculiarity of the board has made an exchange
-                                              ///< fail
+  std::function<void()> on_hindered = [] {};  ///< function to call when an unusual property of the board has
+                                              ///< made an exchange fail
 
   RigShape shape;
   bool tracing;
@@ -68,7 +68,7 @@ class Surroundings {
   Hardware hardware;
   WorldBoard board;
   Monitor monitor;
-  std::uint64_t fingerprint = 0;  ///< hash of all writes to the board and of their times
+  std::uint64_t fingerprint = 0;  ///< hash of all writes to the board and their times
   std::uint64_t writes = 0;
   std::uint64_t trips = 0;
 
@@ -78,7 +78,7 @@ class Surroundings {
   void to_fingers(const Incident& incident, bool begins);
   void write_as_another(const Incident& incident);
 
-  int hindered_ = 0;  // number of incidents that hinder the Modbus line at this moment
+  int hindered_ = 0;  // number of active incidents that disturb the Modbus line
   bool good_since_ = false;
   const Incident* foreign_ = nullptr;
 };

@@ -1,6 +1,6 @@
 #pragma once
-// Names the programs that can run in a simulated world in addition to the daemon. Counts their calls and the
-// incidents during these calls.
+// Names the programs that can run in a simulated world together with the daemon. Counts the calls of these
+// programs and the incidents during the calls.
 
 #include <array>
 #include <cstdint>
@@ -9,11 +9,11 @@ namespace softgrip::world {
 
 enum class Tool : std::uint8_t {
   none,        ///< no additional program: the daemon and its clients run alone
-  calibrate,   ///< `softgrip calibrate` with all of its procedures, called again and again
-  doctor,      ///< `softgrip doctor --move`, called again and again
-  run,         ///< `softgrip run`: the command runs the daemon in its process until the sequence ends
-  baseline,    ///< `softgrip baseline` with one experiment, called again and again
-  experiment,  ///< experiments, played one after the other as in `softgrip investigate`
+  calibrate,   ///< `softgrip calibrate` with all of its procedures, called repeatedly
+  doctor,      ///< `softgrip doctor --move`, called repeatedly
+  run,         ///< `softgrip run`, which runs the daemon in its own process until the sequence ends
+  baseline,    ///< `softgrip baseline` with one experiment, called repeatedly
+  experiment,  ///< experiments one after the other, as in `softgrip investigate`
   plc,         ///< the daemon, softgrip-plc and two masters
   blocks,      ///< clients that start sequences and stop them, like the Python client
 };
@@ -21,14 +21,14 @@ inline constexpr std::array tool_names{"daemon",   "calibrate",  "doctor", "run"
                                        "baseline", "experiment", "plc",    "blocks"};
 inline constexpr std::size_t tool_count = tool_names.size();
 
-/// Number of calls of a tool, and number of incidents during these calls.
+/// Number of calls of a tool, and numbers of incidents during these calls.
 struct Met {
   std::uint64_t calls = 0;  ///< calls of the command; for plc: commands of masters; for blocks: starts of
                             ///< sequences
   std::uint64_t results =
       0;                     ///< calls with a result; for plc: executed commands; for blocks: confirmed stops
   std::uint64_t pauses = 0;  ///< number of pauses of a thread, of the process or of the clock
-  /// Number of trips of the board's watchdog. For plc, silences of a master are counted as well.
+  /// Number of watchdog trips of the board. For plc, also includes the heartbeat time-outs of masters.
   std::uint64_t gaps = 0;
   std::uint64_t faults = 0;  ///< number of incidents of the line, the board, other clients, the fingers and
                              ///< processes
@@ -41,7 +41,7 @@ struct Met {
     faults += other.faults;
     return *this;
   }
-  /// Returns true if each of these numbers is above 0.
+  /// Returns true if all counts of this structure are above 0.
   [[nodiscard]] bool whole() const noexcept {
     return calls > 0 && results > 0 && pauses > 0 && gaps > 0 && faults > 0;
   }

@@ -29,17 +29,18 @@ using control::Request;
 /// Pause between the end of a daemon and the start of the next daemon.
 constexpr Nanoseconds restart_pause = ns_per_s;
 constexpr Nanoseconds longest_answer = 2 * ns_per_s;
-/// Longest permitted time from the request that the guest ends until it has ended.
+/// Longest permitted time from the request to end a guest program until its end.
 constexpr Nanoseconds longest_end = 60 * ns_per_s;
-/// Longest permitted interval between two ticks of a loop that no incident disturbs.
+/// Longest permitted interval between two ticks of the loop if no incident disturbs the loop.
 constexpr Nanoseconds longest_tick_gap = ns_per_s / 20;
 constexpr Nanoseconds memory_looked_at_every = ns_per_s;
-/// Time after its start at which a daemon has allocated all its memory and descriptors.
+/// Time after the start of a daemon from which on the daemon must not acquire more memory and descriptors.
 constexpr Nanoseconds settling = 5 * ns_per_s;
 /// Largest permitted growth of the heap. The event log and a recording each store up to 10,000 events of 0.5
-/// KiB, from which run.json is built. No other data may grow.
+/// KiB, from which run.json is written. No other data of the daemon may grow.
 constexpr std::size_t allowed_growth_bytes = std::size_t{12} << 20;
-/// Largest permitted number of additional descriptors, for a recording and for the file of a sequence.
+/// Largest permitted number of additional descriptors. They are used by a recording and by the file of a
+/// sequence.
 constexpr std::size_t allowed_descriptors = 8;
 
 std::size_t open_descriptors() {
@@ -55,8 +56,8 @@ std::size_t allocated_bytes() {
   return heap.uordblks + heap.hblkhd;
 }
 
-/// If `full` is true, no file of this process can grow from now on, as on a full disk. If it is false, files
-/// can grow.
+/// If `full` is true, prevents all files of this process from growing, as on a full disk. If `full` is false,
+/// allows files to grow.
 void fill_disk(bool full) {
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit limit{};
@@ -110,7 +111,7 @@ class World final : public Host {
     return std::move(result_);
   }
 
-  // The following functions implement the interface Host for guests.
+  // The functions below implement the interface Host for guest programs.
   [[nodiscard]] const Library& library() const override { return library_; }
   [[nodiscard]] Surroundings& around() override { return around_; }
   [[nodiscard]] DaemonInWorld* daemon() override { return daemon_.get(); }
@@ -135,7 +136,7 @@ class World final : public Host {
     if (guest_) guest_->boots(*daemon_);
     recorded_.clear();
     ticked_ = 0;  // reset, because a daemon that died at its first tick must not hide the first tick of the
-                  // next daemon
+                  // next one
   }
 
  private:
@@ -145,7 +146,8 @@ class World final : public Host {
   void run_until(Nanoseconds end) {
     scheduler_.run_until(end, [this](ActorId id) { after(id); });
   }
-  /// Requests that the guest ends and waits for it, so that no program of this world remains in the process.
+  /// Requests the end of the guest program and waits for it, so that no program of this world remains in the
+  /// process.
   void end_guest() {
     guest_->end();
     const Nanoseconds give_up = scheduler_.now() + longest_end;
@@ -170,7 +172,7 @@ class World final : public Host {
     vented_in_motion_ = vented_in_motion_ || runs;
   }
 
-  /// Called after the end of a daemon. Checks the recordings of this daemon and removes them.
+  /// Called after the end of a daemon. Checks the recordings of this daemon and then removes them.
   void bury() {
     if (!daemon_) return;
     around_.board.hang_up();
@@ -198,7 +200,7 @@ class World final : public Host {
     boots_at_ = scheduler_.now() + restart_pause;
   }
 
-  /// Once per millisecond, checks time limits and detects the end of a daemon, which it then restarts.
+  /// Called once per millisecond. Checks time limits. Detects the end of a daemon and restarts the daemon.
   void outside_body() {
     for (;;) {
       scheduler_.sleep_until(scheduler_.now() + ns_per_s / 1000);
@@ -224,7 +226,7 @@ class World final : public Host {
       } else {
         if (managed()) look_at_memory(now);
         for (const auto& [id, asked] : daemon_->unanswered()) {
-          // A daemon that is ending closes the connection without a response.
+          // A daemon closes the connection without a response while it ends.
           if (!is_paused() && !daemon_->shared.shutdown_requested.load() &&
               now - std::max(asked.at, undisturbed_since_) > longest_answer)
             monitor_.answer_is_late(now, asked.at);
@@ -233,14 +235,14 @@ class World final : public Host {
     }
   }
 
-  /// Once per second, checks how much memory and how many descriptors the running daemon has acquired since
-  /// it settled.
+  /// Once per second, checks the growth of the heap and the number of descriptors of the running daemon. The
+  /// checks begin 5 s after the start of the daemon.
   void look_at_memory(Nanoseconds now) {
     const bool due = now - memory_looked_at_ >= memory_looked_at_every && now - booted_at_ >= settling;
     if (!due || options_.trace) return;
     memory_looked_at_ = now;
-    // Subtract the list of ticks, because it belongs to the world. The growth is not checked if a trace is
-    // recorded.
+    // Subtract the list of ticks, because it belongs to the simulation. If a trace is recorded, the growth is
+    // not checked.
     const std::size_t bytes = allocated_bytes() - recorded_.capacity() * sizeof(Nanoseconds);
     if (settled_bytes_ == 0) settled_bytes_ = bytes;
     const std::size_t growth = bytes > settled_bytes_ ? bytes - settled_bytes_ : 0;
@@ -295,8 +297,8 @@ class World final : public Host {
   void wrote(Nanoseconds began, std::span<const double> commands) {
     const Nanoseconds now = scheduler_.now();
     const auto outputs = hardware_.outputs_kpa();
-    // The slew limits do not apply in two cases. A stalled loop causes safe outputs. After a failed exchange
-    // the outputs are unknown, so the daemon writes the lower of the possible values.
+    // The slew limits do not apply in two cases. If the loop stalls, the daemon writes safe outputs. After a
+    // failed exchange, the outputs are unknown, so the daemon writes the lower one of the possible values.
     const std::uint64_t failures = daemon_->bus_statistics.failures.value();
     const bool unconfirmed = std::exchange(failures_, failures) != failures;
     const bool safe_outputs = unconfirmed || daemon_->shared.shutdown_requested.load() ||
@@ -318,11 +320,12 @@ class World final : public Host {
   std::unique_ptr<Guest> guest_;
   std::unique_ptr<DaemonInWorld> daemon_;
   std::vector<std::unique_ptr<DaemonInWorld>> buried_;
-  std::vector<Nanoseconds> recorded_;  // times of the loop's ticks, relative to the daemon's origin
+  std::vector<Nanoseconds> recorded_;  // times of the ticks of the loop, relative to the origin of the
+                                       // daemon's clock
   unsigned lives_ = 0;
   std::optional<daemon::Outcome> outcome_;  // outcome of the last daemon run; nullopt: the daemon was killed
   bool vented_in_motion_ = false;
-  bool alone_ = true;  // the daemon stores its recordings in the folder that the rig file names
+  bool alone_ = true;  // true: the daemon stores its recordings in the folder of the rig file
   bool killed_ = false;
   bool disk_full_ = false;
   bool disk_was_full_ = false;
@@ -331,7 +334,7 @@ class World final : public Host {
   Nanoseconds booted_at_ = 0;
   Nanoseconds memory_looked_at_ = 0;
   std::uint64_t ticked_ = 0;
-  std::uint64_t failures_ = 0;  // number of failed exchanges when the daemon last wrote
+  std::uint64_t failures_ = 0;  // number of failed exchanges at the last write of the daemon
   Nanoseconds boots_at_ = 0;
   Nanoseconds last_tick_ = 0;
   Nanoseconds last_tick_gap_end_ = 0;
@@ -358,7 +361,7 @@ void World::carry_out(const Incident& incident, bool begins) {
   }
 }
 
-/// Counts the pauses and faults that occur while a guest and its daemon run.
+/// Counts the pauses and faults that occur while a guest program and its daemon run.
 void World::count(const Incident& incident) {
   if (!daemon_) return;
   Met& met = guest_->met();
@@ -426,7 +429,7 @@ void World::pause(const Incident& incident) {
   }
 }
 
-/// Returns the rig for a seed. Experiments begin and end at 0 kPa, so they need a rig whose rest pressure is
+/// Returns the rig for a seed. Experiments begin and end at 0 kPa, so their rig must have a rest pressure of
 /// 0 kPa.
 const Library& library_for(const Library& library, std::uint64_t seed, Tool tool) {
   const Library& drawn = library.of(seed);
@@ -453,8 +456,8 @@ std::vector<Incident> shrink(const Library& library, std::uint64_t seed, const W
     const WorldResult result = run_world(library, seed, again);
     return result.violation && result.violation->invariant == failed.violation->invariant;
   };
-  // Remove half of the incidents, then a quarter, and finally single incidents, as long as the violation
-  // remains.
+  // Remove half of the incidents, then a quarter, and so on down to single incidents. Keep each removal after
+  // which the violation still occurs.
   for (std::size_t part = std::max<std::size_t>(best.size() / 2, 1);; part /= 2) {
     for (std::size_t begin = 0; begin < best.size();) {
       std::vector<Incident> fewer = best;

@@ -1,6 +1,7 @@
 #pragma once
 // Simulates a whole rig: daemon, board, line, fingers, clients, a second Modbus client, disk, and pauses of
-// every thread. One seed determines the simulation. Runs with the same seed are identical, bit for bit.
+// every thread. A seed determines the simulation. Two simulations with the same seed are identical, bit for
+// bit.
 
 #include <cstdint>
 #include <memory>
@@ -22,7 +23,8 @@ struct Library {
   std::vector<std::shared_ptr<const daemon::LoadedSequence>> sequences;
   std::vector<Library> others;  ///< rigs whose pressure range extends above and below the rest pressure
 
-  /// Returns the library for a seed. For one seed in four, its rig is one of `others`.
+  /// Returns the rig library for a seed. For one seed in four, the pressure range of its rig extends above
+  /// and below the rest pressure.
   [[nodiscard]] const Library& of(std::uint64_t seed) const {
     return seed % 4 == 3 && !others.empty() ? others[seed / 4 % others.size()] : *this;
   }
@@ -33,30 +35,31 @@ struct Library {
 struct WorldOptions {
   Tool tool = Tool::none;
   Nanoseconds length = 60 * ns_per_s;
-  /// Incidents that replace the incidents of the seed; nullopt: the incidents of the seed are used.
+  /// Incidents of the simulation; nullopt: the incidents are drawn from the seed.
   std::optional<std::vector<Incident>> incidents;
-  /// True: every incident, every write and every tick with an event is recorded as text.
+  /// True: the trace records every incident, every write and every tick with an event as text.
   bool trace = false;
   bool record = true;
-  bool always_habits = false;  ///< true: every board has peculiarities; false: the board of one seed in five
+  bool always_habits = false;  ///< true: every board has unusual properties; false: the boards of one seed in
+                               ///< five have them
 };
 
 struct WorldResult {
   std::optional<Violation> violation;
   std::vector<Incident> incidents;
-  std::string shape;  ///< description of the rig in one line
+  std::string shape;  ///< description of the rig in one line of text
   std::vector<std::string> trace;
-  std::uint64_t fingerprint = 0;  ///< hash of all writes to the board and of their times
+  std::uint64_t fingerprint = 0;  ///< hash of all writes to the board and their times
   std::uint64_t ticks = 0, writes = 0, sequences = 0, holdings = 0, faults = 0, trips = 0, rows = 0;
-  std::uint64_t growth_bytes = 0;  ///< largest growth of the heap of a daemon after it had settled [bytes]
+  std::uint64_t growth_bytes = 0;  ///< largest growth of the heap of a daemon after its start-up [bytes]
   std::uint64_t descriptors = 0;   ///< largest number of open descriptors of a daemon
-  Met met;                         ///< numbers of calls and incidents of the tool
+  Met met;                         ///< numbers of calls of the tool and of incidents
 };
 
 [[nodiscard]] WorldResult run_world(const Library& library, std::uint64_t seed, const WorldOptions& options);
 
-/// Removes incidents as long as the violation remains. Returns a list that causes the same violation and is
-/// usually much shorter.
+/// Removes incidents from the list as long as the violation still occurs. Returns the remaining list, which
+/// is usually much shorter.
 [[nodiscard]] std::vector<Incident> shrink(const Library& library, std::uint64_t seed,
                                            const WorldResult& failed, const WorldOptions& options);
 

@@ -35,14 +35,14 @@ class EntranceTest : public ::testing::Test {
     ASSERT_EQ(::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
     clients_.push_back(std::move(socket));
   }
-  /// Prevents the process from opening any further descriptor.
+  /// Prevents the process from opening any new file descriptor.
   void take_all_descriptors() {
     rlimit none = usual_;
-    none.rlim_cur = 1;  // not 0, because poll() would then refuse to watch any descriptor
+    none.rlim_cur = 1;  // not 0, because poll() would then refuse to watch a descriptor
     ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
   }
-  /// Limits the process to its present number of descriptors. The spare descriptors, which the entrance can
-  /// close, are included.
+  /// Limits the number of open descriptors to the present number. The present number includes the spare
+  /// descriptors of the entrance, which the entrance can close.
   void leave_the_spare_descriptors() {
     rlimit limit = usual_;
     limit.rlim_cur = static_cast<rlim_t>(::dup(0));

@@ -9,7 +9,7 @@
 namespace softgrip::studies::control_study_test {
 namespace {
 
-/// Returns a short study that all tests use.
+/// Returns a short study that all tests of this file use.
 const ControlStudy& quick_study() {
   static const ControlStudy study = [] {
     ControlStudyOptions options;

@@ -60,7 +60,7 @@ TEST(InvertibleMatch, KeepsTheBoundWhereTheResponseWouldLeaveIt) {
   EXPECT_GT(wrong_way_ratio(found), 0.79);
 }
 
-/// Returns a short study that the following tests use.
+/// Returns a short study for the tests in this file.
 const PublishedStudy& quick_study() {
   static const PublishedStudy study = [] {
     PublishedOptions options;
@@ -98,8 +98,9 @@ TEST(PublishedStudy, TheExplicitInverseGrowsByBetaOverAlphaAndTheImplicitOneIsEx
     EXPECT_EQ(row.refused, row.ratio >= 1) << row.ratio;
     if (row.ratio < 1) {
       EXPECT_LT(row.implicit_error_kpa, 1e-8) << row.ratio;
-      // The explicit inverse is a fixed-point iteration. If it contracts, its lag behind a moving target is
-      // at most ratio / (1 - ratio) times the change of the target per sample.
+      // The explicit inverse is a fixed-point iteration with the contraction factor `ratio`. If `ratio` is
+      // below 1, a target that moves by at most d per sample causes an error of at most d ratio / (1 -
+      // ratio).
       EXPECT_LT(row.explicit_error_kpa, row.ratio / (1 - row.ratio) * row.true_jump_kpa) << row.ratio;
     } else if (row.ratio > 1) {
       EXPECT_GT(row.explicit_error_kpa, 20) << row.ratio;

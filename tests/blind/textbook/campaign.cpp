@@ -55,8 +55,7 @@ std::vector<double> stairs(std::mt19937_64& random, double rate_hz) {
   return joined(points, rate_hz);
 }
 
-// Returns sums of two sines. The frequencies are between 0.05 and 0.6 Hz, and the pressure is never below 0
-// kPa.
+// Returns sums of two sines with frequencies between 0.05 and 0.6 Hz. The pressure is never below 0 kPa.
 std::vector<double> sines(std::mt19937_64& random, double rate_hz) {
   std::uniform_real_distribution<double> slow(0.05, 0.12), fast(0.25, 0.6);
   const double f = slow(random), g = fast(random);
@@ -72,7 +71,7 @@ std::vector<double> sines(std::mt19937_64& random, double rate_hz) {
 using Draw = std::vector<double> (*)(std::mt19937_64&, double);
 constexpr Draw kinds[] = {triangles, stairs, sines};
 
-// The parameters of one run that are drawn at random: its variation, sample rate and command.
+// The random parameters of one run: its variation, sample rate and command.
 struct Drawn {
   variation::Run run;
   double rate_hz;
@@ -88,7 +87,7 @@ Log surrounded(const Drawn& drawn, double start_s, double phase, double span_mm)
   for (std::size_t k = 0; k < log.command_kpa.size(); ++k) {
     const double t = start_s + static_cast<double>(k) / drawn.rate_hz;
     log.temperature_c.push_back(22 + 3 * std::sin(2 * pi * t / 140 + phase) + drawn.run.warmer_c);
-    // The supply pressure varies with the cycle of a compressor.
+    // The supply pressure follows the on-off cycle of a compressor.
     log.supply_kpa.push_back(drawn.run.supply * (200 - 25 * std::abs(std::sin(pi * t / 23 + phase))));
   }
   log.gain = drawn.run.gain;

@@ -11,8 +11,8 @@ namespace {
 constexpr std::array<double, 3> prony_tau_s{0.3, 6, 120};
 constexpr std::size_t plays = 10, slips = 8;
 
-// Returns the nominal stress in uniaxial tension of incompressible Mooney-Rivlin rubber with C2 = C1/4. The
-// stress is divided by its initial slope.
+// Returns the nominal stress of rubber in uniaxial tension, divided by the initial slope of the stress. The
+// rubber is incompressible and follows the Mooney-Rivlin law with C2 = C1/4.
 double rubber_stress(double stretch) noexcept {
   return 2 * (0.8 + 0.2 / stretch) * (stretch - 1 / (stretch * stretch)) / 6;
 }
@@ -82,8 +82,9 @@ double Finger::play(double q) noexcept {
   return sum;
 }
 
-// Maxwell-slip model: a spring in parallel with Coulomb elements, driven by a force. Solves K y + sum(clamp(k
-// (y - anchor), -f, f)) = q for the displacement y.
+// Maxwell-slip model: a spring in parallel with Coulomb elements, driven by the force q. Solves K y +
+// sum(clamp(k (y - anchor), -f, f)) = q for the displacement y. K is the stiffness of the spring. Each
+// Coulomb element has a stiffness k, a friction limit f and an anchor.
 double Finger::maxwell_slip(double q) noexcept {
   constexpr double stiffness = 0.6 / slips;
   const auto limit = [this](std::size_t i) {
@@ -106,10 +107,10 @@ double Finger::maxwell_slip(double q) noexcept {
   return balance_;
 }
 
-// Preisach model: relays switch on at a and off at b, with 0 <= b <= a and the weight 2 (1 + envelope b). The
-// relays that are on lie below a stepped line in the (a, b) plane. The corners of the line are the turning
-// points of the input that the model remembers. They are the highest maximum, the lowest minimum after this
-// maximum, the highest maximum after this minimum, and so on.
+// Preisach model: each relay switches on when the input rises above a, and off when it falls below b. Here 0
+// <= b <= a, and the weight of a relay is 2 (1 + envelope b). The relays that are on lie below a stepped line
+// in the (a, b) plane. The corners of this line are the turning points of the input that the model remembers:
+// the highest maximum, the lowest minimum after it, the highest maximum after this minimum, and so on.
 double Finger::preisach(double q) noexcept {
   const auto triangle = [this](double high, double low) {
     const double d = high - low;
@@ -124,7 +125,7 @@ double Finger::preisach(double q) noexcept {
   while (memory_.size() >= 2) {
     const double before =
         memory_[memory_.size() -
-                2];  // earlier turning point; if the input passes it, the last two turning points are erased
+                2];  // if the input passes this earlier turning point, the last two turning points are erased
     if (rising ? q < before : q > before) break;
     memory_.resize(memory_.size() - 2);
   }
@@ -138,8 +139,8 @@ double Finger::preisach(double q) noexcept {
   return (1 - 2 * numbers_.width) * q + 2 * numbers_.width * sum;
 }
 
-// A bending tube that the model divides into slices. The pressure acts on a growing cross-section. The
-// viscoelastic rubber resists; a Prony series describes its relaxation.
+// A bending tube, divided into slices. The pressure acts on a cross-section that grows with the deformation.
+// The viscoelastic rubber resists; a Prony series describes its relaxation.
 double Finger::tube(double q, double step_s) noexcept {
   const double pull = 0.25 * std::max(0.0, q);
   double bend = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Soft fingers of five makes. Each make has a different type of hysteresis, creep with time constants over
+// Soft fingers of five makes. Each make has its own type of hysteresis, creep with time constants over
 // several decades, and a slight curvature.
 
 #include <array>
@@ -12,35 +12,37 @@ namespace textbook {
 inline constexpr double working_kpa = 60;
 
 struct FingerNumbers {
-  std::string make = "play";  // type of finger: play, maxwell_slip, preisach, hyperelastic_tube or fractional
-  double span_mm = 16;        // displacement at working_kpa after all creep has ended
-  double width = 0.1;         // width of the hysteresis; 0 means no hysteresis
+  std::string make = "play";  // make of the finger: play, maxwell_slip, preisach, hyperelastic_tube or
+                              // fractional
+  double span_mm = 16;        // displacement at the pressure working_kpa when all creep has ended
+  double width = 0.1;         // width of the hysteresis; 0: no hysteresis
   double curvature = 0.1;
-  double creep = 0.15;           // share of the displacement that comes from creep
-  double creep_tilt = 0;         // exponent of the weight tau^creep_tilt of a creep branch with time constant
-                                 // tau
+  double creep = 0.15;           // fraction of the displacement that is caused by creep
+  double creep_tilt = 0;         // exponent of the weight of a creep branch: a branch with time constant tau
+                                 // has the weight tau^creep_tilt
   double envelope = 0.1;         // nonlinearity of the hysteresis loops (generalised play, Preisach density)
-  double longest_creep_s = 1e9;  // creep branches with a longer time constant [s] are left out
+  double longest_creep_s = 1e9;  // largest time constant of creep [s]; branches with a larger one are omitted
 };
 
 const std::vector<std::string>& makes();
 FingerNumbers draw_finger(const std::string& make, std::uint64_t seed);
 
-/// A parameter that differs between fingers of one make. Its value is drawn at random within the bounds.
+/// A parameter that differs between fingers of the same make. Its value is drawn at random between two
+/// bounds.
 struct OwnNumber {
   double FingerNumbers::*member;
   double low, high;
 };
-/// Returns the parameters that a refit can change to absorb an effect: width, curvature, creep and tilt of
-/// the creep.
+/// Returns the parameters that a refit may change: width, curvature, creep and tilt of the creep. Such a
+/// change can explain a part of an effect.
 std::vector<OwnNumber> own_numbers(const std::string& make);
 
 /// A finger that has never been loaded.
 class Finger {
  public:
   explicit Finger(const FingerNumbers& numbers);
-  /// Simulates a step of `step_s` with the gauge pressure `pressure_kpa` at its end. Returns the displacement
-  /// [mm].
+  /// Simulates a step of duration `step_s`. `pressure_kpa` is the gauge pressure at the end of the step.
+  /// Returns the displacement [mm].
   double step(double pressure_kpa, double step_s);
 
  private:
@@ -56,9 +58,9 @@ class Finger {
 
   FingerNumbers numbers_;
   std::array<double, branches> weight_{}, tau_s_{}, branch_{};
-  double full_ = 1;             // output of raw() after a long hold at working_kpa
-  std::vector<double> memory_;  // states of the plays, anchors of the slip elements, or turning points of the
-                                // input
+  double full_ = 1;             // output of raw() after a long hold at working_kpa, when all creep has ended
+  std::vector<double> memory_;  // states of the play operators, anchors of the slip elements, or turning
+                                // points of the input
   double input_ = 0;            // input of the hysteresis model before this step
   double balance_ = 0;          // strain of the spring of the Maxwell-slip model
   std::array<double, slices> stretch_{}, thickness_{};

@@ -33,8 +33,8 @@ namespace {
 
 constexpr double noise_mm = 0.04, step_mm = 0.01, pressure_noise_kpa = 0.05, supply_noise_kpa = 0.3,
                  temperature_noise_c = 0.05;
-// Smallest displacement change by a mechanism that a diagnosis can detect. White noise of 0.04 mm hides only
-// much smaller changes over the 15,000 samples of a campaign.
+// Smallest displacement change that a diagnosis can detect, for one mechanism of the finger or the valve. The
+// noise of 0.04 mm hides much smaller changes only, because a campaign has 15,000 samples.
 constexpr double visible_mm = noise_mm / 4;
 
 struct Arguments {
@@ -45,7 +45,8 @@ struct Arguments {
   bool pressure = false, temperature = true, supply = true, list = false, makes = false, closed_loop = false;
 };
 
-// Reads the sample rate. The sample time must be a multiple of the time step of the valve simulation.
+// Reads the sample rate from the command line. The sample time must be a multiple of the time step of the
+// valve simulation.
 double rate(const std::string& value) {
   const double rate_hz = std::stod(value);
   if (rate_hz != 50 && rate_hz != 100 && rate_hz != 200 && rate_hz != 400)
@@ -109,7 +110,7 @@ Arguments arguments(int argc, char** argv) {
   return a;
 }
 
-// Draws the noise of the sensors, sample after sample.
+// Generates the noise of the sensors for one sample after the other.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : random_(seed) {}
@@ -127,8 +128,8 @@ class Noise {
   std::normal_distribution<double> normal_{0, 1};
 };
 
-// Converts the commands of a log to references of a controller. The readings of this controller have the same
-// noise as the log.
+// Converts the commands of a log to references of a controller, for a log in closed loop. The controller and
+// the log read sensors with the same noise amplitude.
 void close_loop(textbook::Log& log, const textbook::World& world, double zero_mm, std::uint64_t seed) {
   Noise noise(seed);
   for (std::size_t k = log.unrecorded; k < log.command_kpa.size(); ++k)
@@ -168,8 +169,8 @@ void write_log(const std::string& path, const textbook::Log& log, const textbook
 void write_truth(const Arguments& a, const textbook::World& world, const std::map<std::string, double>& own,
                  const std::map<std::string, textbook::Scaled>& hidden) {
   std::ofstream file(a.truth);
-  // The truth is written with all digits. With six digits, the rounding error of a frequency would exceed the
-  // error of an estimate from ten minutes of logs.
+  // Write the true values with all digits. With six digits, the rounding error of a frequency would exceed
+  // the error of an estimate from ten minutes of logs.
   file.precision(std::numeric_limits<double>::max_digits10);
   file << "{\"seed\": " << a.seed << ", \"strength\": " << a.strength << ", \"noise_mm\": " << noise_mm
        << ", \"make\": \"" << world.finger.make << "\", \"span_mm\": " << world.finger.span_mm

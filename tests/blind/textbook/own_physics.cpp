@@ -18,7 +18,8 @@ struct SettledLoop {
   double bend_mm = 0, asymmetry_mm = 0;
 };
 
-// Simulates a finger without creep and returns properties of its second loop from 0 to working pressure.
+// Simulates a finger without creep. Returns two properties of its second loop from 0 to working pressure: the
+// curvature and the asymmetry.
 SettledLoop settled_loop(FingerNumbers numbers) {
   numbers.creep = 0;
   Finger finger(numbers);
@@ -40,7 +41,7 @@ SettledLoop settled_loop(FingerNumbers numbers) {
 }
 
 // Fits a dead time and a first-order lag to the valve. Returns the RMS [kPa] of the difference between the
-// pressure of the valve and the output of this model.
+// pressure of the valve and the pressure of the fitted model.
 double lag_miss_kpa(const std::vector<Log>& logs, const std::vector<Answer>& answers, double tau_s,
                     double delay_s) {
   double sum = 0, count = 0;
@@ -51,7 +52,7 @@ double lag_miss_kpa(const std::vector<Log>& logs, const std::vector<Answer>& ans
     for (std::size_t k = 0; k < command.size(); ++k, ++count) {
       const double miss = answers[l].pressure_kpa[k] - lagged;
       sum += miss * miss;
-      // Between two samples, the input of the lag is the command at the middle of the interval.
+      // Between two samples, the input of the lag is constant: the command at the middle of the interval.
       const double place = std::max(0.0, static_cast<double>(k) + 0.5 - delay_s * logs[l].rate_hz);
       const auto low = std::min(static_cast<std::size_t>(place), command.size() - 2);
       const double part = place - static_cast<double>(low);

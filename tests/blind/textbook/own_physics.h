@@ -1,6 +1,6 @@
 #pragma once
-// Lists the causes that a diagnosis may correctly report for a world without a hidden effect, because the
-// valve and the finger of the world have these mechanisms. Such a report is not a false alarm.
+// Lists the causes that a diagnosis may correctly report for a world without a hidden effect. The valve and
+// the finger of the world have these mechanisms, so the report of such a cause is not a false alarm.
 
 #include <map>
 #include <string>
@@ -12,8 +12,8 @@ namespace textbook {
 
 /// Maps the id of a cause to the displacement change by this cause [mm RMS]. The map contains the causes that
 /// change the displacement by more than `visible_mm`. To compute the change, the function removes the
-/// mechanism from the world or fits a competing model. It does not use the results of a diagnosis. The causes
-/// and the changes that are computed for them:
+/// mechanism from the world or fits a competing model. The function does not use the results of a diagnosis.
+/// For each cause, it computes this displacement change:
 ///
 ///   slow_creep             creep slower than `slowest_twin_s`, beyond zero and gain
 ///   hysteresis_shape       the loops as a whole, beyond zero and gain (no make has a Bouc-Wen element)
@@ -26,8 +26,9 @@ namespace textbook {
 std::map<std::string, double> own_physics(const World& world, const std::vector<Log>& logs,
                                           std::uint64_t seed, double visible_mm);
 
-/// Time constant [s] above which creep counts as slow. given.yaml has two creep branches that were identified
-/// from logs of a simulated world. Their time constants are smaller; the larger one is 10 s.
+/// Time constant [s] above which creep counts as slow. The model given.yaml has two creep branches that were
+/// identified from logs of a simulated world. Both time constants are below this value; the larger one is 10
+/// s.
 inline constexpr double slowest_twin_s = 15;
 
 }  // namespace textbook

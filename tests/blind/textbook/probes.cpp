@@ -24,8 +24,8 @@ void probe_rest() {
   }
 }
 
-// Prints the true pressure one minute after a step to a level, once with a rising and once with a falling
-// step. Also prints the change of the pressure in the next 10 s.
+// Holds a constant command after a step, and prints the mean and the range of the true pressure between 60 s
+// and 70 s after the step. Some steps rise and others fall.
 void probe_hold() {
   std::puts("seed,command_kpa,pressure_kpa,wander_kpa");
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -43,8 +43,8 @@ void probe_hold() {
   }
 }
 
-// Prints two values for each make: the displacement at working pressure after a very long hold, and the
-// nominal span.
+// Prints two values for several fingers of each make: the displacement at working pressure after a very long
+// hold, and the nominal span.
 void probe_span() {
   std::puts("make,seed,span_mm,displacement_mm");
   for (const std::string& make : makes()) {
@@ -59,8 +59,8 @@ void probe_span() {
   }
 }
 
-// Unloads a finger from 55 kPa, with and without a minor loop 20 -> 40 -> 20 kPa. Prints both displacements
-// after the minor loop, which must be equal.
+// Unloads a finger from 55 kPa, once with and once without a minor loop 20 -> 40 -> 20 kPa. Prints the
+// displacements after the minor loop in both cases. They must be equal.
 void probe_loops() {
   std::puts("make,place,displacement_mm");
   for (const char* make : {"play", "maxwell_slip", "preisach"}) {
@@ -91,8 +91,8 @@ void probe_loops() {
   }
 }
 
-// Prints a varying pressure and the displacement of the Preisach model. Another program compares the
-// displacement with a sum over single relays.
+// Prints a varying pressure and the displacement of the Preisach model for this pressure. Another program
+// compares the displacement with a sum over single relays.
 void probe_relays() {
   FingerNumbers numbers = draw_finger("preisach", 1);
   numbers.creep = numbers.curvature = 0;

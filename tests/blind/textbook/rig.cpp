@@ -58,7 +58,7 @@ Arguments arguments(int argc, char** argv) {
   return a;
 }
 
-/// One finger and its valve. During a simulation step, the command is constant.
+/// One finger and its valve. The command is constant during a simulation step.
 class Plant {
  public:
   explicit Plant(const textbook::World& world) : valve_(world.valve), finger_(world.finger) {}
@@ -95,7 +95,7 @@ class Rig {
 
   modbus_mapping_t* mapping() const { return mapping_.get(); }
 
-  /// Simulates the time from the last call until now, and updates the inputs of the board.
+  /// Simulates the time from the last call of this function until now. Updates the inputs of the board.
   void follow() {
     const auto now = std::chrono::steady_clock::now();
     for (; at_ + step_ <= now; at_ += step_) {
@@ -111,8 +111,8 @@ class Rig {
   }
 
  private:
-  // Returns two registers as one float value; the first register contains the high word. The conversions of
-  // libmodbus are not used, because they differ between its versions.
+  // Returns two registers as one float value. The first register contains the high word. The function does
+  // not use the conversions of libmodbus, because they differ between the versions of libmodbus.
   double volts(int at, std::size_t i) const {
     const std::uint16_t* words = registers_of(at, i);
     return static_cast<double>(std::bit_cast<float>((static_cast<std::uint32_t>(words[0]) << 16) | words[1]));

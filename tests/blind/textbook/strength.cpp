@@ -21,8 +21,8 @@ std::vector<double> difference(std::vector<double> of, const std::vector<double>
   return of;
 }
 
-// Solves a linear system by Gaussian elimination with pivoting. If a direction depends linearly on the
-// others, its coefficient is 0.
+// Solves a linear system by Gaussian elimination with pivoting. If one direction is a linear combination of
+// others, the coefficient of this direction is 0.
 std::vector<double> solved(std::vector<std::vector<double>> a, std::vector<double> b) {
   const std::size_t n = b.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -66,8 +66,9 @@ void Recalibration::add(std::vector<double> change_mm, double low, double high) 
   for (std::size_t i = 0; i + 1 < directions_.size(); ++i) products_[i].push_back(products_.back()[i]);
 }
 
-// At the optimum, every parameter is either between its bounds or at one of them. There are only a few
-// parameters, so the function tries all combinations and takes the best one that respects the bounds.
+// At the optimum, every bounded parameter is either between its bounds or at one of its two bounds. There are
+// only a few parameters, so the function tries all combinations of these three cases. It takes the best
+// combination within the bounds.
 double Recalibration::left_mm(const std::vector<double>& difference_mm) const {
   const std::size_t n = directions_.size();
   const double square = dot(difference_mm, difference_mm);
@@ -149,8 +150,8 @@ Scaled Excess::scaled(const std::string& id, double target_mm) const {
     }
     return excess_mm;
   };
-  // The search raises the amplitude until the error is large enough. It does not start at the largest
-  // amplitude, because a smaller gain may explain most of such a large effect.
+  // The search begins at a small amplitude and raises it until the error reaches the target. It does not
+  // begin at the largest amplitude, because a change of the gain may explain most of such a large effect.
   double low = std::log(1e-3), high = low, below = 0, above = at(low);
   while (above < target_mm && high < 0) {
     low = high;

@@ -1,5 +1,5 @@
-"""Tests that textbook-rig responds like the board that it simulates, and that its fingers behave like those of
-textbook-world."""
+"""Tests that textbook-rig responds like the board that it simulates. Also tests that its fingers behave like the
+fingers of textbook-world."""
 import pathlib
 import re
 import socket
@@ -15,7 +15,7 @@ OUTPUTS_AT, READ_BACK_AT = 256, 24
 
 
 class Master:
-    """A Modbus TCP client that writes the outputs and reads the inputs with function 23."""
+    """A Modbus TCP client that writes the outputs and reads the inputs with function code 23."""
 
     def __init__(self, port):
         self.socket = socket.create_connection(("127.0.0.1", port), timeout=10)
@@ -35,7 +35,7 @@ class Master:
         return struct.unpack(f">{count}f", answer[9:])
 
     def stay(self, output_v, seconds):
-        """Exchanges `output_v` for `seconds`. Returns the mean values of the last 0.3 s."""
+        """Writes `output_v` repeatedly for `seconds`. Returns the mean values that were read in the last 0.3 s."""
         end, seen = time.monotonic() + seconds, []
         while time.monotonic() < end:
             seen.append((time.monotonic(), self.exchange(output_v)))
@@ -62,9 +62,9 @@ class TextbookRig(unittest.TestCase):
         self.assertGreater(displacement_mm[0], 3)
         self.assertAlmostEqual(displacement_mm[1], 0, delta=0.1)
         vented = self.master.stay([0, 3], 2.0)
-        # The tolerance is large, because creep and hysteresis decay slowly.
+        # The tolerance is large, because the effects of creep and hysteresis disappear slowly.
         self.assertLess(5 * vented[0] - 5, displacement_mm[0] / 2)
-        # Both fingers have the same parameters.
+        # Both fingers have the same parameters, so they must have the same displacement at the same pressure.
         self.assertAlmostEqual(5 * vented[1] - 5, displacement_mm[0], delta=0.1)
 
     def test_outputs_are_read_back_one_exchange_later(self):

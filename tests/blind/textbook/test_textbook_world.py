@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Tests the physics of textbook-world. The test reads only the output of the program. test_textbook_world.py PROGRAM
-[unittest option ...]"""
+"""Tests the physics of textbook-world. The test uses nothing but the output of the program. test_textbook_world.py
+PROGRAM [unittest option ...]"""
 import collections
 import csv
 import functools
@@ -86,7 +86,8 @@ class Finger(unittest.TestCase):
         rows = [{name: float(value) for name, value in row.items()} for row in probe("relays")]
         width, envelope, span_mm = (rows[0][name] for name in ("width", "envelope", "span_mm"))
         count = 120
-        # Each relay switches on at `on` and off at `off`. Its weight is 2 (1 + envelope off).
+        # Each relay switches on at the pressure `on` and off at the pressure `off`. The weight of a relay is 2 (1 +
+        # envelope off).
         relays = [[(i + 0.5) / count, (j + 0.5) / count, False] for i in range(count) for j in range(i + 1)]
         half = [0.5 if on == off else 1 for on, off, _ in relays]
 
@@ -122,8 +123,8 @@ class Finger(unittest.TestCase):
                  if row["make"] == "fractional" and 0.1 < float(row["time_s"]) < 400}
         values = list(curve.values())
         steps = [b - a for a, b in zip(values, values[1:])]
-        # The times are powers of 2. Each displacement step is larger than the step before by the factor
-        # 2^exponent. The exponent is drawn from 0.1 to 0.25.
+        # The times are powers of 2. Under a power law, each displacement step exceeds the step before by the factor
+        # 2^exponent. The exponent is drawn between 0.1 and 0.25.
         exponents = [math.log2(b / a) for a, b in zip(steps, steps[1:])]
         self.assertGreater(len(exponents), 8)
         for exponent in exponents:
@@ -144,8 +145,8 @@ class Campaign(unittest.TestCase):
         usual, often = (displacements(world(*rate)[0][:1]) for rate in ((), ("--rate-hz", "200")))
         change = [a - b for a, b in zip(usual, often[::2])]
         self.assertIn(len(often), range(2 * len(usual) - 2, 2 * len(usual) + 1))
-        # The difference contains the noise of two readings, 0.04 mm each. It also contains the difference
-        # between commands that the valve samples at 100 Hz and at 200 Hz.
+        # The difference contains the noise of two readings, 0.04 mm each. It also contains a difference of the
+        # commands: the valve samples them at 100 Hz in one world and at 200 Hz in the other.
         self.assertLess(math.sqrt(sum(c * c for c in change) / len(change)), 0.07)
 
     def test_columns_can_be_left_out(self):

@@ -20,8 +20,8 @@ import varying  # noqa: E402
 
 GIVEN = HERE / "given.yaml"
 NOISE_MM = 0.04  # RMS noise of the readings that textbook-world writes [mm]
-# Largest permitted held-out error of the identified structure in a world without an effect, divided by the
-# noise.
+# Largest permitted ratio of the held-out error of the identified structure to the noise, in a world without a hidden
+# effect.
 HELD_OUT_AT_MOST = {"pressure": 1.6, "command": 5}
 
 
@@ -39,7 +39,7 @@ def judge(hidden, own, diagnosis):
 
     found    hidden causes that are reported or are alternatives of a reported cause; each report finds at most one
     alone    found causes that are reported without alternatives
-    wrong    reported causes that are neither hidden nor own, and whose alternatives are not either
+    wrong    reported causes for which neither the cause nor one of its alternatives is hidden or own
     outcome  wrong, right (all are alone), ambiguous_right (all are found), partly, missed; for a world without a hidden
              effect: wrong, unexplained (an error remains and no own cause is reported) or right
     """
@@ -95,8 +95,8 @@ def given_model(build, work, world, threads):
 
 
 def held_out(build, logs, work, threads):
-    """Identifies a model from the logs. Returns its held-out error, divided by the noise, and the description of its
-    structure."""
+    """Identifies a model from the logs. Returns the held-out error of the model divided by the noise, and the
+    description of the model structure."""
     report = identified(build, logs, work / "identified", threads)
     if report is None:
         return {}
@@ -115,7 +115,8 @@ def named_in(diagnosis, judged):
 
 
 def diagnosed(build, model, logs, work, world, threads):
-    """Diagnoses the world. A recorded pressure is the input of the finger model and the output of the valve model."""
+    """Diagnoses the world. If the pressure is recorded, it is the input of the finger model and the output of the
+    valve model."""
     drive = ("--drive", "measured") if world["columns"] == "pressure" else ()
     return judging.diagnose(build, model, logs, work / "out", "--threads", str(threads), *drive)
 

@@ -8,9 +8,10 @@ namespace textbook {
 inline constexpr double atmosphere_kpa = 101.325;
 inline constexpr double reference_kpa = 100;  // reference pressure of ISO 8778
 
-/// Returns the flow of ISO 6358-1 [dm3/s at the reference state] from `from_kpa` to `to_kpa`, negative if the
-/// gas flows from `to_kpa` to `from_kpa`. The flow is choked at and below the critical pressure ratio `b`. It
-/// is linear above a ratio of 0.995, where the slope of the standard is infinite.
+/// Returns the flow of ISO 6358-1 [dm3/s at the reference state] from `from_kpa` to `to_kpa`. The flow is
+/// negative if the gas flows from `to_kpa` to `from_kpa`. At and below the critical pressure ratio `b`, the
+/// flow is choked. Above a pressure ratio of 0.995, the function is linear, because the slope of the standard
+/// becomes infinite at the ratio 1.
 double flow_dm3_s(double conductance, double b, double from_kpa, double to_kpa) noexcept;
 
 struct ValveNumbers {
@@ -21,12 +22,13 @@ struct ValveNumbers {
   double valve_volume_dm3 = 0.02, finger_volume_dm3 = 0.08;
   double proportional_per_kpa = 0.08, integral_per_kpa_s = 0.25;
   double spool_lag_s = 0.012;
-  double overlap = 0.04;               // overlap of the spool in each direction, as a share of its travel
-  double pilot_hysteresis_kpa = 0.15;  // half the width of the hysteresis of the pilot stage
+  double overlap = 0.04;               // overlap of the spool in each direction, as a fraction of the spool
+                                       // travel
+  double pilot_hysteresis_kpa = 0.15;  // half the width of the hysteresis loop of the pilot stage
 };
 
-/// A valve with isothermal chambers, for which V dp/dt = reference pressure x flow. V is the volume and p the
-/// pressure of a chamber.
+/// A valve with isothermal chambers. The pressure p of a chamber with the volume V follows V dp/dt =
+/// reference pressure x flow.
 class Valve {
  public:
   explicit Valve(const ValveNumbers& numbers) noexcept : numbers_(numbers) {}
@@ -36,7 +38,7 @@ class Valve {
   double air_kpa_dm3() const noexcept {
     return valve_kpa_ * numbers_.valve_volume_dm3 + finger_kpa_ * numbers_.finger_volume_dm3;
   }
-  /// Sets the pressures, for tests. If `shut` is true, the spool then stays closed.
+  /// Sets the pressures for a test. If `shut` is true, the spool remains closed after this call.
   void set(double valve_kpa, double finger_kpa, bool shut) noexcept;
 
  private:

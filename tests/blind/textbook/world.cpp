@@ -14,8 +14,8 @@ constexpr double valve_step_s = 0.00025;
 constexpr int finger_steps = 5;     // simulation steps of the finger per sample
 constexpr double supply_kpa = 200;  // nominal supply pressure (gauge) [kPa]
 
-// The parameters of the effects of a world. They are looked up once per world, because the simulation takes
-// millions of steps. The parameters of an effect that the world does not have are 0.
+// Parameters of the effects of a world. They are read from the map once per world, because the simulation
+// takes millions of steps. If the world does not have an effect, the parameters of this effect are 0.
 struct Hidden {
   const Effects& effects;
 
@@ -70,7 +70,7 @@ struct Hidden {
   }
 };
 
-// The age of the finger and its largest load, which continue from one log to the next.
+// Age of the finger and its largest load. Both continue from one log to the next.
 struct Age {
   double time_s = 0, largest_kpa = 0;
 };
@@ -79,8 +79,8 @@ struct Age {
 class Asked {
  public:
   Asked(const Hidden& hidden, const Log& log) : h_(hidden), log_(log) {}
-  // Returns the setpoint at sample `k`. The calls must be in the order of the samples. The function does not
-  // use commands of later samples.
+  // Returns the setpoint at sample `k`. Call this function for one sample after the other. It does not use
+  // commands of later samples.
   double at(std::size_t k, const std::vector<double>& command) {
     const double place = std::max(0.0, static_cast<double>(k) - h_.transport_delay_delay_s * log_.rate_hz);
     const auto low = static_cast<std::size_t>(place);
@@ -109,7 +109,7 @@ ValveNumbers numbers_of(const World& world, const Hidden& hidden) {
   return numbers;
 }
 
-// The pressure line between the command and the finger, with the regulator.
+// The pressure line from the command to the finger, including the pressure regulator.
 class Line {
  public:
   Line(const World& world, const Hidden& hidden, const Log& log, const std::vector<double>& command)
@@ -119,7 +119,8 @@ class Line {
         asked_(hidden, log),
         now_(asked_.at(0, command)) {}
   double gauge_kpa() const { return perfect_ ? now_ : valve_.gauge_kpa(); }
-  // Simulates from sample `k` to the next sample. After the last sample, the setpoint stays constant.
+  // Simulates the line from sample `k` to the next sample. After the last sample, the setpoint stays
+  // constant.
   void advance(std::size_t k, const std::vector<double>& command) {
     const double next = k + 1 < command.size() ? asked_.at(k + 1, command) : now_;
     const int steps = perfect_ ? 0 : static_cast<int>(std::lround(1 / (log_.rate_hz * valve_step_s)));
@@ -153,7 +154,7 @@ class Body {
   Body(const World& world, const Hidden& hidden, Age& age, const Log& log)
       : h_(hidden), age_(age), log_(log), finger_(world.finger), span_(world.finger.span_mm) {}
 
-  // Returns the displacement at sample `k`. Between two samples, the pressure changes linearly.
+  // Returns the displacement at sample `k`. The pressure is assumed to change linearly between two samples.
   double sample(std::size_t k, double pressure_kpa) {
     double y = 0;
     for (int i = 1; i <= finger_steps; ++i) {
@@ -195,7 +196,7 @@ class Body {
       const double below = 1 - std::exp(-(age_.largest_kpa - p) / h_.stress_softening_range_kpa);
       y *= 1 + h_.stress_softening_share * below * age_.largest_kpa / working_kpa;
     }
-    const double per_mm = h_.stiffening_per_mm;  // the factor is 1 at a displacement equal to the span, so
+    const double per_mm = h_.stiffening_per_mm;  // at a displacement of one span, the factor is 1, so
                                                  // stiffening does not change the span
     return y * (1 + per_mm * span_) / (1 + per_mm * std::max(0.0, y));
   }
@@ -245,7 +246,7 @@ class Body {
   double last_ = 0, friction_ = 0, slow_ = 0, crescent_ = 0, speed_ = 0, moved_ = 0, carried_ = 0, seen_ = 0;
 };
 
-// Replaces single readings of the sensor by wrong readings.
+// Replaces single readings of the sensor by wrong values.
 class WrongSamples {
  public:
   WrongSamples(const Hidden& hidden, std::uint64_t seed) : h_(hidden), random_(seed * 2147483647 + 11) {}
@@ -260,8 +261,8 @@ class WrongSamples {
   std::uniform_real_distribution<double> chance_{0, 1};
 };
 
-// Runs the controller that follows the reference of a log. If the log has no reference, the commands stay
-// unchanged.
+// Runs the controller that follows the reference of a log in closed loop. If a log has no reference, its
+// commands stay unchanged.
 class Follower {
  public:
   Follower(const World& world, const Log& log) : log_(log) {

@@ -1,5 +1,5 @@
 #pragma once
-// Simulated worlds with textbook equations. A world consists of a valve, a finger, added effects and a
+// Simulates worlds with textbook equations. A world consists of a valve, a finger, hidden effects and a
 // campaign of logs. A seed determines all of them.
 
 #include <cstdint>
@@ -17,18 +17,18 @@ using Effects = std::map<std::string, Numbers>;
 
 struct Log {
   double rate_hz = 100;
-  // The inputs of a log, one value per sample. supply_kpa is a gauge pressure.
+  // Inputs of a log, one value per sample. supply_kpa is a gauge pressure.
   std::vector<double> command_kpa, temperature_c, supply_kpa;
-  // Variation of this run, see variation.h.
+  // Run-to-run variation of this log, see variation.h.
   double gain = 1, offset_mm = 0;
-  std::size_t unrecorded = 0;  // number of samples at the start that are not recorded
-  // Closed loop: from the first recorded sample on, a controller follows the reference. `noise_mm` is the
-  // noise of the controller's sensor, one value per recorded sample.
+  std::size_t unrecorded = 0;  // number of samples at the start that are simulated but not recorded
+  // Only in closed loop: a controller follows this reference from the first recorded sample on. `noise_mm` is
+  // the noise of the controller's sensor, one value per recorded sample.
   std::vector<double> reference_mm, noise_mm;
 };
 
 struct Answer {
-  // The outputs of a log: the played command, the pressure at the finger, and the displacement without noise.
+  // Outputs of a log: the played command, the pressure at the finger, and the displacement without noise.
   std::vector<double> command_kpa, pressure_kpa, displacement_mm;
 };
 
@@ -49,8 +49,8 @@ struct Campaign {
 
 /// Draws logs with three kinds of commands in turn: triangles, steps, and sums of sines.
 std::vector<Log> draw_campaign(const Campaign& campaign);
-/// Removes the first `log.unrecorded` samples from a log and from its answer. They are simulated, but the
-/// recording begins after them.
+/// Removes the first `log.unrecorded` samples from a log and from its outputs. These samples are simulated,
+/// but the recording begins after them.
 void drop_unrecorded(Log& log, Answer& answer);
 double duration_s(const std::vector<Log>& logs);
 
@@ -59,8 +59,8 @@ double duration_s(const std::vector<Log>& logs);
 std::vector<Answer> simulate(const World& world, const Effects& effects, const std::vector<Log>& logs,
                              std::uint64_t seed);
 
-/// Computes only the pressures at the finger, log by log. This takes most of the time of a simulation. The
-/// result can be used for all effects that do not change the pressure.
+/// Computes the pressures at the finger for each log. This computation takes most of the time of a
+/// simulation. Its result is valid for all effects that do not change the pressure.
 using Pressures = std::vector<std::vector<double>>;  // gauge pressures [kPa], one list per log
 Pressures simulate_pressures(const World& world, const Effects& effects, const std::vector<Log>& logs);
 bool acts_on_pressure(const Effects& effects);
@@ -71,8 +71,8 @@ std::vector<double> displacements(const World& world, const Effects& effects, co
 std::vector<double> displacements(const World& world, const Effects& effects, const std::vector<Log>& logs,
                                   std::uint64_t seed);
 
-/// The conditions from which the parameters of an effect are drawn: the world, its largest displacement and
-/// the duration of the campaign.
+/// Data that determine the parameters of an effect: the world, its largest displacement and the duration of
+/// the campaign.
 struct Setting {
   World world;
   double largest_mm = 0;  // largest displacement of the campaign without effects [mm]

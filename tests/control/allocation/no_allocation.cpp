@@ -1,4 +1,4 @@
-// Tests that a tick of one channel allocates no memory in any state of the channel.
+// Tests that a tick of the controller of one channel allocates no memory, in any state of the channel.
 
 #include <gtest/gtest.h>
 
@@ -45,8 +45,7 @@ TEST(ChannelControllerAllocation, NoTickAllocates) {
       if (k % 700 == 0) input.now += 7 * sim::tick_ns;
       input.demand.time_s = k * sim::tick_s;
       controller.tick(input, output);
-      test::count_allocations(false);  // the simulated finger may allocate memory, so do not count from here
-                                       // on
+      test::count_allocations(false);  // stop counting, because the simulated finger may allocate memory
       input.reading = finger.write(output.command_kpa, input.now);
       test::count_allocations(true);
     }

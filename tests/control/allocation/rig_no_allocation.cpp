@@ -1,4 +1,4 @@
-// Tests that a tick of the whole rig allocates no memory in any state.
+// Tests that a tick of the whole rig allocates no memory, in any state of the rig.
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,8 @@ TEST(TickAllocation, NoneInAnyState) {
   EXPECT_EQ(test::allocations(), before);
 }
 
-// Tests motion along a plan, a grip whose second attempt moves back without a plan, and a second start.
+// Tests a motion along a plan, a grip whose second attempt moves back without a plan, and a second start of
+// the sequence.
 TEST(TickAllocation, NoneOfAPlan) {
   RigSettings settings = two_finger_settings();
   for (ChannelSettings& channel : settings.channels) channel.feedforward.kind = FeedforwardKind::planned;

@@ -68,7 +68,7 @@ std::string refusal_table() {
   return out.str();
 }
 
-/// Returns the table of faults that docs/reference/faults.md must contain.
+/// Returns the fault table that must be in docs/reference/faults.md.
 std::string table() {
   std::ostringstream out;
   out << "| code | name | meaning | usual cause | what to do | latches within |\n|---|---|---|---|---|---|\n";

@@ -37,8 +37,8 @@ TEST(EvidenceWindow, NeedsTheWholeWindow) {
   double verified_at = -1;
   for (int i = 0; verified_at < 0 && i < 1000; ++i) {
     const double t = i * tick_s;
-    const bool evidence = t > 0.5 || (i % 10 != 0);  // during the first 0.5 s, the evidence has a gap every
-                                                     // 50 ms
+    const bool evidence = t > 0.5 || (i % 10 != 0);  // during the first 0.5 s, the evidence is missing for
+                                                     // one sample every 50 ms
     if (window.observe(t, true, evidence) == EvidenceWindow::Verdict::verified) {
       verified_at = t;
     }
@@ -102,22 +102,23 @@ TEST(HoldWatch, IntervalsWithoutReadingsSayNothing) {
   }
 }
 
-/// Returns bench_twin with each parameter multiplied by a random factor between 1 - share and 1 + share.
+/// Returns the model bench_twin. Each parameter is multiplied by its own random factor between 1 - share and
+/// 1 + share.
 model::Model perturbed(double share, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> off(1 - share, 1 + share);
   model::Model model = twin();
   for (model::BlockSpec& block : model.blocks) {
     for (double& value : block.values) {
-      value *= std::round(value) == value && value < 10 ? 1 : off(random);  // the exponent of the model, a
-                                                                            // whole number below 10, remains
-                                                                            // unchanged
+      value *= std::round(value) == value && value < 10 ? 1 : off(random);  // leave the exponent of the model
+                                                                            // unchanged: it is the only whole
+                                                                            // number below 10
     }
   }
   return model;
 }
 
-/// Returns the RMSE of the model while free fingers follow the signal tp1.
+/// Returns the RMS error of the model while free fingers follow the reference signal tp1.
 double free_rmse_mm(const RigSettings& settings, const model::Model& truth) {
   const PreparedSequence tp1 =
       sequence_of("name: x\nsteps:\n  - pressure: {signal: tp1, scale: 0.9}\n", settings);
@@ -134,8 +135,8 @@ double free_rmse_mm(const RigSettings& settings, const model::Model& truth) {
   return std::sqrt(sum / count);
 }
 
-/// If the detection margin is three times the RMSE of the model, as required, even an inaccurate model causes
-/// no wrong grip result.
+/// The detection margin must be at least three times the RMS error of the model. With this margin, even an
+/// inaccurate model must cause no wrong grip result.
 TEST(GripDetection, AMarginOfThreeTimesTheRmseIsEnoughForModelsThatAreOff) {
   double worst_mm = 0;
   for (std::uint64_t seed = 1; seed <= 25; ++seed) {

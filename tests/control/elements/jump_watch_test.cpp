@@ -13,8 +13,8 @@ namespace {
 
 constexpr double tick_s = 0.01;
 
-/// Passes the readings of a finger to the watch. The displacement of the model is `model`, and the reading is
-/// `model` + `off`.
+/// Passes the readings of a finger to the watch. `model` is the displacement that the model predicts, and the
+/// reading is `model` + `off`.
 class Watched {
  public:
   using Value = std::function<double(double)>;
@@ -34,7 +34,7 @@ class Watched {
   double time_s_ = 1;
 };
 
-/// Returns a square wave: 0 mm and 5 mm in turn, each for `interval_s`.
+/// Returns a square wave that alternates between 0 mm and 5 mm every `interval_s`.
 double square(double time_s, double interval_s) {
   return std::fmod(time_s, 2 * interval_s) < interval_s ? 0 : 5;
 }

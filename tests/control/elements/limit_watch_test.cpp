@@ -10,7 +10,8 @@ namespace {
 
 constexpr double tick_s = 0.005;
 
-/// Returns all reports of a run. `binds(time)` returns the limit that is active at this time.
+/// Returns all limits that the watch reports during `seconds`. `binds(time)` returns the limit that is active
+/// at this time.
 template <class Binds>
 std::vector<std::string> told(double seconds, Binds&& binds) {
   LimitWatch watch;

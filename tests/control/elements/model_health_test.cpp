@@ -12,8 +12,8 @@ namespace {
 
 constexpr double tick_s = 0.005;
 
-// Returns settings for the tests. All values are given here, so that a change of the defaults does not change
-// the results.
+// Returns the settings of these tests. The function sets all values, so that a change of a default value does
+// not change the results.
 ModelHealthSettings short_intervals() {
   ModelHealthSettings settings;
   settings.model_error_mm = 0.2;
@@ -43,7 +43,8 @@ class HealthyResidual {
   double keep_, drive_mm_, noise_mm_, slow_mm_;
 };
 
-// Simulates a two-sided CUSUM of standard normal values. Returns the average run length until an alarm.
+// Simulates a two-sided CUSUM of independent standard normal values. Returns the average run length until an
+// alarm.
 double simulated_run_length(double allowance, double threshold, int runs, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   double total = 0;
@@ -69,8 +70,8 @@ TEST(ModelHealth, RunLengthFormulaAgreesWithTheTablesAndWithSimulation) {
   std::mt19937_64 random(seed);
   for (const double threshold : {3.0, 5.0, 6.0}) {
     const double stated = cusum_run_length(0.5, threshold);
-    // With 2000 runs, the standard error of the mean is 2.2 %, because the run length has nearly a geometric
-    // distribution.
+    // The run length has a nearly geometric distribution, so the mean of 2000 runs has a standard error of
+    // 2.2 %.
     EXPECT_NEAR(simulated_run_length(0.5, threshold, 2000, random), stated, 0.08 * stated);
   }
 }
@@ -105,12 +106,12 @@ TEST(ModelHealth, WhitenerGivesIndependentStandardNormalInnovations) {
   }
 }
 
-// The measured false-alarm rate must equal the rate in the settings, although successive residuals are
-// correlated.
+// Although successive residuals are correlated, the measured false-alarm rate must equal the rate in the
+// settings.
 TEST(ModelHealth, FalseAlarmsComeAtTheStatedRate) {
   ModelHealthSettings settings = short_intervals();
-  settings.false_alarm_interval_s = 100;  // 200 correlation intervals: short, so that alarms are frequent
-                                          // enough for a count
+  settings.false_alarm_interval_s = 100;  // 200 correlation intervals: short enough that the test can count
+                                          // many false alarms
   settings.unfit_mm = 1e9;
   double seconds = 0;
   constexpr int runs = 1000;
@@ -122,12 +123,13 @@ TEST(ModelHealth, FalseAlarmsComeAtTheStatedRate) {
       seconds += tick_s;
     }
   }
-  // With 1000 times of nearly exponential distribution, the standard error of the mean is 3.2 %.
+  // The times between alarms have a nearly exponential distribution, so the mean of 1000 times has a standard
+  // error of 3.2 %.
   EXPECT_NEAR(seconds / runs, settings.false_alarm_interval_s, 0.1 * settings.false_alarm_interval_s)
       << "seeds 1 to " << runs;
 }
 
-// Without whitening of the residual, the same threshold would cause many more false alarms.
+// Without whitening of the residual, the same threshold must cause many more false alarms.
 TEST(ModelHealth, ACusumOfThePlainResidualWouldAlarmFarMoreOften) {
   ModelHealthSettings settings = short_intervals();
   settings.correlation_time_s = 5;
@@ -150,7 +152,8 @@ TEST(ModelHealth, ACusumOfThePlainResidualWouldAlarmFarMoreOften) {
 }
 
 TEST(ModelHealth, FindsAnAgeingFinger) {
-  const ModelHealthSettings settings = short_intervals();  // the average time between false alarms is 1000 h
+  const ModelHealthSettings settings = short_intervals();  // these settings have an average time between
+                                                           // false alarms of 1000 h
   HealthyResidual residual(settings, 5);
   ModelHealth health(settings, tick_s);
   for (int i = 0; i < 12000; ++i) health.observe(residual.next());
@@ -187,7 +190,8 @@ TEST(ModelHealth, GapsAreNotCounted) {
   ModelHealth health(settings, tick_s);
   for (int i = 0; i < 10000; ++i) health.skip();
   EXPECT_EQ(health.state(), HealthState::unknown);
-  // An interval is evaluated only if more than a quarter of its readings are present.
+  // An interval is evaluated only if more than a quarter of the readings in the interval are present. Here,
+  // exactly a quarter is present.
   for (int i = 0; i < 10000; ++i) i % 4 == 0 ? health.observe(50) : health.skip();
   EXPECT_EQ(health.state(), HealthState::unknown);
 }

@@ -14,15 +14,16 @@ namespace {
 constexpr double tick_s = 0.005;
 constexpr PidSettings typical{2, 8, 0.1, 0.02, 1, AntiWindup::back_calculation, 0.2};
 
-// A simulated finger without hysteresis, with gain 0.4 mm/kPa and time constant 0.3 s.
+// Simulates a finger without hysteresis. The gain of the finger is 0.4 mm/kPa, and its time constant is 0.3
+// s.
 struct Finger {
   double y_mm = 0;
   void step(double command_kpa) { y_mm += (0.4 * command_kpa - y_mm) * -std::expm1(-tick_s / 0.3); }
 };
 
-// Returns the time [s] that the finger needs to stay within 0.3 mm of a reachable reference. Before this
-// reference, an unreachable reference was active for `saturated_s`. The feedforward commands
-// `feedforward_share` times the steady-state pressure of the active reference.
+// Returns the time [s] until the finger stays within 0.3 mm of a reachable reference. An unreachable
+// reference is active for `saturated_s` before the reachable one. The feedforward command is
+// `feedforward_share` times the steady-state pressure for the active reference.
 double recovery_s(AntiWindup anti_windup, double feedforward_share, double saturated_s,
                   const LimitSettings& limits) {
   PidSettings settings = typical;
@@ -34,8 +35,7 @@ double recovery_s(AntiWindup anti_windup, double feedforward_share, double satur
   pid.align(0);
   const int saturated = static_cast<int>(saturated_s / tick_s);
   for (int i = 0; i < saturated + 12000; ++i) {
-    const double reference = i < saturated ? 40 : 16;  // 40 mm are unreachable, because they would need 100
-                                                       // kPa
+    const double reference = i < saturated ? 40 : 16;  // 40 mm are unreachable: they would need 100 kPa
     const double feedforward = feedforward_share * reference / 0.4;
     const double request = feedforward + pid.step(reference, finger.y_mm, feedforward);
     command = limit(limits, request, command, tick_s).command_kpa;
@@ -57,7 +57,7 @@ TEST(Pid, IntegralIsTheTrapezoid) {
   double exact = 0;
   for (int i = 0; i <= 1000; ++i) {
     const double t = i * tick_s;
-    (void)pid.step(2 * t, 0, 0);  // for an error that rises linearly, the trapezoidal integral is exact
+    (void)pid.step(2 * t, 0, 0);  // the error rises linearly, so the trapezoidal integral is exact
     exact = 3 * t * t;
   }
   EXPECT_NEAR(pid.integral_kpa(), exact, 1e-9);
@@ -105,7 +105,8 @@ TEST(Pid, AnAlignedStartContinuesTheCommand) {
   pid.align(31.7);
   const double feedforward = 12;
   EXPECT_NEAR(feedforward + pid.step(20, 3, feedforward), 31.7, 1e-12);
-  // In the next step, the command changes only by the amount that the gains of the PID produce.
+  // Compared with the command before, the next command must change by exactly the amount that the gains of
+  // the PID produce.
   const double next = feedforward + pid.step(20, 3, feedforward);
   EXPECT_NEAR(next, 31.7 + 8 * tick_s * 17, 1e-9);
 }

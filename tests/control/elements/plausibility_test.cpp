@@ -81,8 +81,8 @@ TEST(Plausibility, AFrozenReadingIsFoundOnlyWhileTheCommandMoves) {
   EXPECT_EQ(moving.next(5.001, 40), Validity::valid) << "the reading moves again";
 }
 
-// If a part stops a finger, the displacement is constant, but the reading of a noisy sensor varies. If the
-// reading of such a sensor does not vary, it is frozen.
+// If a part stops a finger, the displacement is constant, but the noise of the sensor still changes the
+// reading. If the reading of a sensor that normally has noise is constant, the reading is frozen.
 TEST(Plausibility, ALivelySensorThatRepeatsItselfStandsStillAndIsFrozenWhereTheFreeFingerMoves) {
   for (const bool lively : {true, false}) {
     Channel channel;

@@ -15,7 +15,7 @@ double peak_speed(const Reference& reference, double from_s, double to_s) {
   return peak;
 }
 
-// Checks that the rate of the reference equals the central difference of its value.
+// Checks that the rate of the reference equals the central difference of the values of the reference.
 void expect_consistent(const Reference& reference, double from_s, double to_s) {
   constexpr double d = 1e-5;
   for (double t = from_s; t < to_s; t += 0.0137) {
@@ -176,7 +176,7 @@ TEST(Reference, OneThatIsAlreadyGoingBrakesAndThenGoes) {
   EXPECT_NEAR(reference.at(reference.end_s()).rate, 0, 1e-9);
 }
 
-// The reference must have no step while segments are removed and appended at random.
+// The reference must remain continuous while segments are removed and appended at random.
 TEST(Reference, NeverStepsUnderRandomUse) {
   const unsigned seed = 20250117;
   SCOPED_TRACE(testing::Message() << "seed " << seed);

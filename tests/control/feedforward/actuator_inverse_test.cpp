@@ -22,8 +22,8 @@ namespace {
 using sim::model_named;
 using sim::tick_s;
 
-// Returns a smooth displacement with slow and fast parts and minor hysteresis loops. 60 kPa suffice to reach
-// it.
+// Returns a displacement over time that contains slow parts, fast parts and minor hysteresis loops. The
+// finger can reach this displacement with at most 60 kPa.
 double wanted_mm(double t) {
   const double rise = 1 - std::exp(-t * t);
   return rise * (12 - 4 * std::cos(0.7 * t) - 2 * std::cos(2.3 * t + 0.4) + 0.6 * std::sin(9 * t));
@@ -86,8 +86,8 @@ TEST(ActuatorInverse, FollowedByTheChainItIsTheIdentity) {
   EXPECT_GT(highest, 15) << "the reference requires at most 15 kPa, so this test is too easy";
 }
 
-// Computes the pressure for a displacement. Tests all exponents and numbers of branches, random states, both
-// directions, and small and large steps.
+// Tests the pressure that the inverse computes for a displacement. The test covers all exponents and numbers
+// of branches, random states, both directions, and small and large steps.
 TEST(ActuatorInverse, SolvesFromRandomStates) {
   const unsigned seed = 99;
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
@@ -115,8 +115,8 @@ TEST(ActuatorInverse, SolvesFromRandomStates) {
   }
 }
 
-// Tests fingers for which a Newton step overshoots the solution: a stop, a curvature of either sign, and a
-// soft section.
+// Tests three fingers for which a Newton step overshoots the solution. The fingers have a stop, a curvature
+// of either sign, and a soft section.
 TEST(ActuatorInverse, SolvesAcrossKinksFromRandomStates) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> pressure(0, 60), curvature(-4, 4), place(0, 12);
@@ -140,8 +140,8 @@ TEST(ActuatorInverse, SolvesAcrossKinksFromRandomStates) {
   }
 }
 
-// The slope of the actuator has a kink at the pressure at which the direction changes. The iteration does not
-// check its last step, so this step must not cross the kink.
+// The slope of the actuator has a kink at the present pressure, because a change of direction begins there.
+// The iteration does not check its last step, so the last step must not cross the kink.
 TEST(ActuatorInverse, ATurnRightBesideTheGuessIsExactToo) {
   ActuatorInverse inverse(body_of(model_named("bench_twin")), tick_s);
   for (const double pressure : {20.0, 40.0 - 2e-6, 40.0 - 1e-6, 40.0}) inverse.advance(pressure);
@@ -155,7 +155,8 @@ TEST(ActuatorInverse, OutOfReachIsTheBoundAndNoWindUp) {
   const model::Model body = body_of(model_named("bench_twin"));
   ActuatorInverse inverse(body, tick_s);
   for (int k = 0; k < 400; ++k) inverse.advance(0.15 * std::min(k, 300));
-  // After the vent, creep keeps the finger above 0 mm for a while. During this time, 0 mm is out of reach.
+  // After the vent, creep keeps the finger above 0 mm for some seconds. In these seconds, no pressure can
+  // move the finger to 0 mm.
   int out_of_reach = 0;
   for (int k = 0; k < 4000; ++k) {
     const auto solution = inverse.solve(k < 3000 ? 0 : 5, 0, 60);
@@ -175,10 +176,11 @@ TEST(ActuatorInverse, OutOfReachIsTheBoundAndNoWindUp) {
   EXPECT_EQ(high.pressure_kpa, 60);
 }
 
-// The explicit inverse p[k] = (y[k] + h[k-1]) / alpha, which is common in the literature, is a fixed-point
-// iteration. Near h = 0, its loop gain is beta/alpha. For the published model the loop gain is 2.43. The
-// iteration therefore diverges until the hysteretic state saturates, and without bound when the reference
-// changes its direction.
+// The explicit inverse p[k] = (y[k] + h[k-1]) / alpha is common in the literature. It is a fixed-point
+// iteration for the pressure p, with the displacement y and the hysteretic state h. Near h = 0, the loop gain
+// of the iteration is beta/alpha, which is 2.43 for the published model. The iteration therefore diverges
+// until the hysteretic state saturates. When the reference changes its direction, the iteration diverges
+// without bound.
 struct ExplicitInverse {
   double alpha, beta, gamma, eta;
   double p_kpa = 0, h_mm = 0;
@@ -201,8 +203,8 @@ TEST(ActuatorInverse, TheExplicitMultiplicativeInverseDiverges) {
   for (int k = 0; k < 40; ++k) published.step(0.009);
   EXPECT_FALSE(std::abs(published.p_kpa) < 1e6) << "the reference is 1 um below the previous reference";
 
-  // For bench_twin, beta/alpha is 0.81. The iteration converges, but each tick removes only a fifth of the
-  // remaining error, so the result lags on a ramp.
+  // For bench_twin, beta/alpha is 0.81, so the iteration converges. However, each tick removes only a fifth
+  // of the remaining error, so the computed pressure lags behind a ramp of the reference.
   ExplicitInverse twin{0.21105, 0.1713, 0.01625, 0.02428};
   for (int k = 0; k <= 60; ++k) twin.step(0.01 * k);
   EXPECT_NEAR(twin.alpha * twin.p_kpa - twin.h_mm, 0.6, 0.1);

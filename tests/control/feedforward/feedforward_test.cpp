@@ -45,8 +45,8 @@ struct Outcome {
   int out_of_reach = 0;
 };
 
-/// Runs the feedforward without a PID on a finger that equals the model, so that the feedforward alone causes
-/// the error.
+/// Runs the feedforward without a PID on a finger that equals the model. The feedforward is therefore the
+/// only cause of the error.
 Outcome run_alone(const model::Model& model, const FeedforwardSettings& settings, const Reference& reference,
                   double finger_late_s = 0) {
   Feedforward feedforward(model, settings, limits, tick_s);
@@ -99,13 +99,13 @@ TEST(FullModelFeedforward, LooksAheadByAllDeadTime) {
 
 TEST(FullModelFeedforward, WithoutALagTheHoldsHalfSampleIsCompensated) {
   const model::Model fast = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
-  // The remaining error occurs because the board holds each command for one tick. The error is at most half
-  // the largest change of the reference per tick.
+  // The board holds each command for one tick. This hold causes an error of at most half the largest change
+  // of the reference per tick.
   const Outcome run = run_alone(fast, {FeedforwardKind::full_model, 0}, sine_reference(0.1));
   EXPECT_LT(run.worst_mm, 0.02);
 }
 
-// Tests a valve whose lags upstream and downstream of the pressure sensor differ between filling and venting.
+// Tests a first-order valve lag with different time constants for filling and venting.
 TEST(FullModelFeedforward, TracksThroughLagsThatDifferByDirection) {
   model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
   model =
@@ -116,7 +116,7 @@ TEST(FullModelFeedforward, TracksThroughLagsThatDifferByDirection) {
   EXPECT_EQ(run.out_of_reach, 0);
 }
 
-// Returns bench_twin with two further parts: an electro-pneumatic regulator, of which only the command is
+// Returns bench_twin with two additional blocks: an electro-pneumatic regulator, of which only the command is
 // known, and the dead band of a worn linkage.
 model::Model regulated_twin() {
   model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
@@ -136,8 +136,8 @@ TEST(FullModelFeedforward, TracksThroughADeadBandAndARegulator) {
   EXPECT_LT(run.worst_mm, 0.01);
 }
 
-// The feedforward must start with the valve openings, the integral of the regulator and the position in the
-// dead band that earlier commands have produced.
+// Earlier commands have changed the valve openings, the integral of the regulator and the position in the
+// dead band. The feedforward must start with these values.
 TEST(FullModelFeedforward, TakesOverARegulatorAndADeadBandAsTheyStand) {
   const model::Model model = regulated_twin();
   RunningModel running(model, tick_s, 0, 0.1);
@@ -165,7 +165,7 @@ TEST(FullModelFeedforward, TakesOverARegulatorAndADeadBandAsTheyStand) {
   EXPECT_LT(worst_mm, 0.05);
 }
 
-// The command must compensate for the pressure that the line loses by a leak.
+// The line loses pressure by a leak. The command must compensate for this pressure loss.
 TEST(FullModelFeedforward, TracksThroughALineThatLeaks) {
   const model::Model twin = model_named("bench_twin");
   const Reference sine = sine_reference(0.1);
@@ -258,7 +258,7 @@ TEST(FullModelFeedforward, ASaturatingValveBoundsThePlan) {
   EXPECT_GT(run.out_of_reach, 100);
 }
 
-// A corner or a jump of the reference must not make the planned command oscillate.
+// A corner or a jump of the reference must not cause an oscillation of the planned command.
 TEST(FullModelFeedforward, AJumpOfTheReferenceDoesNotRing) {
   const model::Model twin = model_named("bench_twin");
   for (const double slew : {60.0, 120.0, 400.0}) {
@@ -300,7 +300,7 @@ TEST(FullModelFeedforward, AJumpOfTheReferenceDoesNotRing) {
   }
 }
 
-/// Simulates a finger that equals the model while the feedforward follows `reference` from rest.
+/// Simulates a finger that equals the model. The feedforward follows `reference` from rest.
 struct Follower {
   Follower(const model::Model& model, const Reference& followed)
       : reference(followed),
@@ -312,7 +312,7 @@ struct Follower {
   [[nodiscard]] FeedforwardQuery query() const { return {&reference, time_s(), offset_mm}; }
   [[nodiscard]] double time_s() const { return ticks * tick_s; }
 
-  /// Runs one tick and returns the pressure command of this tick.
+  /// Runs one tick and returns the pressure command of the tick.
   double tick() {
     const double command = feedforward.step(query()).pressure_kpa;
     finger.step(0, command);
@@ -328,9 +328,9 @@ struct Follower {
   int ticks = 0;
 };
 
-// The reference jumps from 0 to 8 mm, and the finger must reach 8 mm within a limited time. If the finger has
-// an elastic and a creeping element, it moves by the element that needs less pressure. A finger without creep
-// moves by its elastic element.
+// The reference jumps from 0 to 8 mm, and the finger must reach 8 mm within a time limit. A finger with an
+// elastic and a creeping element moves with the element that needs less pressure. A finger without creep
+// moves with its elastic element.
 TEST(FullModelFeedforward, AJumpTakesAsLongAsTheEasierWayThere) {
   const model::Model twin = model_named("bench_twin");
   struct Case {
@@ -352,8 +352,8 @@ TEST(FullModelFeedforward, AJumpTakesAsLongAsTheEasierWayThere) {
   }
 }
 
-// If the finger is displaced during a motion, the command must not jump. The finger continues its motion and
-// gradually returns to the reference.
+// If a disturbance displaces the finger during a motion, the command must not jump. The finger must continue
+// its motion and gradually return to the reference.
 TEST(FullModelFeedforward, AJumpInMotionDoesNotKick) {
   Reference reference;
   reference.start(0, 0);
@@ -362,7 +362,7 @@ TEST(FullModelFeedforward, AJumpInMotionDoesNotKick) {
   Follower follower(model_named("bench_twin"), reference);
   double before = 0, last = 0, worst = 0;
   while (follower.time_s() < 1.8) {
-    // In the middle of the ramp, displace the finger by 2 mm from the prediction of the model.
+    // In the middle of the ramp, simulate a displacement that exceeds the prediction of the model by 2 mm.
     if (follower.time_s() > 1.1) follower.offset_mm = 2;
     const double command = follower.tick();
     if (follower.time_s() > 0.7) worst = std::max(worst, std::abs(command - 2 * last + before));

@@ -14,8 +14,8 @@ using sim::tick_s;
 
 const LimitSettings limits = sim::twin_settings().limits;
 
-/// Returns the displacement [mm] of a free finger at the time `seconds` after the command has jumped from 0
-/// to `command_kpa`.
+/// Returns the displacement [mm] of a finger in free motion `seconds` after a jump of the command from 0 to
+/// `command_kpa`.
 double rests_at_mm(const model::Model& model, double command_kpa, double seconds) {
   model::Chain<double> chain(model, {}, tick_s);
   chain.step(0, command_kpa);
@@ -64,8 +64,8 @@ TEST(FreeCurve, AModelThatDoesNotMoveNeedsTheLowestCommand) {
   EXPECT_NEAR(curve.command_kpa(0), limits.pressure_min_kpa, 1e-6);
 }
 
-// The displacement of this finger decreases when the pressure rises, so the highest point of the curve is its
-// first point.
+// The displacement of this finger decreases with the pressure, so the highest point of the curve is the first
+// point.
 TEST(FreeCurve, AModelThatMovesBackwardsNeedsTheLowestCommandToo) {
   model::Model backwards = model::only(model_named("bench_twin"),
                                        [](const model::BlockInfo& info) { return info.id == "bouc_wen"; });

@@ -69,8 +69,8 @@ TEST(Invertibility, PlaysAreAcceptedAsAWholeAlone) {
       "feedforward `full_model` is the inverse of the complete model");
 }
 
-// A play operator does not move while its input stays within its threshold. In this range, creep alone moves
-// the finger.
+// A play operator does not move while its input stays within its threshold. Within the threshold, the finger
+// moves by creep only.
 TEST(Invertibility, PlaysWithoutAnElasticPartAreRefused) {
   const model::Model creep =
       model::with_block({}, {model::block_type<model::KelvinVoigt>(), {1e9, 40, 20, 40, 200}});
@@ -88,8 +88,8 @@ TEST(Invertibility, PlaysWithoutAnElasticPartAreRefused) {
   EXPECT_TRUE(check(with_plays(0), FeedforwardKind::full_model));
 }
 
-// The gain of this model is positive at the start, but hysteresis makes it negative within the pressure
-// range. The check must evaluate the whole range to find this.
+// The gain of this model is positive at 0 kPa, but hysteresis makes the gain negative at higher pressures. To
+// find the negative gain, the check must evaluate the whole pressure range.
 TEST(Invertibility, AGainThatTurnsNegativeInsideTheRangeIsFound) {
   const model::Model twin = model_named("bench_twin");
   const model::Model hidden = with_value(twin, "bouc_wen.alpha_mm_per_kpa", 0.1800);
@@ -98,13 +98,14 @@ TEST(Invertibility, AGainThatTurnsNegativeInsideTheRangeIsFound) {
   EXPECT_NE(refused.error().text.find("the instantaneous gain is -"), std::string::npos)
       << refused.error().text;
   EXPECT_NE(refused.error().text.find("kPa while the pressure"), std::string::npos) << refused.error().text;
-  // In a smaller pressure range, the gain of the same model is positive everywhere.
+  // From 0 to 5 kPa, the gain of this model is positive everywhere.
   LimitSettings small = limits;
   small.pressure_max_kpa = 5;
   EXPECT_TRUE(check_feedforward(hidden, {FeedforwardKind::full_model, 0}, small, sim::tick_s));
 }
 
-// If a hysteresis loop has different slopes at its ends, the inverse may be missing at one end only.
+// If a hysteresis loop has different slopes at its two ends, the inverse can be missing at one end and exist
+// at the other.
 TEST(Invertibility, AGainThatIsNegativeOneWayOnlyIsFoundAndTheWayIsNamed) {
   const auto skewed = [](double epsilon_per_kpa) {
     model::Model even = with_value(model_named("bench_twin"), "bouc_wen.eta_per_kpa", 0.02);
@@ -141,8 +142,8 @@ TEST(Invertibility, WhatIsMissingIsNamed) {
   EXPECT_FALSE(check(valve_only, FeedforwardKind::full_model));
 }
 
-// Tests each block of the catalogue that lies between command and displacement. Either the feedforward
-// inverts the block, or the refusal names it.
+// Tests each block of the catalogue that is located between command and displacement. The feedforward must
+// either invert the block or refuse the model with a message that names the block.
 TEST(Invertibility, EveryBlockIsUndoneOrNamed) {
   const model::Model twin = model_named("bench_twin");
   for (std::size_t type = 0; type < model::catalogue().size(); ++type) {
@@ -163,7 +164,7 @@ TEST(Invertibility, EveryBlockIsUndoneOrNamed) {
   }
 }
 
-// Tests blocks that the catalogue does not contain.
+// Tests blocks whose type is not in the catalogue.
 TEST(Invertibility, WhatFullModelCannotUndoIsNamedWhereverItStands) {
   using enum model::Inverse;
   const auto block = [](std::string_view id, model::Station station, model::Inverse inverse) {
@@ -179,7 +180,7 @@ TEST(Invertibility, WhatFullModelCannotUndoIsNamedWhereverItStands) {
     for (const model::Station station : {model::Station::actuator, model::Station::load}) {
       EXPECT_EQ(named(station, inverse), inverse != implicit && inverse != ignored);
     }
-    // Among the blocks of the valve, the feedforward inverts a lag, a dead band and a bound.
+    // The feedforward inverts three blocks of the valve: a lag, a dead band and a bound.
     EXPECT_EQ(named(model::Station::valve, inverse), inverse == lead || inverse == play || inverse == bound);
   }
   const std::array three{block("first", model::Station::valve, lead),

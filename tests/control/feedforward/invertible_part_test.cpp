@@ -34,8 +34,8 @@ TEST(InvertiblePart, TheBlockInTheWayIsLeftOutAndNothingElse) {
   EXPECT_EQ(part->model.blocks, twin.blocks);
 }
 
-/// The published finger has creep with two branches and a hysteresis loop. Only the hysteresis loop has no
-/// inverse.
+/// The published finger has creep with two branches and a hysteresis loop. The creep has an inverse; the
+/// hysteresis loop has none.
 TEST(InvertiblePart, OfThePublishedFingerItIsTheCreepAlone) {
   const model::Model published = model_named("zhang2025");
   const auto part = invertible_part(published, limits, sim::tick_s);

@@ -1,5 +1,5 @@
-// Tests the planned feedforward in three cases and at each change between them: the finger follows the plan,
-// the finger deviates from the plan, and there is no plan.
+// Tests the planned feedforward in three cases: the finger follows the plan, the finger deviates from the
+// plan, and there is no plan. Also tests each transition from one case to another.
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@ constexpr LimitSettings limits{0, 60, 400, 400, 0, 25, 1};
 constexpr FeedforwardSettings planned{FeedforwardKind::planned, 0};
 constexpr double fade_s = 3;
 
-/// Returns an inaccurate plan that is easy to recognise: the pressure rises from `from_kpa` at `kpa_per_s`.
-/// The reference and the model's displacement are constant at `reference_mm`.
+/// Returns a plan that does not fit the model, so that a test recognises its values. The pressure rises from
+/// `from_kpa` at `kpa_per_s`. The reference and the displacement of the model are constant at `reference_mm`.
 PressurePlan plan_of(double from_kpa, double kpa_per_s, double reference_mm) {
   PressurePlan plan;
   plan.step_s = 0.1;
@@ -37,7 +37,7 @@ class PlannedFeedforwardTest : public testing::Test {
   void enter(double command_kpa) {
     feedforward_.enter(RunningModel(model_, tick_s, 0, 0.1), query_, command_kpa);
   }
-  /// Returns the feedforward of this tick and advances the time by one tick.
+  /// Returns the feedforward of the present tick and advances the time by one tick.
   FeedforwardStep step() {
     const FeedforwardStep result = feedforward_.step(query_);
     query_.time_s += tick_s;
@@ -48,8 +48,8 @@ class PlannedFeedforwardTest : public testing::Test {
     for (int i = 0; i + 1 < std::lround(duration_s / tick_s); ++i) (void)step();
     return step();
   }
-  /// Returns the pressure that the plan requires now. It is the value of the plan at a later time: after the
-  /// dead time plus half a tick.
+  /// Returns the pressure that the plan requires now. The command acts after the dead time plus half a tick,
+  /// so this is the value of the plan at that later time.
   [[nodiscard]] double on_plan(const PressurePlan& plan) const {
     return plan.at(query_.time_s - query_.plan_origin_s + plan_ahead_s(model_, planned, tick_s));
   }
@@ -103,8 +103,8 @@ TEST_F(PlannedFeedforwardTest, APlanForAnotherWayIsLeftAlone) {
   }
 }
 
-// In each case the plan ends, begins, or is replaced by a plan whose time has another origin. The command
-// must have no step.
+// The plan begins, ends, or is replaced by a plan with another time origin. In each case, the command must be
+// continuous.
 TEST_F(PlannedFeedforwardTest, NoChangeOfItsSourceIsAStep) {
   reference_.start(0, 5);
   const PressurePlan low = plan_of(8, 0, 5), high = plan_of(30, 1, 5);
@@ -125,8 +125,8 @@ TEST_F(PlannedFeedforwardTest, NoChangeOfItsSourceIsAStep) {
   }
 }
 
-// A rounding error of the time may occur near a jump of the reference. Then the time of the plan may be
-// before the jump and the time of the sequence after it, or vice versa.
+// Near a jump of the reference, a rounding error of the time can have a large effect. The time of the plan
+// can be before the jump although the time of the sequence is after the jump, or vice versa.
 TEST_F(PlannedFeedforwardTest, ClocksThatDifferByARoundingFollowTheSamePlan) {
   for (const double rounding_s : {-1e-9, 0.0, 1e-9}) {
     SCOPED_TRACE(rounding_s);

@@ -36,8 +36,8 @@ TEST(SettledLine, IsTheSlopeBetweenTheLimitsWhereverTheyBegin) {
   EXPECT_NEAR(line.pressure_kpa(at_highest_mm), 60, 1e-9);
 }
 
-// The settled line belongs to the true position of the finger, so it must not depend on dead time, sensor and
-// noise of the model.
+// The settled line describes the true position of the finger. It must therefore not depend on the dead time,
+// the sensor and the noise of the model.
 TEST(SettledLine, KnowsNeitherDeadTimeNorSensorNorNoise) {
   const model::Model twin = sim::model_named("bench_twin");
   model::Model shown = twin;

@@ -9,11 +9,11 @@ namespace softgrip::control::regulator_inverse_test {
 namespace {
 
 constexpr double tick_s = 0.005;
-/// Parameters of a regulator: time constants of filling and venting, overlap, integral gain and full opening.
-/// The values are those that softgrip identifies for textbook valves.
+/// Parameters of a regulator: time constants for filling and venting, overlap, integral time and full
+/// opening. softgrip identifies these values for textbook valves.
 constexpr model::RegulatorNumbers<double> usual{0.015, 0.022, 0.4, 0.3, 15};
 
-/// Returns the pressure after one tick in which the command was held.
+/// Returns the pressure at the end of a tick in which the command was held.
 double held(model::RegulatedPressure<double>& regulated, double command_kpa) {
   regulated.step(model::Segment<double>::straight(tick_s, command_kpa, command_kpa),
                  [](const model::Segment<double>&) {});
@@ -63,8 +63,8 @@ TEST(RegulatorInverse, AsksForNoMoreThanAPortOpens) {
       << "even a command of 100 kPa would not change the pressure more in this tick";
 }
 
-// While the pressure is constant, the command must not jump between the edges of the overlap, because this
-// would be useless noise.
+// While the pressure is constant, the command must not jump between the two edges of the overlap, because
+// these jumps would be useless noise.
 TEST(RegulatorInverse, APressureThatStandsDoesNotHaveTheOverlapPassed) {
   const RegulatorInverse inverse(model::RegulatedPressure<double>(usual), tick_s);
   EXPECT_NEAR(inverse.command_for(1e-5) - inverse.command_for(-1e-5), 0, 0.05 * usual.overlap_kpa);

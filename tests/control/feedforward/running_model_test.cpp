@@ -18,17 +18,18 @@ double smooth_kpa(int tick) {
   return 15 - 15 * std::cos(1.3 * tick * tick_s);
 }
 
-// Returns a command that rises at an ordinary slew limit and then changes smoothly.
+// Returns a command that rises at a typical slew limit and then changes smoothly.
 double slewed_kpa(int tick) {
   const double t = tick * tick_s;
   if (t < 1.5) return std::clamp(400 * (t - 0.5), 0.0, 30.0);
   return 30 - 12 * std::sin(1.3 * (t - 1.5));
 }
 
-// Compares two simulations. The chain contains a delay line; the running model computes ahead and reads
-// stored values of the past. They differ for two reasons. Within a tick, the pressure is linear in the
-// running model and exponential in the chain. This is a time shift of T^2/(12 tau) = 47 us (0.4 um of creep
-// at 20 kPa/s). In addition, the running model interpolates between stored values.
+// Compares the running model with the chain. The chain contains a delay line. The running model computes
+// ahead of time, stores the values, and reads them after the dead time. The two simulations differ for two
+// reasons. First, within a tick the pressure is linear in the running model and exponential in the chain.
+// This difference corresponds to a time shift of T^2/(12 tau) = 47 us (0.4 um of creep at 20 kPa/s). Second,
+// the running model interpolates between stored values.
 void expect_same_as_the_chain(const model::Model& model, double (*command_kpa)(int), double tolerance_mm) {
   RunningModel running(model, tick_s, 0, 0.1);
   model::Chain<double> chain(model, {}, tick_s);

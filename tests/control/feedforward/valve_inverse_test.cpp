@@ -30,7 +30,7 @@ const model::BlockSpec regulator =
 
 model::Model valve_with(std::initializer_list<model::BlockSpec> blocks) {
   model::Model model;
-  model.blocks = blocks;  // the order of the blocks is a part of the test
+  model.blocks = blocks;  // assigned directly, because the test depends on the order of the blocks
   return model;
 }
 
@@ -43,7 +43,8 @@ struct Course {
   double worst_expected_kpa = 0;  ///< largest difference between the resulting and the predicted pressure
 };
 
-/// In each tick, requests a pressure from the inverse and simulates the blocks to get the resulting pressure.
+/// In each tick, computes the command for a requested pressure with the inverse, and simulates the blocks
+/// with this command to get the resulting pressure.
 Course course_through(const model::Model& model) {
   model::Chain<double> chain(model, {}, tick_s);
   chain.reset(wanted_kpa(0));
@@ -80,8 +81,8 @@ TEST(ValveInverse, BringsThePressureWhereItIsWanted) {
   }
 }
 
-// A dead band behind a lag has no exact inverse. The inverse must then not correct the command for the dead
-// band.
+// If a lag is upstream of a dead band, the dead band has no exact inverse. The inverse must then ignore the
+// dead band.
 TEST(ValveInverse, ADeadBandBehindALagIsLeftAlone) {
   const double now_kpa = 10, next_kpa = 10.2;
   EXPECT_EQ(ValveInverse(valve_with({lag, band}), tick_s).command_for(now_kpa, next_kpa),
@@ -96,7 +97,8 @@ TEST(ValveInverse, GoesOnFromWhereTheValveStands) {
   for (int k = 0; k < 400; ++k) running.advance(wanted_kpa(k * tick_s));
   ValveInverse inverse(model, tick_s);
   inverse.take_over(running.valve());
-  // The first tick shows the inverse how fast the valve vents, so the second tick must be more accurate.
+  // The inverse does not know how fast the valve vents before the first tick. The second tick must therefore
+  // be more accurate than the first.
   for (const double within_kpa : {0.03, 1e-3}) {
     const double now_kpa = running.pressure_kpa(), next_kpa = now_kpa - 0.2;
     const double command_kpa = inverse.command_for(now_kpa, next_kpa);

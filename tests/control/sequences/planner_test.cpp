@@ -23,7 +23,7 @@ using sim::tick_s;
 
 constexpr LimitSettings limits{0, 60, 400, 400, 0, 30, 1};
 
-/// A motion from 0 to the first value of a sine. The sine begins after a pause of 1 s.
+/// A motion from 0 mm to the first value of a sine, a pause of 1 s, and the sine.
 struct Motion {
   double begins_mm = 6;
   double after_s = 3;
@@ -41,8 +41,8 @@ Reference sine_reference(double frequency_hz, double cycles, const Motion& motio
   return reference;
 }
 
-/// Simulates a finger that equals the model and is driven by the plan. Returns its largest error after
-/// `from_s`.
+/// Simulates a finger that equals the model, with the pressure of the plan as input. Returns the largest
+/// error [mm] of the finger after the time `from_s`.
 double worst_mm(const model::Model& model, const PressurePlan& plan, const Reference& reference,
                 double from_s) {
   constexpr double fine_s = 0.001;
@@ -74,9 +74,9 @@ TEST(Planner, FollowsThePublishedModelWhichHasNone) {
   EXPECT_LT(worst_mm(published, plan, reference, 0.5), 0.1);
 }
 
-// The reference stays between 11 and 19 mm. For a sine that goes down to 6 mm, the search ends with errors of
-// up to 1.8 mm because of the play operators. If an elastic gain replaces the play operators, these errors do
-// not occur.
+// The reference stays between 11 and 19 mm. For a sine that goes down to 6 mm, the play operators make the
+// search end with errors of up to 1.8 mm. These errors do not occur if an elastic gain replaces the play
+// operators.
 TEST(Planner, FollowsAMeasuredArmOfPlaysWhereItUnloadsLittle) {
   LimitSettings wide = limits;
   wide.pressure_max_kpa = 110;
@@ -91,8 +91,8 @@ TEST(Planner, FollowsAMeasuredArmOfPlaysWhereItUnloadsLittle) {
   EXPECT_LT(plan.rmse_mm, 0.02);
 }
 
-// The planner works in time windows. In this test, the windows begin at different phases of the sine, and the
-// command changes its direction within a window.
+// The planner plans one time window after the other. In this test, the windows begin at different phases of
+// the sine, and the command changes its direction within a window.
 TEST(Planner, DoesNotComeToRestAtACorner) {
   for (const char* name : {"bench_twin", "zhang2025"}) {
     for (const double frequency : {0.05, 0.1, 0.13, 0.2}) {
@@ -104,9 +104,10 @@ TEST(Planner, DoesNotComeToRestAtACorner) {
   }
 }
 
-/// The steady-state gain of this finger includes creep that takes hours. It is three times the gain during a
-/// motion, so the steady-state command is a third of the required command. A search that started from the
-/// steady-state command did not converge at the corners that the friction of this finger causes.
+/// The steady-state gain of this finger includes creep that takes hours. This gain is three times the gain
+/// during a motion, so the steady-state command is a third of the required command. When the search started
+/// from the steady-state command, it did not converge at the corners that friction causes in the required
+/// command.
 TEST(Planner, IsNotMisledByTheGainOfCreepThatTakesHours) {
   model::Model finger = model::with_block({}, {*model::find_block("asymmetric_valve_lag"), {0.0374, 0.0374}});
   finger = model::with_block(std::move(finger), {*model::find_block("prandtl_ishlinskii"),
@@ -141,8 +142,8 @@ TEST(Planner, StaysWithinPressureAndSlew) {
   }
 }
 
-// For some time, the finger cannot reach the reference. The plan must begin to move before this time, and it
-// must be accurate after this time.
+// During one part of the motion, the finger is too slow for the reference. The plan must begin to move before
+// this part, and it must be accurate after this part.
 TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
   LimitSettings slow = limits;
   slow.slew_up_kpa_per_s = 30;
@@ -159,8 +160,8 @@ TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
       << "the tracking error 3.4 s after the step of the reference is below 0.5 % of the step";
 }
 
-// The reference goes down to 0 mm faster than the creep recovers. No finger can follow this reference, and
-// the plan reaches the lower pressure limit.
+// The reference falls to 0 mm faster than the creep recovers. No finger can follow this reference, so the
+// plan reaches the lower pressure limit.
 TEST(Planner, BesideItsLowerBoundItIsBetterThanTheSettledLine) {
   const model::Model twin = model_named("bench_twin");
   const Reference reference = sine_reference(0.5, 4, {15, 2, 8, 8});
@@ -178,7 +179,8 @@ TEST(Planner, BesideItsLowerBoundItIsBetterThanTheSettledLine) {
   EXPECT_LT(plan.rmse_mm, 0.85 * std::sqrt(squares / static_cast<double>(plan.pressure_kpa.size() - 1)));
 }
 
-/// Returns the sum of squared changes of slope of a command. Before its first value, the command is constant.
+/// Returns the sum of the squared second differences of a command. The command is assumed to be constant
+/// before its first value.
 double bend_of(const std::vector<double>& pressure_kpa) {
   double sum = 0;
   for (std::size_t i = 1; i < pressure_kpa.size(); ++i) {
@@ -188,8 +190,8 @@ double bend_of(const std::vector<double>& pressure_kpa) {
   return sum;
 }
 
-// Below its threshold the finger does not move, so all commands have the same error. The planner must then
-// choose a smooth command.
+// Below its pressure threshold, the finger does not move, so all commands cause the same error. Among these
+// commands, the planner must choose a smooth one.
 TEST(Planner, WhereNothingMovesTheFingerItTakesTheCalmerCommand) {
   const model::Model dead = model::with_block(
       model_named("bench_twin"), model::block_of<model::ActuatorThreshold>({{"threshold_kpa", 20}}));
@@ -221,10 +223,10 @@ double processor_time_s(const std::function<void()>& work) {
   return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
-// The duration of planning is given as a number of simulations of the same motion with steps of 1 ms,
-// measured in the same run. This number does not depend on the speed and the load of the computer. The
-// present numbers are 350, 1,650 and 3,350. For the third model, planning takes 1 s per 10 s of motion if a
-// step takes 29 ns.
+// The limit for the planning time is a number of simulations of the same motion with steps of 1 ms. The test
+// measures planning and simulations in the same run, so their ratio does not depend on the speed and the load
+// of the computer. The measured ratios are 350, 1,650 and 3,350. For the third model, planning takes 1 s per
+// 10 s of motion if a simulation step takes 29 ns.
 TEST(Planner, TakesLessThanFourThousandSimulationsOfTheMotion) {
   LimitSettings narrow = limits;
   narrow.pressure_max_kpa = 30;

@@ -258,7 +258,7 @@ TEST(Prepare, ReleaseGoesForwardOnly) {
 }
 
 TEST(Prepare, WhatAParameterBreaksIsToldAtTheParameter) {
-  const RigSettings settings = two_finger_settings();  // the largest pressure of this rig is 60 kPa
+  const RigSettings settings = two_finger_settings();  // the upper pressure limit of this rig is 60 kPa
   const std::string text =
       "name: x\nparameters:\n  level_kpa: {default: 20, range: [10, 70], about: how hard}\n"
       "steps:\n  - move: {pressure_kpa: $level_kpa, duration_s: 1}\n";

@@ -1,6 +1,6 @@
-// Fuzz target: takes arbitrary bytes as a sequence file, reads it and prepares it for a rig. Both must end,
-// and all values of an accepted sequence must be within their bounds. Seeds: config/sequences/, dictionary:
-// tests/document/yaml.dict.
+// Fuzz target: reads arbitrary bytes as a sequence file and prepares the sequence for a rig. Reading and
+// preparation must end, and all values of an accepted sequence must be within their bounds. Seeds:
+// config/sequences/, dictionary: tests/document/yaml.dict.
 
 #include <cmath>
 #include <cstddef>

@@ -20,7 +20,7 @@ std::optional<Sequence> read(const std::string& text, document::Problems& proble
   return read_sequence(document, problems);
 }
 
-/// Returns a sequence with one step, which `step` contains as YAML flow text.
+/// Returns a sequence with one step. `step` contains this step as YAML flow text.
 std::string with_step(const std::string& step) {
   return "name: x\nsteps:\n  - " + step + "\n";
 }
@@ -132,7 +132,7 @@ std::string with_steps(int count) {
   return text;
 }
 
-/// Returns a grip step whose key `verify` contains the given keys.
+/// Returns a grip step. Its key `verify` contains the given keys.
 std::string with_verify(const std::string& verify) {
   return with_step("grip: {pressure_kpa: 5, settle_s: 0" + verify + ", timeout_s: 9, on_fail: vent}");
 }

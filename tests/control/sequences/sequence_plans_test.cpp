@@ -1,5 +1,5 @@
 // Tests the planned feedforward from the sequence to the control loop. Checks the plans of a prepared
-// sequence, and the motion of the rig along these plans with and without disturbances.
+// sequence. Also checks the motion of the rig along these plans, with and without disturbances.
 
 #include "control/sequences/sequence_plans.h"
 #include "control/sequences/prepare_sequence.h"
@@ -18,7 +18,7 @@
 namespace softgrip::control::sequence_plans_test {
 namespace {
 
-/// PID gains that `softgrip tune --model config/models/zhang2025.yaml` prints, with `--feedforward planned`
+/// PID gains that `softgrip tune --model config/models/zhang2025.yaml` prints with `--feedforward planned`
 /// and with `--feedforward none`.
 constexpr PidSettings for_planned{3.067, 12.68, 0, 0.01, 1, AntiWindup::back_calculation, 0.5};
 constexpr PidSettings for_pid_alone{4.402, 13.79, 0, 0.01, 1, AntiWindup::back_calculation, 0.5};
@@ -40,7 +40,7 @@ RigSettings planned_rig(const char* model) {
   return rig_with(model, FeedforwardKind::planned, model[0] == 'z' ? for_planned : twin_gains);
 }
 
-/// Returns the RMS difference [mm] between the true displacement of the finger and the reference during a
+/// Returns the RMS difference [mm] between the reference and the true displacement of the finger during a
 /// step.
 double tracking_rmse_mm(const RigSettings& settings, const char* truth, const char* sequence,
                         std::uint16_t step) {
@@ -172,7 +172,7 @@ TEST(SequencePlans, ARigWithAnotherModelOrSlewNeedsOthers) {
   EXPECT_NE(rig_key(one), rig_key(other));
 }
 
-/// The largest upward and downward slope of a plan, and its lowest and highest pressure.
+/// Largest upward and downward slope of a plan [kPa/s], and lowest and highest pressure of the plan [kPa].
 struct PlanShape {
   double up_kpa_per_s = 0, down_kpa_per_s = 0, lowest_kpa = 1e9, highest_kpa = -1e9;
 };
@@ -192,8 +192,8 @@ PlanShape shape_of(const PreparedSequence& sequence, std::size_t channel) {
   return shape;
 }
 
-// Two equal fingers share one plan. If any of their settings differs, each finger has its own plan within its
-// own limits.
+// Two fingers with equal settings share one plan. If any setting of the fingers differs, each finger has its
+// own plan within its own limits.
 TEST(SequencePlans, AFingersPlanKeepsItsOwnLimitsHoweverAlikeItsNeighbourIs) {
   const std::string moves =
       "name: x\nsteps:\n  - move: {displacement_mm: 12, duration_s: 1}\n"
@@ -249,8 +249,8 @@ TEST(SequencePlans, OnlyPlannedFingersArePlannedFor) {
   EXPECT_EQ(move.steps[0].plan_of(7), nullptr) << "this channel does not exist";
 }
 
-// Grips a stone, then grips without a part, then grips the stone again. The grip without a part has a retry,
-// which moves back without a plan.
+// Grips a stone, then grips without a part, then grips the stone a second time. The grip without a part fails
+// and is retried. Before the retry, the finger moves back without a plan.
 TEST(SequencePlans, EveryGripHasItsAnswer) {
   for (const char* model : {"zhang2025", "bench_twin"}) {
     SCOPED_TRACE(model);
@@ -271,11 +271,11 @@ TEST(SequencePlans, EveryGripHasItsAnswer) {
   }
 }
 
-/// Results of a motion: the largest change of a command between two ticks of the sequence, and the largest
-/// error at its end.
+/// Results of a motion: the largest change of the command from one tick to the next, and the largest tracking
+/// error.
 struct Motion {
   double jump_kpa = 0;
-  double worst_mm = 0;  ///< largest absolute difference between reference and displacement of the finger [mm]
+  double worst_mm = 0;  ///< largest absolute difference between reference and displacement [mm]
 };
 Motion watch(SimulatedRig& rig, double seconds) {
   Motion motion;
@@ -317,7 +317,7 @@ TEST(SequencePlans, AFingerThatStandsOffItsModelArrivesAllTheSame) {
   }
 }
 
-/// Stops a sequence half way, so that the finger is still inflated, and then starts the next sequence.
+/// Stops a sequence in the middle, while the finger is inflated, and then starts the next sequence.
 Motion from_half_way(RigSettings settings, const char* truth) {
   settings.safety.safe_action.fill(SafeAction::hold);
   const PreparedSequence move = sequence_of(slow_move, settings);

@@ -17,7 +17,7 @@ using sim::tick_s;
 using sim::twin_settings;
 using Mode = ChannelDemand::Mode;
 
-/// Runs a controller and a simulated finger with a common clock.
+/// Runs a controller and a simulated finger with the same clock.
 class Rig {
  public:
   explicit Rig(const ChannelSettings& settings, double noise_mm = 0, std::uint64_t seed = 1)
@@ -28,7 +28,8 @@ class Rig {
     exchange();
   }
 
-  /// Runs one tick with the present demand. The exchange with the finger follows immediately, as on a rig.
+  /// Runs one tick with the present demand. The exchange with the finger follows the tick immediately, as on
+  /// a real rig.
   ChannelOutput tick() {
     now += tick_ns;
     input.now = now;
@@ -53,7 +54,7 @@ class Rig {
     input.demand.pressure_kpa = pressure_kpa;
   }
   [[nodiscard]] double time_s() const { return static_cast<double>(now) * 1e-9; }
-  /// Returns reference minus true displacement [mm].
+  /// Returns the tracking error [mm]: reference minus true displacement.
   [[nodiscard]] double error_mm() const {
     return input.demand.reference->at(time_s() + tick_s).value - finger.displacement_mm();
   }
@@ -71,8 +72,8 @@ class Rig {
 Reference ramp_and_sine(double from_s) {
   Reference reference;
   reference.start(from_s, 0);
-  (void)reference.hold_for(0.2);  // longer than the preview of the feedforward, so that no motion starts
-                                  // earlier
+  (void)reference.hold_for(0.2);  // longer than the preview of the feedforward, so that the finger does not
+                                  // start before 0.2 s
   (void)reference.ramp_for(6, 2);
   (void)reference.hold_for(1);
   (void)reference.sine(13, 7, 0.1, 3);
@@ -117,8 +118,8 @@ TEST(ChannelController, EveryChangeOfModeIsBumpless) {
   Rig rig(twin_settings(), 0.02);
   Reference reference;
   double before = 0;
-  // No change of the control mode may change the command by more than 1 kPa in one tick, which is half of the
-  // slew limit.
+  // A change of the control mode may change the command by at most 1 kPa in one tick. This is half of the
+  // change that the slew limit permits.
   const auto expect_smooth = [&](const char* what) {
     rig.run(0.05, [&] {
       EXPECT_NEAR(rig.last.command_kpa, before, 1.0) << what;
@@ -253,7 +254,8 @@ TEST(ChannelController, AGapInTheReadingsHoldsTheFeedbackAndGoesOn) {
 }
 
 TEST(ChannelController, ResynchronisingFollowsAFingerThatIsNotWhereTheModelIs) {
-  // The controller restarts while the finger still creeps and the zero offset of the sensor has changed.
+  // The controller restarts while the finger still creeps. The zero offset of the sensor has changed since
+  // the stop.
   ChannelSettings settings = twin_settings();
   Rig rig(settings, 0.02);
   rig.press(30);
@@ -309,7 +311,7 @@ TEST(ChannelController, SlippedTicksAreCaughtUp) {
   const Reference reference = ramp_and_sine(rig.time_s());
   rig.track(reference);
   rig.run(5);
-  // For three periods the controller has no tick, while the board holds its output.
+  // For three periods, the controller does not run, and the board holds its output.
   for (int i = 0; i < 3; ++i) {
     rig.now += tick_ns;
     rig.input.reading = rig.finger.write(rig.last.command_kpa, rig.now);
@@ -334,7 +336,8 @@ TEST(ChannelController, AnUnusedDisplacementIsNeverActedOn) {
   EXPECT_TRUE(rig.tick().synchronised);
 }
 
-// For all demands and readings, the command must be a finite number within its range and its slew limits.
+// For arbitrary demands and readings, the command must be a finite number within its range and its slew
+// limits.
 TEST(ChannelController, LimitsAreNeverExceededUnderRandomDemands) {
   for (const FeedforwardKind kind :
        {FeedforwardKind::none, FeedforwardKind::bouc_wen, FeedforwardKind::full_model}) {

@@ -1,5 +1,5 @@
-// Tests the demand of one channel in the tick in which a step begins. At this time, no part of the step has
-// been executed.
+// Tests the demand of one channel in the tick in which a step begins, before any part of the step has been
+// executed.
 
 #include "control/tick/channel_player.h"
 
@@ -23,7 +23,8 @@ Step step_of(StepKind kind) {
   return step;
 }
 
-/// Returns the output of a channel whose displacement is `shortfall_mm` smaller than in free motion.
+/// Returns the output of a channel whose displacement is `shortfall_mm` smaller than the displacement in free
+/// motion.
 ChannelOutput short_by(double shortfall_mm) {
   ChannelOutput seen;
   seen.validity = model::Validity::valid;
@@ -32,7 +33,7 @@ ChannelOutput short_by(double shortfall_mm) {
   return seen;
 }
 
-/// Returns a player whose finger touches a part but has no grip result so far.
+/// Returns a player whose finger touches a part and has no grip result yet.
 ChannelPlayer touching(const Step& closing) {
   ChannelPlayer player(traits);
   player.reset();
@@ -56,7 +57,8 @@ TEST(ChannelPlayer, AProfileBeginsWithItsFirstPressure) {
 }
 
 // While the finger presses on a part, the integral of the feedback would increase the gripping pressure.
-// Therefore the integral is held in steps that grip or hold a part. In all other steps, it must continue.
+// Therefore the integral is held in steps that grip or hold a part. In all other steps, the integral must
+// continue.
 TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
   const Step grip = step_of(StepKind::grip);
   for (const StepKind kind : {StepKind::move, StepKind::grip, StepKind::hold, StepKind::release,
@@ -79,7 +81,8 @@ TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
   }
 }
 
-/// Returns the output of a channel whose finger touches a part at the pressure `command_kpa`.
+/// Returns the output of a channel whose finger touches a part at the pressure `command_kpa`. In free motion,
+/// the finger would have the same displacement at `free_kpa`.
 ChannelOutput touching_under(double command_kpa, double free_kpa) {
   ChannelOutput seen = short_by(2);
   seen.command_kpa = command_kpa;

@@ -1,4 +1,5 @@
-// Tests a finger in contact with a part. Its gripping pressure must never exceed the limit of the step.
+// Tests a finger in contact with a part. The gripping pressure of the finger must never exceed the limit of
+// the step.
 
 #include <gtest/gtest.h>
 
@@ -15,13 +16,14 @@
 namespace softgrip::control::contact_test {
 namespace {
 
-/// Amount by which noise and the rounding of a filter may exceed a limit [kPa].
+/// Amount by which the gripping pressure may exceed a limit because of noise and the rounding of a filter
+/// [kPa].
 constexpr double tolerance_kpa = 0.4;
 
 class ContactTest : public testing::Test {
  protected:
-  /// Returns the gripping pressure of the left finger: its pressure minus the pressure at which it has its
-  /// present displacement in free motion.
+  /// Returns the gripping pressure of the left finger [kPa]: the pressure of the finger minus the pressure
+  /// that causes the same displacement in free motion.
   [[nodiscard]] double squeeze_kpa(const SimulatedRig& rig) const {
     return rig.output().channels[0].pressure_kpa - curve.command_kpa(rig.plant_mm(0));
   }
@@ -147,8 +149,8 @@ TEST_F(ContactTest, AMoveMayPressOnAndIsBoundedByItsPressure) {
   EXPECT_GE(rig.count(Event::Kind::limit_binds), 1U) << "the limit is active long enough to be reported";
 }
 
-// Each limit of the rig file or of a step must be reported as an event if it is active for some time. The
-// table has one row per limit.
+// If a limit of the rig file or of a step is active for some time, an event must report this limit. The table
+// has one row per limit.
 TEST_F(ContactTest, EveryLimitThatLastsIsAnEvent) {
   const auto told = [](const SimulatedRig& rig) {
     std::set<std::string> names;
@@ -200,8 +202,8 @@ TEST_F(ContactTest, FreeMotionsMeetNothing) {
   EXPECT_EQ(rig.count(Event::Kind::limit_binds), 0U);
 }
 
-// A frozen displacement reading looks like the reading of a finger that a part has stopped. The test freezes
-// the reading at different times of a sequence. The grip result must never be HOLDING.
+// If the displacement reading freezes, it looks as if a part had stopped the finger. The test freezes the
+// reading at different times of a sequence. The grip result must never be HOLDING.
 TEST_F(ContactTest, ASensorThatFreezesIsNoPart) {
   for (const char* name : {"pick_stone", "hand_over", "pick_screw", "empty_grip"}) {
     const PreparedSequence sequence = example_sequence(name, settings);

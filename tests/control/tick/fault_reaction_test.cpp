@@ -1,5 +1,5 @@
 // Injects every fault in every phase. Each fault must be latched within its time limit. The outputs must then
-// take the configured safe action, and no motion may restart without a command.
+// take the configured safe action. No motion may restart until a client commands it.
 
 #include <gtest/gtest.h>
 
@@ -91,7 +91,7 @@ const std::vector<PhaseCase> phase_cases{{"idle", Phase::idle, -1, 0.5},
                                          {"holding", Phase::holding, 2, 1.0},
                                          {"releasing", Phase::releasing, 3, 0.2}};
 
-/// The phases of the sequence vacuum_grip, which moves below the rest pressure. It has no approach phase.
+/// Phases of the sequence vacuum_grip, which moves below the rest pressure and has no approach phase.
 const std::vector<PhaseCase> vacuum_phases{{"idle", Phase::idle, -1, 0.5},
                                            {"evacuating", Phase::closing, 0, 0.4},
                                            {"gripping", Phase::closing, 0, 1.2},
@@ -102,11 +102,11 @@ using Parameters = std::tuple<std::size_t, std::size_t, SafeAction, bool>;
 
 class FaultReaction : public testing::TestWithParam<Parameters> {
  protected:
-  /// Runs a rig with a stone until it is in this phase, so that the test can inject the fault.
+  /// Runs a rig with a stone until the rig is in this phase. The test can then inject a fault.
   void reach(SimulatedRig& rig, const PhaseCase& phase) {
     rig.stone(12);
     ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.run(1.5);  // longer than any transient, so that a deviation of the pressure is a fault from now on
+    rig.run(1.5);  // all transients have ended after 1.5 s, so any later deviation of the pressure is a fault
     if (phase.step >= 0) {
       rig.request(Request::Kind::start, &pick);
       ASSERT_TRUE(rig.run_until_step(static_cast<std::uint16_t>(phase.step), 30));
@@ -145,7 +145,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
     EXPECT_EQ(rig.result(0), GripResult::error);
   }
 
-  rig.run(1);  // SimulatedRig checks in each tick that no command moves away from rest
+  rig.run(1);  // SimulatedRig checks in each tick that no command moves away from the rest pressure
   const bool vents = fault.always_vents || action == SafeAction::vent;
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_NEAR(rig.board_kpa(i), vents ? 0 : at_latch_kpa, 1.5);
@@ -172,7 +172,8 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
   EXPECT_EQ(rig.output().channels[0].command_kpa, rest_kpa) << "an acknowledgement moves no finger";
   EXPECT_EQ(rig.result(0), GripResult::none);
 
-  if (rest_kpa != 0) {  // the safe action hold may have kept a part, so vent the finger before the next grip
+  if (rest_kpa != 0) {  // the safe action hold may have kept the grip on a part, so vent the finger before
+                        // the next grip
     rig.request(Request::Kind::vent);
     ASSERT_TRUE(rig.run_until(State::idle, 2));
   }
@@ -228,7 +229,7 @@ TEST_F(SingleFault, CyclesAreCountedOneByOne) {
       << "the controller uses the reading of the previous tick";
 }
 
-// One correct readback must reset the count of deviating readbacks to 0.
+// A single correct readback must reset the count of deviating readbacks to 0.
 TEST_F(SingleFault, AReadbackThatIsRightInBetweenIsNoFault) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
@@ -249,8 +250,8 @@ TEST_F(SingleFault, AFrozenReadingIsFoundWhileTheCommandMoves) {
 }
 
 TEST_F(SingleFault, ABurstLineIsNoPart) {
-  // The reading stops as if a part had stopped the finger. Without a check of the pressure, the grip result
-  // would be HOLDING.
+  // The line bursts, and the displacement reading is constant, as if a part had stopped the finger. If the
+  // controller did not check the pressure, the grip result would be HOLDING.
   SimulatedRig rig(settings);
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   start(rig, pick);
@@ -510,8 +511,8 @@ TEST_F(SingleFault, ABriefDropoutIsBridged) {
   EXPECT_EQ(rig.result(0), GripResult::holding);
 }
 
-// The end time of the last step passes during a pause of the process, in which the board may vent. The
-// sequence must not end before the first exchange after the pause.
+// The end time of the last step is within a pause of the process. The board may vent during this pause. The
+// sequence must therefore not end before the first exchange after the pause.
 TEST(FaultAfterAPause, ASequenceDoesNotEndBeforeTheFirstExchangeAfterAPause) {
   const RigSettings settings = two_finger_settings();
   const PreparedSequence brief =

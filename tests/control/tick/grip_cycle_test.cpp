@@ -11,7 +11,7 @@ namespace {
 
 class GripCycle : public testing::Test {
  protected:
-  /// Waits for the end of the start-up, starts a sequence and runs it to its end.
+  /// Waits until the start-up has ended, starts a sequence and runs the sequence to its end.
   void play(SimulatedRig& rig, const PreparedSequence& sequence, double seconds = 60) {
     ASSERT_TRUE(rig.run_until(State::idle, 1));
     rig.request(Request::Kind::start, &sequence);
@@ -127,7 +127,7 @@ TEST_F(GripCycle, APressureGripIsDetectedByTheSameEvidence) {
 TEST_F(GripCycle, AnObjectOutsideThePositionWindowIsNoPart) {
   const PreparedSequence screw = example_sequence("pick_screw", settings);
   SimulatedRig rig(settings);
-  rig.stone(6.8);  // a part is detected, but at this position it is too thick for a screw
+  rig.stone(6.8);  // the fingers detect a part, but its position shows that it is too thick for a screw
   play(rig, screw);
   EXPECT_EQ(rig.result(0), GripResult::no_part);
 }
@@ -265,7 +265,7 @@ steps:
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   rig.request(Request::Kind::start, &grip);
   std::vector<double> begun_s;
-  double low_since_s = 0;  // last time [s] at which the output exceeded its start value
+  double low_since_s = 0;  // last time at which the output exceeded its value at the start [s]
   for (std::size_t steps = 0; rig.time_s() < 30 && begun_s.size() < 2; rig.tick()) {
     if (rig.board_kpa(0) > 0.1) low_since_s = rig.time_s();
     if (const std::size_t now = rig.count(Event::Kind::step_started); now > steps) {
@@ -304,7 +304,7 @@ steps:
   SimulatedRig rig(settings);
   rig.stone(6);
   ASSERT_TRUE(rig.start_until_step(grip, 1));
-  rig.fault[0].offset_mm = -3;  // the sensor offset of -3 mm causes a displacement shortfall of 3 mm
+  rig.fault[0].offset_mm = -3;  // a sensor offset of -3 mm looks like a displacement shortfall of 3 mm
   rig.run(0.1);
   ASSERT_TRUE(rig.run_until(State::idle, 10));
   EXPECT_EQ(rig.result(0), GripResult::error);

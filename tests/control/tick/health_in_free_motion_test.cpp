@@ -1,5 +1,5 @@
-// Tests that the model health is evaluated in free motion only. A part must cause no alarm, but a changed
-// finger must.
+// Tests that the model health is evaluated in free motion only. Contact with a part must cause no alarm, but
+// a finger that has changed must cause an alarm.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ class HealthInFreeMotionTest : public testing::Test {
     }
     return false;
   }
-  /// Returns bench_twin with the stiffness of its creep springs multiplied by `times`.
+  /// Returns bench_twin with the stiffness of all creep springs multiplied by `times`.
   static model::Model stiffer(double times) {
     model::Model model = twin();
     auto values = model::flat_values(model);

@@ -1,5 +1,5 @@
-// Tests two disturbances. In the first, the outputs of the board differ from the commands. In the second, a
-// gap in communication makes the readings out of date.
+// Tests two disturbances. In the first one, the outputs of the board differ from the commands. In the second
+// one, the readings are out of date because of a gap in communication.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ TEST_F(Outputs, ACommandThatNeverReachedTheBoardIsForgottenWithItsSequence) {
   close_on_stone(rig);
   const double last_kpa = command(rig);
   ASSERT_GT(last_kpa, 5);
-  rig.outputs_kpa = {last_kpa - 0.5, 0.5};  // the output of the channel right is far behind its command
+  rig.outputs_kpa = {last_kpa - 0.5, 0.5};  // the output of the right channel is far below its command
   rig.request(Request::Kind::stop);
   rig.tick();
   EXPECT_DOUBLE_EQ(command(rig), last_kpa - 0.5);
@@ -44,7 +44,8 @@ TEST_F(Outputs, WhileASequenceRunsItIsTheSequenceThatCommands) {
   SimulatedRig rig(settings);
   close_on_stone(rig);
   const double last_kpa = command(rig);
-  rig.outputs_kpa = {last_kpa - 1, last_kpa - 1};  // the bus reports the outputs of the previous exchange
+  rig.outputs_kpa = {last_kpa - 1, last_kpa - 1};  // the bus thread reports the outputs of the previous
+                                                   // exchange
   rig.tick();
   EXPECT_GT(command(rig), last_kpa - 1);
 }

@@ -1,5 +1,5 @@
-// Sends every request in every state. Checks the effect of the request or its refusal. The controller must
-// respond in the same tick.
+// Sends every request in every state. Checks that the request has its effect or is refused. The controller
+// must respond in the tick in which it receives the request.
 
 #include <gtest/gtest.h>
 
@@ -178,8 +178,8 @@ TEST_F(Requests, AStopOfOneStartThatPassesItKeepsItFromBeginning) {
       return event.kind == Event::Kind::request_refused && event.request == id;
     });
   };
-  // A stop of the start with id 7 arrives before this start, because requests can overtake each other. The
-  // start must then be refused.
+  // A stop that refers to the start with id 7 arrives before this start, because requests can overtake each
+  // other. The controller must then refuse the start.
   rig.request({Request::Kind::stop, 9, nullptr, 7});
   rig.tick();
   rig.request({Request::Kind::start, 7, &pick});
@@ -256,7 +256,7 @@ TEST_F(Requests, AFingerThatDoesNotComeToRestIsNotStarted) {
   rig.request(Request::Kind::start, &pick);
   const double began = rig.time_s();
   for (bool up = false; rig.time_s() - began < settings.rest_timeout_s + 1; up = !up) {
-    rig.fault[0].offset_mm = up ? 0.5 : -0.5;  // simulates that a person shakes the finger
+    rig.fault[0].offset_mm = up ? 0.5 : -0.5;  // simulates a person who shakes the finger
     rig.run(0.1);
     ASSERT_NE(rig.output().state, State::running);
   }

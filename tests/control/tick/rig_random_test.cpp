@@ -1,5 +1,5 @@
-// Tests that the invariants of the rig hold for random requests and faults. A failure prints its seed. Set
-// SOFTGRIP_SEED to this seed to repeat the failure.
+// Tests that the invariants of the rig hold for random requests and random faults. A failed test prints its
+// seed. To repeat the failure, set SOFTGRIP_SEED to this seed.
 
 #include <gtest/gtest.h>
 
@@ -41,8 +41,8 @@ class Chaos {
     return std::uniform_int_distribution<Number>(lowest, highest)(random_);
   }
 
-  /// Returns random settings. Every third rig has pressures above and below its rest pressure; every sixth
-  /// has the rest pressure 10 kPa.
+  /// Returns random settings. Every third rig allows pressures above and below its rest pressure. Every sixth
+  /// rig has a rest pressure of 10 kPa.
   RigSettings make_settings(std::uint64_t seed) {
     RigSettings settings = seed % 3 == 0 ? vacuum_settings() : two_finger_settings();
     if (seed % 6 == 0) {
@@ -57,7 +57,7 @@ class Chaos {
     return settings;
   }
 
-  /// Changes the injected faults at random. Most calls remove faults, so that sequences can progress.
+  /// Changes the injected faults at random. Most calls remove all faults, so that sequences can continue.
   void change_the_world() {
     rig_.wire_cut = chance(0.05);
     rig_.emergency_stop = chance(0.05);
@@ -138,7 +138,8 @@ TEST(RandomRig, KeepsItsPromises) {
     starts += chaos.rig().count(Event::Kind::sequence_started);
     ASSERT_FALSE(HasFailure()) << "seed " << seed;
   }
-  if (seeds.size() > 1) {  // with several seeds, enough grips, faults and starts must have occurred
+  if (seeds.size() > 1) {  // with several seeds, grips, faults and starts must have occurred in sufficient
+                           // number
     EXPECT_GT(grips, 500U);
     EXPECT_GT(faults, 500U);
     EXPECT_GT(starts, 500U);

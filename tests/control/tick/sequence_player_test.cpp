@@ -1,5 +1,5 @@
-// Tests three kinds of sequences: a step fails, a step ends at different times for the fingers, or there are
-// many short steps.
+// Tests three kinds of sequences. In the first, a step fails. In the second, a step ends at different times
+// for the two fingers. In the third, many short steps follow each other.
 
 #include "control/tick/sequence_player.h"
 
@@ -51,8 +51,8 @@ TEST_F(SequencePlayback, EveryFailureActionDoesWhatItSays) {
     const char* on_fail;
     SafeAction closing;  ///< safe action that the rig file states for the phase closing
     double left_kpa;     ///< pressure of the left finger at the end of the sequence [kPa]
-    bool goes_on;        ///< true: after the grip, the sequence continues with the move
-    bool lets_go;        ///< true: the release step vents the finger
+    bool goes_on;        ///< true: the sequence continues with the move step after the failed grip
+    bool lets_go;        ///< true: the release step runs and vents the finger
   };
   for (const Case& test :
        {Case{"vent", SafeAction::hold, 0, false, false}, Case{"hold", SafeAction::vent, 45, false, false},
@@ -115,7 +115,8 @@ TEST_F(SequencePlayback, FingersOfOneStepAnswerEachForItself) {
 }
 
 TEST_F(SequencePlayback, AStepBeginsWhenTheSlowestFingerIsThere) {
-  // The right finger starts from 20 kPa. At the same speed, it arrives before the left finger.
+  // The right finger starts from 20 kPa. Both fingers move at the same speed, so the right finger arrives
+  // before the left one.
   const PreparedSequence sequence = steps(move_on +
                                           "  - move: {pressure_kpa: 40, speed_kpa_per_s: 20}\n"
                                           "  - move: {pressure_kpa: 41, duration_s: 0.1}\n");

@@ -1,5 +1,5 @@
-// Searches all reachable states of the supervisor. In each state, it applies all combinations of the inputs
-// of a tick.
+// Searches all reachable states of the supervisor. In each state, applies all combinations of the inputs that
+// the supervisor can receive in one tick.
 
 #include "control/tick/supervisor.h"
 
@@ -29,8 +29,8 @@ struct Tick {
   bool interlock_open = false;
   Phase phase = Phase::idle;
   Rest rest = Rest::pending;
-  bool sequence_ends = false;  // true: the sequence ends after this tick, if one runs
-  std::uint32_t of_start = 0;  // number of the start to which a stop request refers
+  bool sequence_ends = false;  // true: the sequence ends after this tick, provided that a sequence runs
+  std::uint32_t of_start = 0;  // number of the start request that a stop request cancels
 };
 
 constexpr std::uint32_t own_start = 2;
@@ -61,7 +61,7 @@ std::vector<Tick> all_ticks() {
   return ticks;
 }
 
-/// All members of the object are plain values, so its bytes can represent its state.
+/// All members of the object are plain values, so the test identifies a state by the bytes of the object.
 static_assert(std::is_trivially_copyable_v<Supervisor>);
 std::string bytes_of(const Supervisor& supervisor) {
   std::string bytes(sizeof supervisor, '\0');
@@ -73,12 +73,13 @@ class SupervisorSearch : public testing::Test {
  protected:
   SupervisorSearch() { sequence_.interlock = Interlock::always; }
 
-  /// Runs one tick. Returns the rule that the supervisor violated, or an empty text.
+  /// Runs one tick. Returns the description of the rule that the supervisor has violated, or an empty text if
+  /// it has violated no rule.
   std::string step(Supervisor& supervisor, const Tick& tick) {
     const State before = supervisor.state();
     TickInput input;
-    // Here a start is always newer than a stop that refers to it. Another test covers a stop that overtakes
-    // its start.
+    // In this test, a stop never arrives before the start that it refers to. Another test covers a stop that
+    // overtakes its start.
     const bool names_one = tick.request == Kind::start || tick.request == Kind::check;
     const std::uint32_t id = tick.of_start != 0 ? own_start + 1 : names_one ? own_start : 1;
     input.request = {tick.request, id, names_one ? &sequence_ : nullptr, tick.of_start};

@@ -1,5 +1,6 @@
-// Tests a reading that jumps back and forth: it must be reported, and the rig file can make it a fault. A
-// sliding part must not be reported.
+// Tests a reading that jumps back and forth. The controller must report this reading as unsteady. If the rig
+// file says so, the controller must also latch a fault. A sliding part must not be reported as an unsteady
+// reading.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,7 @@ namespace {
 
 class UnsteadyTest : public testing::Test {
  protected:
-  /// For `seconds`, adds 5 mm to the left reading in every second interval of 0.1 s.
+  /// Disturbs the left reading for `seconds`: adds 5 mm in every second interval of 0.1 s.
   static void jump(SimulatedRig& rig, double seconds) {
     for (const double end_s = rig.time_s() + seconds; rig.time_s() < end_s;) {
       rig.fault[0].offset_mm = std::fmod(rig.time_s(), 0.2) < 0.1 ? 5 : 0;

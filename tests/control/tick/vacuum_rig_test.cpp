@@ -1,5 +1,5 @@
-// Tests a rig with a pressure range from -40 to 60 kPa and the rest pressure 0 kPa. Every return to rest must
-// end at the rest pressure, from above and from below.
+// Tests a rig with a pressure range from -40 to 60 kPa and a rest pressure of 0 kPa. Every return to rest
+// must end at 0 kPa, from a positive and from a negative pressure.
 
 #include <gtest/gtest.h>
 
@@ -15,14 +15,15 @@ namespace {
 
 class VacuumRig : public testing::Test {
  protected:
-  /// Runs a grip until the fingers hold a part with -30 kPa.
+  /// Runs a grip until the fingers hold a part at -30 kPa.
   void hold_vacuum(SimulatedRig& rig) {
     ASSERT_TRUE(rig.start_until_step(grip, 1));
     ASSERT_EQ(rig.result(0), GripResult::holding);
     ASSERT_NEAR(rig.board_kpa(0), -30, 1e-9);
   }
   static double command(const SimulatedRig& rig) { return rig.output().channels[0].command_kpa; }
-  /// Returns the reason why this rig refuses a sequence of these steps, or "" if it accepts the sequence.
+  /// Returns the reason why this rig refuses a sequence of these steps. Returns "" if the rig accepts the
+  /// sequence.
   std::string refusal(const std::string& steps) const {
     document::Problems problems;
     const auto sequence =
@@ -203,7 +204,7 @@ TEST_F(VacuumRig, ABoundBelowRestIsRefused) {
 }
 
 /// All steps of the published sequence are above the rest pressure. An upper pressure limit of a step must
-/// not make the rig evacuate a finger.
+/// not make the rig apply a vacuum to a finger.
 TEST_F(VacuumRig, StepsAboveRestWorkAsOnARigWithoutVacuum) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   SimulatedRig rig(settings);

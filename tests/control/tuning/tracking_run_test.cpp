@@ -20,8 +20,8 @@ namespace {
 using sim::model_named;
 using sim::tick_s;
 
-/// PID gains that bench/tracking_study.cpp finds for all feedforwards, with a maximum sensitivity Ms of at
-/// most 2.
+/// PID gains that the study bench/tracking_study.cpp finds for all feedforwards, with the requirement of a
+/// maximum sensitivity Ms of at most 2.
 constexpr PidSettings found{2.7, 13, 0, 0.02, 1, AntiWindup::back_calculation, 0.5};
 
 constexpr LimitSettings to_60_kpa{0, 60};
@@ -80,8 +80,8 @@ TEST(TrackingRun, ItsTraceIsWhatTheErrorsAreTakenOf) {
     worst = std::max(worst, std::abs(error));
     squares += error * error;
   }
-  // The RMSE of the result also contains the errors in the middle of each tick, so it differs slightly from
-  // the RMSE that is computed here.
+  // The RMSE of the result also includes the errors in the middle of each tick, so it differs slightly from
+  // the RMSE that this test computes.
   EXPECT_LE(worst, result.worst_mm);
   EXPECT_NEAR(std::sqrt(squares / static_cast<double>(trace.time_s.size())), result.rmse_mm,
               0.1 * result.rmse_mm);
@@ -110,8 +110,8 @@ TEST(TrackingRun, OneSeedOneResult) {
   EXPECT_NE(first.rmse_mm, track(run).rmse_mm);
 }
 
-// Computes the share of models that are not judged healthy if their parameters deviate at random by this
-// scatter. The share must agree with the rate that model_health.h states.
+// Multiplies the parameters of 40 models by random factors with the scatter `scatter`. Counts the models that
+// the health check does not judge healthy. The count must agree with the rate that model_health.h states.
 TEST(TrackingRun, ModelHealthToleratesAFewPercentAndNotTwenty) {
   const auto not_healthy = [](double scatter) {
     int count = 0;
@@ -133,8 +133,9 @@ TEST(TrackingRun, ModelHealthToleratesAFewPercentAndNotTwenty) {
   EXPECT_EQ(not_healthy(0.20), 23);
 }
 
-// Example for which the margins are known: a plant 1/(c s) with a dead time, and a controller with the gain
-// K. |L| = 1 at the angular frequency K/c. There the phase is -90 degrees minus the phase of the dead time.
+// A loop whose margins are known: a plant 1/(c s) with a dead time, and a proportional controller with the
+// gain K. At the angular frequency K/c, the loop gain |L| is 1. The phase at this frequency is -90 degrees
+// minus the phase lag of the dead time.
 TEST(LoopMargins, AgreeWithAnIntegratorByHand) {
   model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("bouc_wen"));
   model = model::without_block(model, *model::find_block("valve_lag"));
@@ -153,7 +154,7 @@ TEST(LoopMargins, AgreeWithAnIntegratorByHand) {
       loop_margins(model, {5, 0, 0, 0.02, 1, AntiWindup::none, 1}, to_60_kpa, tick_s, tick_s);
   EXPECT_NEAR(half.crossover_hz, 5 / (2 * M_PI), 0.01);
   EXPECT_GT(half.sensitivity, 1.5);
-  // The loop of an integrator with a dead time is stable if K L < pi/2, with the dead time L.
+  // The loop of an integrator with the dead time L is stable if K L < pi/2.
   const double limit = M_PI / 2 / dead_s;
   EXPECT_TRUE(std::isfinite(
       loop_margins(model, {0.98 * limit, 0, 0, 0.02, 1, AntiWindup::none, 1}, to_60_kpa, tick_s, tick_s)
@@ -163,8 +164,8 @@ TEST(LoopMargins, AgreeWithAnIntegratorByHand) {
           .sensitivity));
 }
 
-/// Loads and unloads a finger twice. Returns the smallest slope of the displacement over pressure, for rising
-/// and falling pressure.
+/// Simulates two loading and unloading cycles of a finger. At each pressure, computes the slopes of the
+/// displacement for rising and for falling pressure. Returns the smallest slope.
 double smallest_gain(const model::Model& model, double pressure_max_kpa) {
   constexpr int steps = 1000;
   constexpr double aside_kpa = 1e-4;
@@ -182,8 +183,8 @@ double smallest_gain(const model::Model& model, double pressure_max_kpa) {
   return smallest;
 }
 
-/// Returns a finger that is stiffest at the end of its second unloading: 2.7 times as stiff as at any time
-/// before.
+/// Returns a finger that is stiffest at the end of its second unloading. At this point the finger is 2.7
+/// times as stiff as at any earlier time.
 model::Model stiff_at_its_end() {
   model::Model model = model::with_block({}, model::block_of<model::BoucWen>({{"alpha_mm_per_kpa", 0.39},
                                                                               {"beta_mm_per_kpa", 0.158},
@@ -198,8 +199,8 @@ model::Model stiff_at_its_end() {
   return model;
 }
 
-// With integral control alone, |L| = ki gain / (2 pi f). Therefore the crossover frequency reveals which
-// smallest gain the function has used.
+// With integral control alone, the loop gain is |L| = ki gain / (2 pi f). The crossover frequency therefore
+// shows which gain loop_margins() has used.
 TEST(LoopMargins, AreThoseOfTheStiffestPlaceOfTwoCycles) {
   const model::Model model = stiff_at_its_end();
   const double gain = smallest_gain(model, 60);

@@ -50,7 +50,7 @@ TEST(Tune, TellsTheMarginsOfTheWorstFinger) {
 
 TEST(Tune, WithoutAnyMarginLeftItFindsTheCalmestGains) {
   TuneTask task = quick_task(FeedforwardKind::none);
-  task.most_sensitivity = 0.5;  // lower than the maximum sensitivity of any loop, so that no gains meet this
+  task.most_sensitivity = 0.5;  // lower than the maximum sensitivity of any loop, so no gains meet this
                                 // requirement
   const Tuned tuned = tune(task);
   task.most_sensitivity = 2;
@@ -66,8 +66,8 @@ TEST(Tune, LessSensitivityCostsError) {
   EXPECT_GT(careful.rmse_mm, bold.rmse_mm);
 }
 
-// The result text names the limit of the gains and the largest part of the error. Both must agree with the
-// numbers of the case.
+// The result text states which limit restricts the gains and which part of the error is largest. Both
+// statements must agree with the numbers of the case.
 TEST(Tune, SaysWhatLimitsItAndWhatTheErrorIs) {
   struct Case {
     const char* name;
@@ -108,8 +108,8 @@ TEST(Tune, AValveWithoutALagIsNotSaidToHaveOne) {
   EXPECT_EQ(without.limited_by.find("s of lag"), std::string::npos) << without.limited_by;
 }
 
-// Below 0.1 Hz, half a period would take minutes of simulation, so the loop settles for a quarter of a
-// period.
+// Below 0.1 Hz, half a period would take minutes of simulation, so the simulation settles for a quarter of a
+// period only.
 TEST(Tune, SlowReferencesSettleForAQuarterOfACycle) {
   TuneTask task = quick_task(FeedforwardKind::none);
   task.iterations = 0;
@@ -164,8 +164,8 @@ TEST(Tune, TheReferenceIsWithinReachBelowRest) {
   EXPECT_GT(task.mean_mm - task.amplitude_mm, limits.displacement_min_mm);
 }
 
-// The published model has no inverse. This test compares the planned feedforward with the PID alone. Both are
-// tuned in the same way.
+// The published model has no inverse. The test tunes the planned feedforward and the PID alone in the same
+// way and compares their results.
 TEST(Tune, PlannedOnThePublishedModelIsThreeTimesBetterThanItsPid) {
   TuneTask task = quick_task(FeedforwardKind::none);
   task.finger = task.channel.model = sim::model_named("zhang2025");

@@ -15,7 +15,8 @@
 namespace softgrip::daemon::broadcast_test {
 namespace {
 
-/// A value of several equal words. If the words of a copy differ, the copy was interrupted.
+/// A value of several equal words. If another thread changes the value while it is copied, the words of the
+/// copy differ.
 struct Item {
   std::array<std::uint64_t, 6> words{};
   [[nodiscard]] bool whole() const {
@@ -62,8 +63,8 @@ TEST(Broadcast, WhoLagsLosesTheOldestAndNobodyElseDoes) {
   EXPECT_EQ(eager.lost(), 0U);
 }
 
-/// Runs a function once, in the middle of the next copy. The function does what another thread could do at
-/// the worst moment.
+/// Runs a function once, in the middle of the next copy. The function performs actions of another thread that
+/// would disturb the copy most.
 struct AtTheWorstMoment {
   static inline std::function<void()> action;
   static void halfway() noexcept {
@@ -93,7 +94,7 @@ TEST(Broadcast, AnItemIsThereOnlyWhenAllOfItIsThere) {
   events.push(item(1));
   EXPECT_FALSE(taken);
   for (std::uint64_t n = 2; n <= 4; ++n) events.push(item(n));
-  // The fifth item replaces the first item, which the reader has not read.
+  // The fifth item overwrites the first item before the reader has read the first item.
   AtTheWorstMoment::action = [&] { taken = reader.pop(seen); };
   events.push(item(5));
   EXPECT_TRUE(taken);

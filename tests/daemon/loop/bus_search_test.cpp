@@ -1,5 +1,5 @@
-// Tests that loop, bus and watchdog of the board work together safely. Tries every order of the possible
-// steps up to a maximum number of steps.
+// Tests that the control loop, the bus thread and the watchdog of the board work together safely. Tries all
+// sequences of events up to a maximum number of events.
 
 #include <gtest/gtest.h>
 
@@ -21,13 +21,14 @@ using drivers::BusStatus;
 constexpr Nanoseconds period = 5'000'000;
 constexpr Nanoseconds watchdog = 100'000'000;
 
-/// A board with one output. Any write clears its watchdog trip, which makes the trip difficult to detect.
+/// A board with one output. Any write clears a watchdog trip of this board, so the trip is difficult to
+/// detect.
 class OneOutput final : public drivers::Board {
  public:
   explicit OneOutput(const VirtualClock& clock) : clock_(clock) {}
   double output_kpa = 0;
   BusStatus next = BusStatus::ok;
-  std::function<void()> on_exchange;  ///< function that is called once, during the next exchange
+  std::function<void()> on_exchange;  ///< function to call once, during the next exchange
 
   void look() {
     if (fed_at_ < 0 || clock_.now() - fed_at_ < watchdog || output_kpa <= 0) return;
@@ -46,7 +47,8 @@ class OneOutput final : public drivers::Board {
     next = BusStatus::ok;
     if (status == BusStatus::disconnected) return status;
     fed_at_ = clock_.now();
-    // If the response is lost, the board has executed the write, but the bus receives no confirmation.
+    // If the response is lost, the board has already executed the write, but the bus thread receives no
+    // confirmation.
     if (status != BusStatus::write_refused && status != BusStatus::overwritten) output_kpa = commands_kpa[0];
     if (status == BusStatus::overwritten) output_kpa = 0;
     return status;
@@ -63,13 +65,14 @@ class OneOutput final : public drivers::Board {
   Nanoseconds fed_at_ = -1;
 };
 
-/// A minimal controller, whose command rises while it runs. It stops when the bus reports a fault. It does
-/// not repeat values that the outputs no longer have. After a start it runs again.
+/// A minimal controller. While it runs, its command rises in every tick. The controller stops when the bus
+/// reports a fault. After a stop, its command does not exceed the present output. After a start, the
+/// controller runs again.
 class LeastLoop {
  public:
   explicit LeastLoop(SharedState& shared) : shared_(shared) {}
   bool runs = true;
-  std::uint32_t heard = 0;  ///< number of the newest inhibition of the bus that the controller has received
+  std::uint32_t heard = 0;  ///< number of the newest inhibition by the bus thread that the controller knows
 
   void tick() {
     shared_.bus.fetch();
@@ -89,7 +92,7 @@ class LeastLoop {
     commands.last = false;
     shared_.commands.publish();
   }
-  /// Starts the controller, if the bus reports no fault. Returns true if it runs.
+  /// Starts the controller if the bus reports no fault. Returns true if the controller has been started.
   bool start() {
     shared_.bus.fetch();
     const control::BusHealth& health = shared_.bus.value().health;
@@ -115,8 +118,8 @@ enum class Step {
   count
 };
 
-/// Runs the steps of a path. Returns the property that the path violates, or an empty text if it violates
-/// none.
+/// Executes the steps of a path. Returns the property that the path violates, or an empty text if it violates
+/// no property.
 std::string follow(std::span<const Step> path) {
   VirtualClock clock;
   OneOutput board(clock);
@@ -132,7 +135,7 @@ std::string follow(std::span<const Step> path) {
   Bus bus(board, rig, loop, reconnect, clock, shared, statistics);
   LeastLoop controller(shared);
 
-  bool may_rise = true;  // true: the output may rise, because the controller has not stopped since its last
+  bool may_rise = true;  // true: the output may rise, because the controller has not stopped since the last
                          // start
   const auto exchange = [&]() -> std::string {
     board.look();
@@ -166,7 +169,7 @@ std::string follow(std::span<const Step> path) {
     if (!controller.runs) may_rise = false;
     if (const std::string broken = exchange(); !broken.empty()) return broken;
   }
-  // If no further incident occurs, controller, bus and board agree after a few steps.
+  // After the last event of the path, controller, bus and board must agree within a few cycles.
   for (int i = 0; i < 6; ++i) {
     controller.tick();
     if (!controller.runs) may_rise = false;
@@ -181,7 +184,8 @@ std::string follow(std::span<const Step> path) {
 
 TEST(BusSearch, NoOrderOfEventsMakesAnOutputRise) {
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-  constexpr std::size_t depth = 4;  // smaller with sanitizers, because they make the test 100 times slower
+  constexpr std::size_t depth = 4;  // number of events; lower with sanitizers, because the test is then 100
+                                    // times slower
 #else
   constexpr std::size_t depth = 6;
 #endif

@@ -80,16 +80,15 @@ TEST_F(BusTest, ASilentLoopMeansSafeOutputsUntilATickThatKnowsCommandsNoMoreThan
   EXPECT_EQ(last_written(), 3);
   EXPECT_EQ(fault(), FaultCode::cycles_lost);
   EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 3);
-  command(14, 3, true);  // the loop continues its motion, because it does not know that the outputs have
-                         // changed
+  command(14, 3, true);  // the loop continues its motion: it does not know that the outputs have changed
   step();
   EXPECT_EQ(last_written(), 3);
-  command(4, 3, false);  // the loop has ended its motion, but not because the outputs have changed
+  command(4, 3, false);  // the loop has ended its motion, but it does not know that the outputs have changed
   step();
   EXPECT_EQ(last_written(), 3);
   command(4, 3, false,
-          shared_.bus.value().health.inhibit);  // the loop knows that its motion is inhibited, but its
-                                                // command is above the outputs
+          shared_.bus.value().health.inhibit);  // the loop knows that motion is inhibited, but its command is
+                                                // above the outputs
   step();
   EXPECT_EQ(last_written(), 3);
   EXPECT_EQ(fault(), FaultCode::cycles_lost);
@@ -120,8 +119,7 @@ TEST_F(BusTest, ALoopThatComesBackWithTheNextFallOfItsMotionIsFollowedDown) {
 class WatchedBusTest : public BusTest {
  protected:
   static constexpr Nanoseconds watchdog = 500'000'000;
-  static constexpr Nanoseconds margin = 50'000'000;  // time limit (deadline) of an exchange with the board
-                                                     // [ns]
+  static constexpr Nanoseconds margin = 50'000'000;  // deadline of an exchange with the board [ns]
   WatchedBusTest() {
     board_.watchdog = std::chrono::nanoseconds(watchdog);
     rig_.channels.resize(2);
@@ -139,7 +137,7 @@ TEST_F(WatchedBusTest, AGapThatReachesTheWatchdogIsAFaultAndNothingRisesBehindIt
   EXPECT_EQ(last_written(), 1);
   EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
   EXPECT_EQ(shared_.bus.value().outputs_kpa[1], 1);
-  command(35, 35, false);  // the loop has latched another fault and does not know of the watchdog trip
+  command(35, 35, false);  // the loop has latched a different fault and does not know of the watchdog trip
   step(bus);
   EXPECT_EQ(last_written(), 1);
   command(1, 1, false, shared_.bus.value().health.inhibit);
@@ -213,7 +211,7 @@ TEST_F(WatchedBusTest, AnExchangeThatWasStoppedOnItsWayIsFoundOutAfterwards) {
   EXPECT_EQ(last_written(), 1);
 }
 
-/// Tests with a pressure range from -40 to 60 kPa and a rest pressure of 0 kPa.
+/// Tests a rig with a pressure range from -40 to 60 kPa and a rest pressure of 0 kPa.
 class VacuumBusTest : public WatchedBusTest {
  protected:
   VacuumBusTest() {
@@ -229,13 +227,13 @@ TEST_F(VacuumBusTest, OutputsLeaveRestOnEitherSideOnlyWhileASequenceRuns) {
   command(-12, 0, true);
   step(bus);
   EXPECT_EQ(last_written(), -12);
-  command(-13, 0, false);  // the loop computed this command before the sequence ended
+  command(-13, 0, false);  // the loop computed this command before it received the end of the sequence
   step(bus);
   EXPECT_EQ(last_written(), -12);
   command(-11, 0, false);
   step(bus);
   EXPECT_EQ(last_written(), -11);
-  command(5, 0, false);  // a motion to the other side of rest is a motion away from rest as well
+  command(5, 0, false);  // a command on the other side of the rest pressure is also a motion away from rest
   step(bus);
   EXPECT_EQ(last_written(), 0);
 }
@@ -251,8 +249,8 @@ TEST_F(VacuumBusTest, AWatchdogThatHasActedLeavesRestAndNotFullVacuum) {
     EXPECT_EQ(last_written(), 0);
     EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
     command(-1, -1, false,
-            shared_.bus.value().health.inhibit);  // the loop knows of the trip, but its command is not the
-                                                  // rest pressure
+            shared_.bus.value().health.inhibit);  // the loop knows of the watchdog trip, but its command is
+                                                  // not the rest pressure
     step(bus);
     EXPECT_EQ(last_written(), 0);
     EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
@@ -279,7 +277,7 @@ TEST_F(VacuumBusTest, OutputsThatTheBoardDidNotConfirmAreTheNearerToRest) {
       << "the output may be above or below the rest pressure, so only the rest pressure is safe";
 }
 
-/// If a board fails repeatedly for the same reason, the event log must contain this reason only once.
+/// If several attempts to connect fail for the same reason, the event log must contain this reason only once.
 TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
   const auto failures = [this] {
     std::vector<std::string> texts;
@@ -322,7 +320,8 @@ TEST_F(BusTest, ThatNoSessionCanBeOpenedAgainIsToldOnceIfItIsForAnotherReason) {
   }
 }
 
-/// If a board accepts a connection and closes it, no event may report that the board is connected.
+/// If a board accepts a connection and closes it immediately, no event may report that the board is
+/// connected.
 TEST_F(BusTest, ASessionIsToldOfOnceTheBoardHasAnsweredInIt) {
   const auto told = [this] {
     std::vector<std::pair<BusEvent::Kind, BusStatus>> list;
@@ -394,7 +393,7 @@ TEST_F(BusTest, AnotherClientThatFeedsTheWatchdogIsToldOnceASession) {
 TEST_F(BusTest, OutputsRiseOnlyWhileASequenceRuns) {
   command(12, 0, true);
   step();
-  command(13, 0, false);  // the loop computed this command before the sequence ended
+  command(13, 0, false);  // the loop computed this command before it received the end of the sequence
   step();
   EXPECT_EQ(last_written(), 12);
   command(11, 0, false);
@@ -491,7 +490,7 @@ TEST_F(BusTest, SessionsThatFailAtTheirFirstExchangeAreAsRareAsFailedAttempts) {
     EXPECT_NEAR(static_cast<double>(attempts[i + 1] - attempts[i]), static_cast<double>(pauses_ms[i]) * 1e6,
                 static_cast<double>(period));
   }
-  // If an exchange is lost after good exchanges, the bus opens a new session at once.
+  // If an exchange is lost after good exchanges, the bus opens a new session immediately.
   board_.next_exchange = BusStatus::ok;
   for (int i = 0; i < 100; ++i) step();
   board_.next_exchange = BusStatus::timed_out;
@@ -523,7 +522,8 @@ TEST_F(BusTest, AnAnswerThatRefusesKeepsTheSession) {
   EXPECT_EQ(board_.connect_attempts.size(), 1U);
 }
 
-// In this test, another Modbus client writes 5 kPa after the daemon's write and before the outputs are read.
+// In this test, another Modbus client writes 5 kPa after the write of the daemon. The daemon then reads the
+// outputs back.
 TEST_F(BusTest, OutputsFoundNearerToRestAreNotWrittenBack) {
   command(12, 0, true);
   step();
@@ -556,8 +556,8 @@ TEST_F(BusTest, OutputsFoundFurtherFromRestOrNotAtAllDoNotRaiseTheCommands) {
   }
 }
 
-// The driver reads the same values if a gateway repeats an old reading. In this case, the daemon must
-// continue to hold the part.
+// A gateway may repeat an old reading, so the driver can read outputs that are nearer to rest than the
+// commands. The daemon must then continue to hold the part.
 TEST_F(BusTest, AHoldIsNotDroppedForOutputsFoundNearerToRest) {
   command(12, 12, true);
   step();

@@ -27,9 +27,9 @@ TEST(Heartbeat, StopsWhenOneStandsStillLongerThanItMay) {
   }
 }
 
-// After the bus has tried to connect for one hour, its counter is thousands of counts behind the counter of
-// the loop. If the loop then stalls, the counter of the bus continues to grow. This growth must not hide the
-// stall of the loop.
+// After one hour of attempts to connect, the counter of the bus thread is far behind the counter of the
+// control loop. If the loop then stalls, the counter of the bus thread continues to grow. This growth must
+// not hide the stall of the loop.
 TEST(Heartbeat, ACountThatIsBehindDoesNotSpeakForTheOther) {
   Heartbeat heartbeat({10, 10});
   EXPECT_TRUE(heartbeat.beats(0, {1'000'000, 10}));

@@ -29,7 +29,8 @@ TEST(Histogram, CountsNegativeDurationsAsZeroAndEndlessOnesInTheLastBin) {
 }
 
 TEST(Histogram, BinsHoldWhatTheySay) {
-  // Each duration must lie within the limits of its bin, and no bin may be wider than 0.8 % of the duration.
+  // Each duration must lie within the limits of its bin. No bin may be wider than 0.8 % of a duration in the
+  // bin, apart from 1 ns.
   for (std::int64_t duration = 1; duration < (std::int64_t{1} << 35); duration += 1 + duration / 97) {
     Histogram histogram;
     histogram.add(duration);

@@ -1,5 +1,5 @@
-// Tests that the thread of the control loop allocates no memory and causes no page faults. Its only system
-// calls read the clock and sleep.
+// Tests that the thread of the control loop allocates no memory and causes no page faults. The only system
+// calls of this thread are those that read the clock and sleep.
 
 #include <gtest/gtest.h>
 #include <linux/filter.h>
@@ -48,8 +48,8 @@ void count_allocation() noexcept {
 
 }  // namespace
 
-// The memory functions of the C library are replaced by functions that count their calls. operator new also
-// calls these functions.
+// The test replaces the memory functions of the C library by functions that count their calls. operator new
+// calls the memory functions of the C library, so its calls are counted as well.
 extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier): these names are given by the C library
 void* __libc_malloc(size_t);
@@ -104,7 +104,7 @@ std::unique_ptr<DaemonParts> make_parts(bool virtual_time) {
   return std::make_unique<DaemonParts>(std::move(rig), std::move(options));
 }
 
-/// Runs the loop in virtual time. All other parts of the daemon run between two ticks. Allocations are
+/// Runs the loop in virtual time. All other components of the daemon run between two ticks. Allocations are
 /// counted only during a tick of the loop.
 class WatchedTicks {
  public:
@@ -139,7 +139,7 @@ TEST(LoopRules, TheHookSeesAnAllocation) {
   if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "with sanitizers, the program uses a different allocator";
   allocations.store(0);
   armed = true;
-  // The volatile pointer prevents that the compiler removes the calls of malloc() and free().
+  // The volatile pointer prevents the compiler from removing the calls of malloc() and free().
   void* volatile memory = std::malloc(16);
   std::free(memory);
   armed = false;
@@ -172,15 +172,16 @@ TEST(LoopRules, NoTickAllocates) {
   EXPECT_EQ(allocations.load(), 0U);
 }
 
-/// Functions that a test runs before and after the loop.
+/// Functions that run before and after the loop. A test sets them.
 struct Around {
-  std::function<void()> before = [] {};  ///< called in the loop's thread after the thread has been prepared
+  std::function<void()> before = [] {};  ///< called in the loop's thread when the thread has been prepared
   std::function<void()> after = [] {};   ///< called in the loop's thread after the loop has ended
-  std::function<void()> last = [] {};    ///< called in the loop's thread after it has announced its end
+  std::function<void()> last = [] {};    ///< called in the loop's thread after the loop has announced its end
   std::function<void()> ended = [] {};   ///< called in the test's thread after the loop has announced its end
 };
 
-/// Runs the real loop and the real bus for `duration`, each in its own thread as in the daemon.
+/// Runs the real control loop and the real bus thread for `duration`. As in the daemon, each has its own
+/// thread.
 void run_threads(DaemonParts& parts, Nanoseconds duration, const Around& around) {
   RealTimeReport report;
   const ProcessorLatencyRequest latency = prepare_process(parts.rig.real_time, report);
@@ -227,8 +228,8 @@ TEST(LoopRules, NoTickPageFaults) {
   around.after = [&] { getrusage(RUSAGE_THREAD, &after); };
   run_threads(*parts, 3 * ns_per_s, around);
   EXPECT_GT(parts->loop_statistics.ticks.value(), 100U);
-  // Page faults do not occur if memory is locked. If the process has no permission to lock memory, the rings
-  // cause page faults when they are first filled.
+  // Page faults do not occur if the memory is locked. If the process has no permission to lock memory, the
+  // ring buffers cause page faults when they are first filled.
   EXPECT_EQ(after.ru_majflt, before.ru_majflt);
   EXPECT_EQ(after.ru_minflt, before.ru_minflt);
 }
@@ -241,8 +242,8 @@ void on_forbidden_call(int, siginfo_t* info, void*) {
 }
 
 /// Restricts the calling thread to three kinds of system calls: sleep, read the clock, and return from a
-/// signal handler. Any other system call is recorded and fails. The restriction cannot be removed, so the
-/// test runs in its own process.
+/// signal handler. Any other system call fails and is recorded. The restriction cannot be removed, so the
+/// test must call this function in a child process.
 void allow_only_clock_and_sleep() {
   const std::array<sock_filter, 8> program{{
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
@@ -267,7 +268,7 @@ constexpr int no_filter = 100;
 constexpr int no_ticks = 101;
 constexpr int forbidden = 102;
 
-/// Runs `body` in its own process. Returns the exit code of the process: `clean`, or a code for the failure.
+/// Runs `body` in a child process. Returns the exit code of the child: `clean`, or a code for the failure.
 int in_child(const std::function<int()>& body) {
   const pid_t child = fork();
   if (child == 0) {
@@ -314,7 +315,7 @@ TEST(LoopRules, NoTickCallsTheSystemButForClockAndSleep) {
     const auto parts = make_parts(false);
     Around around;
     around.before = allow_only_clock_and_sleep;
-    // Stop the thread here, because ending a thread needs other system calls.
+    // Do not end this thread, because the end of a thread needs system calls that are not allowed.
     around.last = [] {
       for (;;) sleep_until(INT64_MAX);
     };

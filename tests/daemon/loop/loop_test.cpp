@@ -16,7 +16,7 @@ namespace {
 using control::FaultCode;
 using control::State;
 
-/// Tests the loop in virtual time. The test advances the parts of the daemon.
+/// Tests the control loop in virtual time. The test runs the components of the daemon itself.
 class LoopTest : public ::testing::Test {
  protected:
   LoopTest() {
@@ -27,7 +27,7 @@ class LoopTest : public ::testing::Test {
     parts_ = std::make_unique<DaemonParts>(std::move(rig), options);
     due_ = parts_->origin;
   }
-  /// Runs one tick of the loop. The tick begins `late` after its scheduled time.
+  /// Runs one tick of the loop. The tick begins at its scheduled time plus `late`.
   void tick(Nanoseconds late = 0) {
     parts_->virtual_clock.set(due_ + late);
     parts_->loop.tick(due_);
@@ -124,7 +124,7 @@ TEST_F(LoopTest, AnExchangeThatHangsIsAFaultAfterTheConfiguredCycles) {
   ASSERT_TRUE(until(State::idle));
   const auto cycles = parts_->rig.settings.faults.bus_down_cycles;
   ASSERT_LT(cycles * parts_->period(), nanoseconds(parts_->rig.settings.channels[0].plausibility.max_age_s));
-  tick();  // in this tick, the loop still receives the report of the last successful exchange
+  tick();  // in this tick, the loop still has the report of the last successful exchange
   tick();  // in this tick, the loop tolerates the missing report as jitter
   for (std::uint32_t i = 0; i < cycles; ++i) {
     EXPECT_EQ(snapshot().state, State::idle) << i;
@@ -201,7 +201,7 @@ TEST(LoopThread, CyclesThatWereSleptThroughAreSlipsAndToldToTheController) {
   rig.settings.faults.overrun_cycles = 10;
   DaemonParts parts(std::move(rig), {});
   parts.bus.open();
-  // The schedule starts in the past, so the first tick is very late. All further ticks are on time.
+  // The schedule starts in the past, so the first tick is very late. All later ticks must be on time.
   const Nanoseconds now = parts.clock.now();
   std::thread loop([&] { parts.loop.run(PeriodicSchedule(now - 100 * parts.period(), parts.period())); });
   sleep_until(now + 3 * parts.period());

@@ -24,7 +24,7 @@ const RealTimeStep* find(const RealTimeReport& report, std::string_view name) {
   return found == steps.end() ? nullptr : &*found;
 }
 
-/// Runs prepare_thread() in a new thread and then calls `look` in this thread.
+/// Runs prepare_thread() in a new thread and then calls `look` in the same thread.
 RealTimeReport prepared(const rig::RealTimeSettings& settings, int priority,
                         const std::function<void()>& look) {
   RealTimeReport report;
@@ -84,7 +84,7 @@ constexpr bool sanitized = true;  // with a sanitizer, mlockall() has no effect
 constexpr bool sanitized = false;
 #endif
 
-/// The test runs in a child process that gives up its privileges.
+/// The test runs in a child process that drops its privileges.
 TEST(RealTime, WithoutRightsEveryStepSaysWhichLimitStandsInTheWay) {
   if (sanitized) GTEST_SKIP() << "sanitizers intercept the locking of memory";
   const pid_t child = fork();
@@ -160,8 +160,8 @@ TEST(Thread, HasItsNameAndItsStack) {
       },
       [](const std::string&) {});
   thread.join();
-  // Allow a larger stack than requested, because the C library may reuse the stack of a thread that has
-  // ended.
+  // Allow up to twice the requested stack size, because the C library may reuse the stack of a thread that
+  // has ended.
   EXPECT_GE(stack_bytes, 512U * 1024);
   EXPECT_LE(stack_bytes, 1024U * 1024);
   EXPECT_STREQ(name, "a-name-that-is-");

@@ -16,7 +16,7 @@ namespace {
 
 using testing::TornValue;
 
-/// A faulty ring that looks correct: it announces an item before the item is completely copied.
+/// An incorrect ring that looks correct: it announces an item before it has copied the item completely.
 class AnnouncedTooEarly {
  public:
   explicit AnnouncedTooEarly(std::size_t capacity) : items_(capacity) {}
@@ -106,8 +106,8 @@ TEST(Ring, KeepsOrderOverManyWraps) {
   EXPECT_GT(next_out, 10'000);
 }
 
-/// Reads from the queue while the producer copies an item into the queue. Returns true if the reader received
-/// an item.
+/// Tries to read an item from the queue while the producer is copying this item into the queue. Returns true
+/// if the reader received an item.
 template <class Queue>
 bool taken_before_it_was_there(Queue& queue) {
   bool taken = false;

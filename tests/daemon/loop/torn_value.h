@@ -1,6 +1,6 @@
 #pragma once
-// A value whose copy can be interrupted in the middle. With it, tests of lock-free buffers do not depend on
-// the timing of threads.
+// A value whose copy can be interrupted in the middle. With this value, tests of lock-free buffers do not
+// depend on the timing of threads.
 
 #include <array>
 #include <cstddef>
@@ -11,11 +11,12 @@
 
 namespace softgrip::daemon::testing {
 
-/// A value of several equal words. If the words of a copy differ, the copy was interrupted.
+/// A value of several equal words. If another thread changes the value while it is copied, the words of the
+/// copy differ.
 class TornValue {
  public:
-  /// Function that is called once, in the middle of the next copy in this thread. A test gives it the actions
-  /// that another thread could take at the worst moment.
+  /// Function to call once, in the middle of the next copy in this thread. In a test, this function performs
+  /// actions of another thread that would disturb the copy most.
   static inline thread_local std::function<void()> halfway;
 
   TornValue() = default;

@@ -13,9 +13,9 @@ namespace {
 
 using testing::TornValue;
 
-/// A faulty buffer that looks correct. It has two slots, and the reader reads the slot that the writer is not
-/// filling. If the writer publishes twice during one copy of the reader, it overwrites the slot that is being
-/// read.
+/// An incorrect buffer with two slots that looks correct. The reader reads the slot that the writer is not
+/// filling. If the writer publishes twice while the reader copies a value, the writer overwrites the slot
+/// that is being copied.
 template <class T>
 class TwoSlots {
  public:
@@ -41,8 +41,9 @@ struct Seen {
   std::uint64_t last_written = 0;
 };
 
-/// Writes 1, 2, … in one thread while another thread reads until the writer has finished. The reader may
-/// start late on a busy processor, so the writer writes `count` further values after the first reading.
+/// Writes 1, 2, … in one thread while another thread reads until the writer has finished. On a busy
+/// processor, the reader may start late. The writer therefore writes `count` additional values after the
+/// first reading.
 template <class Cell>
 Seen race(Cell& cell, std::uint64_t count) {
   std::atomic<bool> reader_began{false};
@@ -100,8 +101,8 @@ TEST(TripleBuffer, KeepsTheHeldValueWhileTheWriterGoesOn) {
   }
 }
 
-/// Publishes `publishes` values while the reader is in the middle of its copy. Returns true if the copy is
-/// consistent.
+/// Publishes `publishes` values while the reader is in the middle of its copy. Returns true if all words of
+/// the copy are equal.
 template <class Cell>
 bool whole_when_interrupted(int publishes) {
   Cell cell;

@@ -1,4 +1,4 @@
-// Tests the digital lines. The first tests use the panel alone, the last tests a running daemon with a
+// Tests the digital lines. The first tests use the panel alone. The last tests use a running daemon with a
 // simulated board.
 
 #include "daemon/panel/panel.h"
@@ -53,7 +53,7 @@ bool eventually(const std::function<bool()>& condition, double timeout_s = 5) {
   return true;
 }
 
-/// Tests of the panel without a daemon. The test simulates the terminals and the loop.
+/// Tests of the panel without a daemon. The test simulates the terminals and the control loop.
 class PanelTest : public ::testing::Test {
  protected:
   void make(const rig::GpioSettings& settings) {
@@ -68,7 +68,7 @@ class PanelTest : public ::testing::Test {
       panel_->step();
     }
   }
-  /// Simulates the start of the daemon: the fault is latched, the emergency stop is released, and an operator
+  /// Simulates the start of the daemon. The fault is latched, the emergency stop is released, and an operator
   /// resets the fault.
   void make_ready() {
     shared_.state.store(control::State::faulted);
@@ -270,8 +270,8 @@ TEST_F(PanelTest, WhatWasDroppedStaysDropped) {
   EXPECT_FALSE(is_on(GpioRole::ready_lamp));
 }
 
-/// Lines that write the level of the enable output into a pipe, one byte per change. The parent can read the
-/// byte after the child process has crashed.
+/// Digital lines that write the level of the enable output into a pipe, one byte per change. The parent
+/// process can read the bytes after a crash of the child process.
 class PipeLines final : public drivers::GpioLines {
  public:
   explicit PipeLines(int descriptor) : descriptor_(descriptor) {}
@@ -313,10 +313,12 @@ TEST(PanelGuard, ACrashDropsTheEnableAndStillIsACrash) {
   }
 }
 
-/// Tests of a complete daemon. The test controls its digital lines and communicates with it over its socket.
+/// Tests of a complete daemon. The test controls the digital lines of the daemon and communicates with the
+/// daemon over its socket.
 class PanelOfDaemon : public ::testing::Test {
  protected:
-  /// end() sends SIGTERM to this process. Block SIGTERM in all threads, so that only the daemon receives it.
+  /// end() sends SIGTERM to this process. Block SIGTERM in all threads, so that only the daemon receives the
+  /// signal.
   PanelOfDaemon() {
     sigset_t term;
     sigemptyset(&term);
@@ -352,7 +354,7 @@ class PanelOfDaemon : public ::testing::Test {
   }
   void end() {
     if (!thread_.joinable()) return;
-    ::kill(::getpid(), SIGTERM);  // all threads block the signal, and the daemon waits for it
+    ::kill(::getpid(), SIGTERM);  // all threads block the signal; the daemon waits for it
     thread_.join();
   }
   nlohmann::json status() { return client_->ask({{"command", "status"}})["result"]; }
@@ -412,7 +414,7 @@ TEST_F(PanelOfDaemon, StartsFaultedAndMovesOnlyAfterReleaseAndAcknowledgement) {
 TEST_F(PanelOfDaemon, APartThatIsAwayRefusesAStart) {
   start([](rig::RigFile& rig) {
     auto& lines = rig.gpio->lines;
-    lines.erase(lines.begin());  // without an emergency stop line, the daemon starts without a fault
+    lines.erase(lines.begin());  // a rig without an emergency stop line starts without a fault
   });
   ASSERT_TRUE(until_state("idle"));
   const auto refused = client_->ask({{"command", "start"}, {"sequence", "pick_stone"}});

@@ -13,7 +13,7 @@ namespace {
 constexpr Nanoseconds ms = 1'000'000;
 constexpr Nanoseconds debounce = 5 * ms;
 
-/// Returns an input that is not tripped, because it was released from 0 to 10 ms.
+/// Returns an input that is not tripped: its contact was released from 0 to 10 ms.
 TripInput cleared() {
   TripInput input(debounce);
   input.level(false, 0);
@@ -102,16 +102,16 @@ TEST(TripInput, AnEdgeThatTheLevelToldAlreadyChangesNothing) {
 
 TEST(TripInput, AnEdgeWithoutItsPartnerIsSuspect) {
   TripInput input = cleared();
-  input.edge(false, 20 * ms);  // simulates that the edge to "pressed" before this edge was lost
+  input.edge(false, 20 * ms);  // simulates a release whose preceding edge to "pressed" was lost
   EXPECT_FALSE(input.tripped());
   input.level(false, 25 * ms);
   EXPECT_FALSE(input.tripped());
   EXPECT_GT(input.due(), 1'000'000 * ms);
 }
 
-/// Checks two guarantees of the header with random contacts. A disturbance that is shorter than the debounce
-/// time, with a quiet contact after it, never trips the input. If the contact does not become quiet, the
-/// input trips in time.
+/// Checks two statements of the header trip_input.h with random contact signals. A disturbance that is
+/// shorter than the debounce time never trips the input if the contact is quiet afterwards. If the contact
+/// does not become quiet, the input trips in time.
 TEST(TripInput, KeepsItsBoundsOnRandomContacts) {
   constexpr std::uint64_t seed = 20261120;
   std::mt19937_64 random(seed);
@@ -122,7 +122,7 @@ TEST(TripInput, KeepsItsBoundsOnRandomContacts) {
     const Nanoseconds begin = 20 * ms;
     bool pressed = false;
     Nanoseconds at = begin;
-    Nanoseconds quiet_since = 0;  // time at which the contact was last released
+    Nanoseconds quiet_since = 0;  // time of the last release of the contact [ns]
     Nanoseconds pressed_since = 0;
     bool must_have_tripped = false;
     bool may_have_tripped = false;

@@ -25,7 +25,7 @@ using testing::text_of;
 
 constexpr Nanoseconds period = 10'000'000;
 
-/// Tests of the recorder. The test sends the data of each tick to it.
+/// Tests of the recorder. The test passes the data of each tick to the recorder.
 class RecorderTest : public ::testing::Test {
  protected:
   RecorderTest() {
@@ -74,7 +74,7 @@ class RecorderTest : public ::testing::Test {
     }
   }
 
-  /// Returns the sorted names of the folders of all runs.
+  /// Returns the sorted names of all run folders.
   std::vector<std::string> folders() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(temporary_.path())) {

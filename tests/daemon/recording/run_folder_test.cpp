@@ -16,7 +16,7 @@ namespace {
 using testing::TemporaryFolder;
 using testing::text_of;
 
-/// Limits the size of every file to `bytes`, like a full disk.
+/// Limits the size of every file to `bytes`, so that a larger write fails as it does on a full disk.
 class SmallDisk {
  public:
   explicit SmallDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

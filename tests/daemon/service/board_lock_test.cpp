@@ -134,8 +134,8 @@ std::function<bool()> a_program_on(const rig::RigFile& rig) {
   };
 }
 
-/// Returns a function that listens as another user on the address that locks the board. Every user of the
-/// machine can do this.
+/// Returns a function that changes to another user and listens on the address that locks the board. Every
+/// user of the machine can listen on this address.
 std::function<bool()> another_user_on(const std::string& board, int backlog) {
   return [board, backlog] {
     constexpr uid_t nobody = 65534;

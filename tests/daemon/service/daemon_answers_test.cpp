@@ -76,8 +76,7 @@ TEST_F(DaemonAnswers, AnotherProgramIsNoDaemon) {
 TEST_F(DaemonAnswers, WhoAcceptsAndStaysSilentIsNoDaemon) {
   rig::SocketFile file;
   file.path = path_;
-  const auto listener =
-      Listener::open(file);  // the kernel accepts connections, although the listener never does
+  const auto listener = Listener::open(file);  // this listener accepts no connection, but the kernel does
   ASSERT_TRUE(listener);
   EXPECT_FALSE(daemon_answers(path_));
 }

@@ -28,7 +28,7 @@ class KeptRig : public ::testing::Test {
     EXPECT_TRUE(rig) << problems.format();
     return std::move(*rig);
   }
-  /// Removes the second half of the file, as if an editor were still writing it.
+  /// Removes the second half of the file, as if an editor were still writing the file.
   void halve(const std::string& file) const {
     const std::string path = folder_.path() + "/config/" + file;
     fs::resize_file(path, fs::file_size(path) / 2);

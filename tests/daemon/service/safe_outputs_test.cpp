@@ -73,8 +73,8 @@ TEST_F(SafeOutputsTest, ReconnectsUntilTheBoardConfirms) {
   RecoveringBoard board(board_, 3, 2);
   EXPECT_EQ(write(board).end, SafeOutputsEnd::confirmed);
   EXPECT_EQ(board_.written.size(), 2U);
-  EXPECT_EQ(board_.connect_attempts.size(), 3U);  // one connection at the start, and one after each
-                                                  // of the 2 exchanges without a response
+  EXPECT_EQ(board_.connect_attempts.size(), 3U);  // one connection at the start, one after each of the 2
+                                                  // exchanges without a response
 }
 
 TEST_F(SafeOutputsTest, ABoardThatStaysSilentIsNotConfirmed) {

@@ -11,8 +11,8 @@
 namespace softgrip::daemon::signals_test {
 namespace {
 
-/// Runs `body` in a child process, because signals concern a whole process. Returns the status with which the
-/// child ended, as waitpid() reports it.
+/// Runs `body` in a child process, because signals concern a whole process. Returns the status of the child
+/// as waitpid() reports it.
 int status_of(const std::function<bool()>& body) {
   const pid_t child = ::fork();
   if (child == 0) ::_exit(body() ? 0 : 1);

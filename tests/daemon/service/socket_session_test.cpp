@@ -1,4 +1,4 @@
-// Tests sessions of normal and of hostile clients with a running softgripd over its socket.
+// Tests a running softgripd. Normal clients and hostile clients connect to its socket.
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -112,8 +112,8 @@ TEST_F(SocketSession, AStartThatAStopHasNamedBeforeItCameDoesNotBegin) {
   EXPECT_EQ(ask({{"command", "stop"}, {"start_id", "late"}})["error"]["refusal"]["code"], "R12");
   const json late = ask({{"command", "start"}, {"sequence", "pick_stone"}, {"start_id", "late"}});
   EXPECT_EQ(late["error"]["code"], "abandoned");
-  // Send a stop immediately after a start. The sequence must not run, however far the daemon has processed
-  // the start.
+  // Send a stop immediately after a start. The sequence must not run, even if the daemon has already begun to
+  // process the start.
   for (int i = 0; i < 20; ++i) {
     const std::string id = "at once " + std::to_string(i);
     client_.send(R"({"id":1,"command":"start","sequence":"pick_stone","start_id":")" + id + "\"}\n");
@@ -138,7 +138,7 @@ TEST_F(SocketSession, AStopOfAClientThatHasGoneIsHeardWhenAPausedDaemonGoesOn) {
     watching.send("{\"command\":\"events\",\"limit\":1000}\n{\"command\":\"watch\",\"rate_hz\":50}\n");
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     process_.signal(SIGSTOP);
-    // This client has read none of its messages, so its connection ends with a reset.
+    // This client has not read its messages, so its connection ends with a reset by the kernel.
     watching.send(line("stop", ""));
   }
   process_.signal(SIGCONT);
@@ -239,7 +239,7 @@ TEST_F(SocketSession, HostileClientsDisturbNobody) {
         if (!hostile.open()) continue;
         std::string text(random() % 100'000, '\0');
         for (char& c : text) c = static_cast<char>(random() % 7 == 0 ? '\n' : random() % 256);
-        if (i % 3 == 1) {  // this client sends a request and never reads the response
+        if (i % 3 == 1) {  // this client never reads the response to its request
           text.clear();
           for (int n = 0; n < 5000; ++n) text += "{\"command\":\"statistics\",\"histograms\":true}\n";
         }

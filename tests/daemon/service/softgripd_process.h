@@ -1,5 +1,6 @@
 #pragma once
-// Runs softgripd as a separate process. Controls it as a user does: with arguments, signals and its socket.
+// Runs softgripd as a separate process. Controls the process as a user does: with arguments, with signals and
+// over its socket.
 
 #include <sys/types.h>
 
@@ -16,16 +17,17 @@
 
 namespace softgrip::daemon::testing {
 
-/// A connection to the socket API of a daemon.
+/// A connection to the socket of a daemon.
 class ApiClient {
  public:
-  /// Tries for 5 s to connect. open() then returns false if the daemon did not accept the connection.
+  /// Tries for up to 5 s to connect. open() then returns true if the daemon has accepted the connection.
   explicit ApiClient(const std::string& socket_path);
 
   [[nodiscard]] bool open() const noexcept { return static_cast<bool>(socket_); }
   [[nodiscard]] int number() const noexcept { return socket_.get(); }
   bool send(std::string_view text);
-  /// Returns the next line as JSON. Returns null if no line arrives within 5 s or the connection has ended.
+  /// Returns the next line as JSON. Returns null if no line arrives within 5 s or if the connection has
+  /// ended.
   [[nodiscard]] nlohmann::json receive();
   /// Sends a request and returns the reply of the daemon.
   nlohmann::json ask(const nlohmann::json& request);
@@ -39,13 +41,12 @@ class SoftgripdProcess {
  public:
   struct Start {
     std::vector<std::string> arguments;
-    std::vector<std::string> environment{};  ///< variables NAME=value that are added to the environment of
-                                             ///< the test for the daemon
-    std::function<void()> in_child{};        ///< function that is called in the child process after fork and
-                                             ///< before exec
+    std::vector<std::string> environment{};  ///< variables NAME=value to add to the environment of the test
+                                             ///< for the daemon
+    std::function<void()> in_child{};        ///< function to call in the child process between fork and exec
   };
 
-  /// Starts softgripd. `folder` is the folder for its output.
+  /// Starts softgripd. `folder` is the folder for the output of the process.
   SoftgripdProcess(const std::string& folder, const Start& start);
   SoftgripdProcess(const SoftgripdProcess&) = delete;
   SoftgripdProcess& operator=(const SoftgripdProcess&) = delete;
@@ -56,8 +57,8 @@ class SoftgripdProcess {
 
   [[nodiscard]] pid_t pid() const noexcept { return pid_; }
   void signal(int number) const;
-  /// Waits for the end of the process. Returns its exit code, or 128 + the signal that ended it. Returns
-  /// nullopt if it is still running after `timeout_s`.
+  /// Waits up to `timeout_s` for the end of the process. Returns the exit code, or 128 + the number of the
+  /// signal that ended the process. Returns nullopt if the process is still running.
   std::optional<int> wait(double timeout_s = 20);
   /// Returns the text that the process has printed so far.
   [[nodiscard]] std::string output() const;
@@ -67,9 +68,9 @@ class SoftgripdProcess {
   std::string output_path_;
 };
 
-/// Writes a copy of config/rig.yaml for a test. In the copy, socket and recordings are in `folder`, and no
-/// processor is requested. For each pair of `changes`, the first text, which must exist, is replaced by the
-/// second. Returns the path of the file.
+/// Writes a modified copy of config/rig.yaml for a test. In the copy, socket and recordings are in `folder`,
+/// and no processor is requested. Each pair of `changes` contains a text of the file and its replacement.
+/// Returns the path of the copy.
 std::string make_rig(const std::string& folder,
                      const std::vector<std::pair<std::string, std::string>>& changes = {});
 

@@ -1,4 +1,4 @@
-// Tests softgripd as a process: normal runs, repeated runs, a stop, a kill and a full disk.
+// Tests softgripd as a process: normal runs, several runs in succession, a stop, a kill and a full disk.
 
 #include <gtest/gtest.h>
 #include <sys/mount.h>
@@ -37,7 +37,7 @@ using testing::text_of;
 const std::string sequences = SOFTGRIP_SOURCE_DIR "/config/sequences/";
 constexpr double rate_hz = 200;
 
-/// The header and the cells of a run.csv file.
+/// Header and cells of a file run.csv.
 struct Csv {
   std::vector<std::vector<std::string>> rows;  ///< all rows of the file except the header
   std::vector<std::string> header;
@@ -72,7 +72,8 @@ class SoftgripdTest : public ::testing::Test {
  protected:
   std::string socket() const { return folder_.path() + "/socket"; }
   json run_json(const std::string& folder) const { return json::parse(text_of(folder + "/run.json")); }
-  /// Returns the path of the only run in the rig's folder.
+  /// Returns the path of the run folder. The test fails if the folder of the rig does not contain exactly one
+  /// run.
   std::string only_run() const {
     std::vector<std::string> folders;
     for (const auto& entry : std::filesystem::directory_iterator(folder_.path() + "/runs")) {
@@ -181,7 +182,7 @@ TEST_F(SoftgripdTest, ASecondDaemonOnTheSameSocketIsRefused) {
 }
 
 TEST_F(SoftgripdTest, AFullDiskEndsTheRecordingAndNotTheGrip) {
-  // Use a real full disk if the test may mount one. Otherwise limit the file size.
+  // Use a disk that is really full if the test may mount one. Otherwise limit the file size.
   const std::string disk = folder_.path() + "/disk";
   std::filesystem::create_directory(disk);
   const bool mounted = mount("none", disk.c_str(), "tmpfs", 0, "size=64k") == 0;
@@ -296,7 +297,7 @@ TEST_F(SoftgripdTest, RealTimeThatIsRequiredAndNotThereIsARefusal) {
   EXPECT_NE(process.output().find("confirmed the safe outputs"), std::string::npos);
 }
 
-/// A socket that receives the messages of sd_notify, as the socket of a service manager does.
+/// A socket that receives the messages of sd_notify, like the socket of a service manager.
 class NotifySocket {
  public:
   explicit NotifySocket(const std::string& path) : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
@@ -307,8 +308,8 @@ class NotifySocket {
     const timeval patience{3, 0};
     setsockopt(socket_.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   }
-  /// Returns the messages up to the first one that begins with `start`. Returns an empty list if none begins
-  /// with it.
+  /// Returns the messages up to and including the first one that begins with `start`. Returns an empty list
+  /// if no message begins with `start`.
   std::vector<std::string> until(const std::string& start) {
     std::vector<std::string> messages;
     for (;;) {

@@ -23,7 +23,7 @@ TEST(TrustedUser, RootAndThisUserAreTrustedAndNobodyElse) {
   EXPECT_FALSE(is_trusted(4'000'000'000U));
 }
 
-/// Returns the credentials that this process receives about a peer that has connected as `user`.
+/// Connects to this process as `user`. Returns the credentials that the kernel reports for this peer.
 std::optional<Peer> peer_as(uid_t user) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;

@@ -19,7 +19,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (request.error().message.empty()) std::abort();
     return 0;
   }
-  // The numbers of an accepted request must be within the bounds that other code assumes.
+  // Other code assumes bounds for the numbers of an accepted request. The numbers must be within these
+  // bounds.
   if (!(request->rate_hz >= 0.1 && request->rate_hz <= 50)) std::abort();
   if (request->limit < 1 || request->limit > 1000) std::abort();
   if (request->id.value_or(0) > (std::uint64_t{1} << 53)) std::abort();

@@ -165,8 +165,8 @@ TEST(ClientRequest, DepthCostsNothing) {
   EXPECT_FALSE(parse_client_request(line));
 }
 
-// Parses the corpus of the fuzz target in every build: each line complete, cut off at every byte, and with
-// every byte changed.
+// Parses the corpus of the fuzz target in every build. Each line is parsed complete, cut off at every byte,
+// and with every byte changed.
 TEST(ClientRequest, TheFuzzersCorpusIsHarmless) {
   const auto feed = [](const std::string& line) {
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(line.data()), line.size());

@@ -61,7 +61,7 @@ class SocketServerTest : public ::testing::Test {
     }
     return *server_;
   }
-  /// Runs the server `looks` times. Advances the time by `step` before each run.
+  /// Polls the server `looks` times. Advances the time by `step` before each poll.
   void turn(int looks = 5, Nanoseconds step = 0) {
     for (int i = 0; i < looks; ++i) {
       now_ += step;
@@ -72,7 +72,7 @@ class SocketServerTest : public ::testing::Test {
     ASSERT_EQ(::send(socket.get(), text.data(), text.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(text.size()));
   }
-  /// Returns the data that have arrived, or nullopt if the server has closed the connection.
+  /// Returns the data that the client has received. Returns nullopt if the server has closed the connection.
   static std::optional<std::string> received(const Descriptor& socket) {
     std::string text(1 << 20, '\0');
     const ssize_t count = ::recv(socket.get(), text.data(), text.size(), 0);
@@ -113,7 +113,7 @@ TEST_F(SocketServerTest, RemovesItsFileAndReplacesThatOfADaemonThatIsGone) {
   server_.reset();
   EXPECT_FALSE(std::filesystem::exists(settings_.path));
   {
-    // Simulates a killed daemon, which leaves its socket file.
+    // Simulates a daemon that was killed and therefore did not remove its socket file.
     Descriptor socket(::socket(AF_UNIX, SOCK_STREAM, 0));
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
@@ -454,8 +454,8 @@ TEST_F(SocketServerTest, AnUrgentLineOfAClientThatHasGoneIsHeard) {
       send_text(client, "hello\n");
       turn();
       if (unread > 0) server().send(sender, std::string(unread, 'a'), false);
-      // The client sends these lines and disconnects while the server does not run, as if its process were
-      // paused.
+      // The client sends these lines and disconnects. The server does not run meanwhile, as if its process
+      // were paused.
       send_text(client, "move\nurgent: down\nmove\n");
       lines_.clear();
     }

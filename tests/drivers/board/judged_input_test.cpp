@@ -10,8 +10,9 @@ namespace {
 
 using model::Validity;
 
-/// Tests a 4-20 mA input of a 16-bit board that reads -32768 if nothing is connected. The sensor resembles
-/// the laser HG-C1100: its current is highest at the near end, and 3.75 mA means that it cannot measure.
+/// Tests a 4-20 mA input of a 16-bit board. The board reads -32768 if nothing is connected. The sensor
+/// resembles the laser sensor HG-C1100: the current is highest at the near end of its range, and 3.75 mA
+/// means that the sensor cannot measure.
 class JudgedInputTest : public testing::Test {
  protected:
   JudgedInputTest() {
@@ -68,8 +69,8 @@ TEST_F(JudgedInputTest, StatusRegister) {
   EXPECT_EQ(judged(12000, std::uint16_t{1}).validity, Validity::out_of_range);
   EXPECT_EQ(judged(12000, std::uint16_t{2}).validity, Validity::out_of_range);
   EXPECT_EQ(judged(12000, std::uint16_t{3}).validity, Validity::sensor_error);
-  // The status of the board concerns the range of the board. The limits of the sensor are checked in
-  // addition.
+  // The status register indicates if the input is within the range of the board. In addition, the driver must
+  // check the limits of the sensor.
   EXPECT_EQ(judged(1000, std::uint16_t{0}).validity, Validity::out_of_range);
   EXPECT_EQ(judged(3750, std::uint16_t{0}).validity, Validity::sensor_error);
   EXPECT_EQ(judged(3750, std::uint16_t{2}).validity, Validity::sensor_error);

@@ -79,16 +79,16 @@ TEST(Registers, FloatsRoundTripExactly) {
   }
 }
 
-// For a rising or falling line, a physical value that is converted to an electrical value and back is
-// unchanged except for rounding.
+// Converts a physical value to an electrical value and back, on rising and falling lines. The result must
+// equal the physical value except for rounding.
 TEST(Scaling, TwoPointsRoundTripForEitherSlope) {
   const unsigned seed = 11;
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> values(-100, 100);
   for (int i = 0; i < 10000; ++i) {
     TwoPoints line{values(random), values(random), values(random), values(random)};
-    // Skip lines whose two points are nearly equal, because they amplify the rounding error without bound. No
-    // real calibration has such points.
+    // Skip lines whose two points are nearly equal, because such a line amplifies the rounding error without
+    // bound. No real calibration has nearly equal points.
     if (std::abs(line.x1 - line.x0) < 0.1 || std::abs(line.y1 - line.y0) < 0.1) continue;
     const double y = values(random);
     EXPECT_NEAR(line.y_at(line.x_at(y)), y, 1e-9) << "seed " << seed << ", draw " << i;
@@ -99,8 +99,8 @@ TEST(Scaling, TwoPointsRoundTripForEitherSlope) {
   }
 }
 
-// Converts a physical value to an electrical value, to a raw register value, and back. The error must be at
-// most half a step of the converter for every register kind, word order and slope.
+// Converts a physical value to an electrical value, to a raw register value, and back. For every register
+// kind, word order and slope, the error must be at most half a step of the converter.
 TEST(Scaling, ThroughTheRegisterWithinHalfAStep) {
   const unsigned seed = 13;
   std::mt19937 random(seed);
@@ -122,8 +122,8 @@ TEST(Scaling, ThroughTheRegisterWithinHalfAStep) {
       block.raw_min = one.raw_min;
       block.raw_max = one.raw_max;
       block.bits = one.bits;
-      const TwoPoints sensor{4, 85, 20, 15};  // the current is highest at the near end
-      // Half a step of the converter, plus half a raw unit, because a step may not be a whole number of raw
+      const TwoPoints sensor{4, 85, 20, 15};  // the current is highest at the near end of the range
+      // Half a step of the converter, plus half a raw unit because a step is not always a whole number of raw
       // units.
       const double half_step_ma =
           16.0 / (std::exp2(one.bits) - 1) / 2 + 16.0 / (one.raw_max - one.raw_min) / 2;

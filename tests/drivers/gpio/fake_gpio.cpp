@@ -59,7 +59,7 @@ int FakeLine::request(const std::string& by, bool as_output, bool with_edges, bo
   edges_seen = with_edges;
   active_low = inverted;
   bias = resistor;
-  if (as_output) high = inverted;  // the initial level of an output is its inactive level
+  if (as_output) high = inverted;  // after a request as an output, the line has its inactive level
   return 0;
 }
 

@@ -14,7 +14,7 @@ using softgrip::drivers::testing::FakeEdge;
 using softgrip::drivers::testing::FakeLine;
 using softgrip::drivers::testing::hold_fake_lines;
 
-// The types that the header of the library declares without their members.
+// Types that the header of the library declares but does not define.
 struct gpiod_chip {
   FakeChip* chip;
 };

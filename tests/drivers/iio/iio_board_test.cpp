@@ -1,5 +1,5 @@
-// Tests the board that consists of analog converters of the computer. Plain files, with the paths that sysfs
-// uses, simulate the converters.
+// Tests the board that consists of analog converters of the computer. Plain files with the paths of sysfs
+// simulate the converters.
 
 #include "drivers/iio/iio_board.h"
 
@@ -23,8 +23,8 @@ class IioBoardTest : public testing::Test {
  protected:
   IioBoardTest() {
     fs::create_directories(root_);
-    // Simulate two converters: one like the ADS1115 with a scale per channel, and a DAC with an offset and
-    // one scale for all channels.
+    // Simulate two converters: an ADC that, like the ADS1115, has one scale per channel, and a DAC that has
+    // an offset and one scale for all channels.
     put("iio:device0/name", "ads1115");
     for (const char* channel : {"voltage0", "voltage1"}) {
       put(std::string("iio:device0/in_") + channel + "_raw", "8000");
@@ -55,7 +55,7 @@ class IioBoardTest : public testing::Test {
 
   void put(const std::string& file, const std::string& text) const {
     fs::create_directories((root_ / file).parent_path());
-    // Overwrite the file in place, because the board keeps the file open, as it keeps a file of sysfs open.
+    // Overwrite the file in place: the board keeps the file open, as it keeps a file of sysfs open.
     std::ofstream(root_ / file) << text << "\n";
   }
   [[nodiscard]] std::string get(const std::string& file) const {
@@ -206,8 +206,8 @@ TEST_F(IioBoardTest, APowerdownThatCannotBeReadOrWrittenIsRefusedBeforeAnythingI
   EXPECT_NE(refusal().find("out_voltage1_powerdown: no number"), std::string::npos) << refusal();
   const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
   fs::remove(powerdown);
-  fs::create_symlink("/proc/sys/kernel/ngroups_max", powerdown);  // link to a file that contains a value
-                                                                  // above 0 and cannot be written
+  fs::create_symlink("/proc/sys/kernel/ngroups_max", powerdown);  // link to a file with a value above 0 that
+                                                                  // cannot be changed
   EXPECT_NE(refusal().find("out_voltage1_powerdown is 1 and cannot be cleared: Permission denied"),
             std::string::npos)
       << refusal();
@@ -216,7 +216,8 @@ TEST_F(IioBoardTest, APowerdownThatCannotBeReadOrWrittenIsRefusedBeforeAnythingI
 
 TEST_F(IioBoardTest, APowerdownThatStaysEndsTheSessionAndTheNextIsRefused) {
   const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
-  // The kernel accepts a write of any number to this file, but the file keeps a value above 0.
+  // The kernel accepts a write of any number to this file. However, the file then still contains a value
+  // above 0.
   const std::string keeps_its_number = "/proc/sys/kernel/random/urandom_min_reseed_secs";
   if (::access(keeps_its_number.c_str(), W_OK) != 0) GTEST_SKIP() << "needs root: " << keeps_its_number;
   fs::create_symlink(keeps_its_number, powerdown);
@@ -249,8 +250,8 @@ TEST_F(IioBoardTest, AnOutputWithoutAChannelStaysSwitchedOff) {
 
 TEST_F(IioBoardTest, APressureIsReadInKilopascals) {
   put("iio:device2/name", "bmp280");
-  put("iio:device2/in_pressure_input", "121.3");  // a value in physical units without a channel number and
-                                                  // without a scale
+  put("iio:device2/in_pressure_input", "121.3");  // an input in physical units without channel number and
+                                                  // scale
   put("iio:device3/name", "mpl115");
   put("iio:device3/in_pressure0_raw", "400");
   put("iio:device3/in_pressure_scale", "0.25");
@@ -310,8 +311,8 @@ TEST_F(IioBoardTest, OneChannelUnderTwoWordsIsRefused) {
   EXPECT_NE(refusal().find("both are "), std::string::npos) << refusal();
 }
 
-/// Tests with converters on a bus. The converters disappear and return with another device number of the
-/// kernel.
+/// Tests converters on a bus. A converter disappears and returns, and the kernel then gives it another device
+/// number.
 class IioBusTest : public IioBoardTest {
  protected:
   IioBusTest() {

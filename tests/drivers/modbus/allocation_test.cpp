@@ -1,5 +1,5 @@
-// Tests that exchange() never allocates memory, whether it succeeds or fails. The test counts calls of
-// operator new. Without a sanitizer, it also counts calls of malloc().
+// Tests that exchange() never allocates memory, neither in a successful nor in a failed exchange. The test
+// counts the calls of operator new. Without a sanitizer, it also counts the calls of malloc().
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ using softgrip::test::allocations_of;
 using test::RegisterServer;
 
 TEST(Allocation, TheCounterCounts) {
-  static std::vector<std::string> kept;  // static, so that the compiler cannot remove the allocation
+  static std::vector<std::string> kept;  // static, so that the compiler must keep the allocation
   EXPECT_GT(allocations_of([] { kept.emplace_back(100, 'x'); }), 0U);
   EXPECT_EQ(allocations_of([] {}), 0U);
 }
@@ -45,7 +45,7 @@ class ModbusAllocation : public testing::Test {
     });
   }
 
-  /// Performs one exchange that must end with `expected` and must not allocate memory.
+  /// Performs one exchange. The exchange must return `expected` and must not allocate memory.
   void expect(BusStatus expected, std::array<double, 2> commands, std::chrono::nanoseconds deadline = 5s) {
     BusStatus status = BusStatus::ok;
     const std::size_t made =
@@ -75,7 +75,7 @@ TEST_F(ModbusAllocation, EveryWayAnExchangeCanFail) {
   expect(BusStatus::write_refused, {10, 1234.5678});
   expect(BusStatus::write_refused, {10, std::numeric_limits<double>::quiet_NaN()});
   server_.ignore_writes(true);
-  expect(BusStatus::ok, {90, 90});  // the board map permits that the read-back lags by one exchange
+  expect(BusStatus::ok, {90, 90});  // the board map allows the read-back to lag by one exchange
   expect(BusStatus::write_refused, {90, 90});
   server_.ignore_writes(false);
   for (const std::uint8_t code : {std::uint8_t{2}, std::uint8_t{9}, std::uint8_t{200}}) {

@@ -7,8 +7,8 @@
 namespace softgrip::drivers::exchange_plan_test {
 namespace {
 
-/// Returns a board map with 8 inputs from holding register 0, their status from register 8, and 4 outputs
-/// from register 100. The outputs can be read back from register 20.
+/// Returns a board map. The 8 inputs begin at holding register 0, and their status begins at register 8. The
+/// 4 outputs begin at register 100, and their read-back begins at register 20.
 BoardMap plain_map() {
   BoardMap map;
   map.inputs.registers = {.function = 3, .address = 0, .count = 8, .kind = RegisterKind::uint16};
@@ -43,8 +43,8 @@ TEST(ExchangePlan, NeighbouringBlocksAreReadTogether) {
   map.input_status =
       StatusBlock{.registers = {3, 8, 8, RegisterKind::uint16}, .ok = {0}, .over = {}, .under = {}};
   const ExchangePlan plan = plan_exchange(map, test::two_fingers(false));
-  // Registers 2 to 7 lie between the wired inputs and the status. They are inputs of the board, so one
-  // request can read all registers from 0 to 9.
+  // The registers 2 to 7 lie between the wired inputs and the status. They are readable inputs of the board,
+  // so one request can read all registers from 0 to 9.
   EXPECT_EQ(plan.reads, (std::vector<ReadStep>{{3, 0, 10}}));
   EXPECT_EQ(plan.channels[1].displacement_status, (Slot{0, 9}));
 }

@@ -1,5 +1,4 @@
-// Tests the driver with the server of libmodbus, because most users have already used their board with
-// libmodbus.
+// Tests the driver with the server of libmodbus, a widely used Modbus library.
 
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
@@ -21,7 +20,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Serves one session after another until the test ends.
+/// Serves one session after another until the destructor is called.
 class LibmodbusServer {
  public:
   LibmodbusServer()
@@ -47,8 +46,8 @@ class LibmodbusServer {
   }
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
-  /// Returns the registers of the server. Use them only between exchanges, while the server waits for a
-  /// request.
+  /// Returns the registers of the server. A test may use them only between exchanges, when the server waits
+  /// for a request.
   [[nodiscard]] modbus_mapping_t& mapping() { return *mapping_; }
 
  private:
@@ -105,8 +104,8 @@ TEST(Libmodbus, Function23AndExceptions) {
       test::on_tcp(server.port(), shipped("softgrip-sim.yaml"), test::two_fingers(false));
   BoardMap& map = settings.modules[0].map;
   map.read_back.reset();
-  server.mapping().tab_registers[0] = 0x40a0;  // 5 V, as the upper half of a float
-  server.mapping().tab_registers[2] = 0x4000;  // 2 V, as the upper half of a float
+  server.mapping().tab_registers[0] = 0x40a0;  // 5 V as a float; this register holds the upper half
+  server.mapping().tab_registers[2] = 0x4000;  // 2 V as a float; this register holds the upper half
   {
     ModbusBoard board(settings);
     ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();

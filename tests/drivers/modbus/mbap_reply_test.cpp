@@ -14,7 +14,7 @@ using State = ModbusReply::State;
 constexpr std::uint16_t transaction = 0x0102;
 constexpr std::uint8_t unit = 17;
 
-/// A request and a correct response. The last bytes of the response are its data.
+/// A request and its correct response. The last bytes of the response are the data.
 struct Case {
   ModbusRequest request;
   Bytes pdu;
@@ -95,9 +95,10 @@ TEST(ModbusReply, EveryByteBehindAnAnswerIsADefect) {
   }
 }
 
-// Changes one bit in the header, function code, byte count or echo of a response. The response must never be
-// accepted. If the highest bit of the function code changes, the response looks like an exception of the
-// wrong length. Changed data cannot be detected, because only the checksum of TCP protects them.
+// Changes one bit in the header, the function code, the byte count or the echo of a response. The parser must
+// never accept the response. A response with a changed highest bit of the function code looks like an
+// exception of the wrong length. The test does not change the data, because only the checksum of TCP protects
+// them.
 TEST(ModbusReply, NoBitOutsideTheDataMayFlip) {
   for (const Case& one : cases()) {
     const Bytes right = frame(one.pdu);

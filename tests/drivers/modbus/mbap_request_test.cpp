@@ -1,4 +1,5 @@
-// Compares the frames of requests with the examples in section 6 of the Modbus application protocol V1.1b3.
+// Compares the frames of requests with the examples in section 6 of the specification "Modbus application
+// protocol V1.1b3".
 
 #include "drivers/modbus/mbap.h"
 

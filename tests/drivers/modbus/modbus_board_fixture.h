@@ -1,6 +1,6 @@
 #pragma once
-// Connects the driver of a Modbus board with a server over real sockets, for the tests of exchanges,
-// read-back and watchdog.
+// Connects the driver of a Modbus board with a Modbus server over real sockets. Used by the tests of
+// exchanges, read-back and watchdog.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ inline BoardMap shipped(const std::string& name) {
   return *map;
 }
 
-/// Returns the value of the ADAM-6024's input register for a voltage.
+/// Returns the raw value of an ADAM-6024 input register for an input voltage.
 inline std::uint16_t adam_raw(double volt) {
   return static_cast<std::uint16_t>(std::lround((volt + 10) / 20 * 65535));
 }
@@ -40,7 +40,7 @@ class ModbusBoardTest : public testing::Test {
  protected:
   ModbusBoardTest() {
     for (std::uint16_t input = 0; input < 6; ++input) server_.set_input(input, adam_raw(5));
-    // As on an ADAM-6024, the outputs can be read as input registers 10 and 11.
+    // Input registers 10 and 11 show the outputs, as on an ADAM-6024.
     server_.on_request([](RegisterServer& server, const RegisterServer::Request&) {
       server.input_[10] = server.holding_[10];
       server.input_[11] = server.holding_[11];
@@ -49,8 +49,8 @@ class ModbusBoardTest : public testing::Test {
 
   ModbusSettings settings(const BoardMap& map) const { return on_tcp(server_.port(), map, wiring_, 0); }
 
-  /// Creates the board, connects it to the server, and discards the requests that the server has received so
-  /// far.
+  /// Creates the board, connects it to the server, and discards the requests that the server received during
+  /// the connection.
   void connect(const BoardMap& map) {
     board_ = std::make_unique<ModbusBoard>(settings(map));
     ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();

@@ -1,4 +1,5 @@
-// Tests the driver with a server on real sockets. Registers, values and status of exchanges must be correct.
+// Tests the driver with a Modbus server on real sockets. Checks the registers, the values and the status of
+// exchanges.
 
 #include "drivers/modbus/modbus_board.h"
 
@@ -111,7 +112,7 @@ TEST_F(ModbusBoardTest, LowWordFirst) {
   map.read_back.reset();
   connect(map);
   server_.set_holding(0, 0x0000);
-  server_.set_holding(1, 0x4060);  // 3.5 V, as the upper half of a float
+  server_.set_holding(1, 0x4060);  // 3.5 V as a float; this register holds the upper half
   server_.set_holding(3, 0x4060);
   ASSERT_EQ(exchange(12.5, 0), BusStatus::ok) << board_->detail();
   EXPECT_DOUBLE_EQ(readings_[0].displacement_mm, 12.5);
@@ -119,8 +120,8 @@ TEST_F(ModbusBoardTest, LowWordFirst) {
   EXPECT_EQ(server_.holding(257), 0x3fa0);
 }
 
-// On a bipolar board, the raw value 0 means -10 V. Therefore the driver must never write to an output without
-// wiring.
+// On a bipolar board, the raw value 0 means -10 V. Therefore the driver must never write to an output that is
+// not wired.
 TEST_F(ModbusBoardTest, OnlyWiredOutputsAreWritten) {
   BoardMap map = shipped("softgrip-sim.yaml");
   map.has_fc23 = false;
@@ -164,7 +165,7 @@ TEST_F(ModbusBoardTest, ValidityOfReadings) {
   server_.set_input(0, adam_raw(5));
   server_.set_input(1, adam_raw(5));
   server_.set_input(20, 1);  // status of the sensor input: above its range
-  server_.set_input(21, 7);  // status of the sensor input: a value that the manual does not list
+  server_.set_input(21, 7);  // status of the sensor input: a value that is not in the manual
   server_.set_input(24, 2);  // status of the left pressure input: below its range
   ASSERT_EQ(exchange(0, 0), BusStatus::ok);
   EXPECT_EQ(readings_[0].validity, Validity::out_of_range);
@@ -214,8 +215,8 @@ TEST_F(ModbusBoardTest, ExceptionsAreToldAndTheSessionStands) {
 
 TEST_F(ModbusBoardTest, TheDeadlineSpansTheWholeExchange) {
   connect(shipped("adam-6024.yaml"));
-  server_.delay(30ms);  // each of the 4 responses arrives before the deadline, but the sum of the delays
-                        // exceeds it
+  server_.delay(30ms);  // each of the 4 responses alone is in time, but the sum of the 4 delays exceeds the
+                        // deadline
   const Nanoseconds before = MonotonicClock().now();
   EXPECT_EQ(exchange(10, 10, 50ms), BusStatus::timed_out);
   EXPECT_LT(MonotonicClock().now() - before, 50'000'000 + 400'000'000);
@@ -309,9 +310,9 @@ TEST_F(ModbusBoardTest, SaysHowManyClientsTheBoardCounts) {
   EXPECT_FALSE(board_->fed_by_readers());
 }
 
-/// Tests a board whose watchdog trip remains until a client clears it. Coil 32 is set after a trip; writing 1
-/// to coil 33 clears the trip. During a trip the board confirms writes, but its outputs (holding registers 10
-/// and 11) remain 0.
+/// Tests a board whose watchdog trip remains until a client clears it. The board sets coil 32 at a trip. A
+/// client clears the trip by writing 1 to coil 33. During a trip, the board confirms writes, but its outputs
+/// (holding registers 10 and 11) remain 0.
 class WatchdogTest : public ModbusBoardTest {
  protected:
   WatchdogTest() {
@@ -400,7 +401,7 @@ TEST_F(WatchdogTest, AHeartbeatChangesWithEveryExchangeAndIsRepeatedUntilItIsCon
   EXPECT_EQ(server_.holding(4099), 9);
 }
 
-/// During a watchdog trip, this board refuses writes with an exception, as some bus couplers do.
+/// During a watchdog trip, this board responds to writes with an exception, as some bus couplers do.
 TEST_F(WatchdogTest, ABoardThatRefusesWritesWhileTrippedIsToldByItsFlag) {
   map_.setup = {{6, 500, 7}};
   connect(map_);

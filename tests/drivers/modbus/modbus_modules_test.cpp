@@ -18,7 +18,7 @@ using test::RegisterServer;
 using test::Requests;
 using test::shipped;
 
-/// Tests a board whose outputs and inputs belong to two devices with different addresses.
+/// Tests a board whose outputs belong to one device and whose inputs belong to another device.
 class TwoModules : public ModbusBoardTest {
  protected:
   TwoModules() {

@@ -31,8 +31,8 @@ TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsRefused) {
   EXPECT_EQ(exchange(50, 10), BusStatus::ok);
 }
 
-// In this test, another Modbus client writes to one output after the driver's write and before the outputs
-// are read back.
+// In this test, another Modbus client writes to one output after the write of the daemon. The daemon then
+// reads the outputs back.
 TEST_F(ModbusBoardTest, ARefusedExchangeNamesTheOutputsThatItHasFound) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 0;
@@ -72,8 +72,8 @@ TEST_F(ModbusBoardTest, WhatSomebodyElseWritesIsNoticedWithinEightExchanges) {
   EXPECT_EQ(exchange(0, 0), BusStatus::ok);
 }
 
-// The read-back of an output that ignores writes differs from the written value. The driver must not conclude
-// that another client has written.
+// This output ignores writes, so its read-back differs from the written value. The driver must not conclude
+// that another client has written to the output.
 TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsNotTakenForSomebodyElsesWriting) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 0;
@@ -146,14 +146,14 @@ TEST_F(ModbusBoardTest, AnotherMasterIsNoticedThoughOneFunctionReadsAndWrites) {
   EXPECT_EQ(status, BusStatus::overwritten) << board_->detail();
 }
 
-// Some boards read back the command of the previous exchange, in particular if one request with function code
-// 23 writes and reads.
+// On some boards, the read-back shows the command of the previous exchange. This happens in particular if one
+// request with function code 23 writes and reads.
 TEST_F(ModbusBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 1;
   server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
     if (request.function != 16)
-      return;  // the write is not executed yet, so the read-back shows the previous value
+      return;  // the hook runs before the write, so the read-back gets the value of the previous write
     server.input_[10] = server.holding_[10];
     server.input_[11] = server.holding_[11];
   });

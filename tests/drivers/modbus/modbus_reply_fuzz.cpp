@@ -28,7 +28,7 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// Takes bytes from the front of the input. Returns 0 if no bytes remain.
+/// Takes bytes from the front of the input. After the last byte, returns 0.
 class Choices {
  public:
   explicit Choices(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -45,7 +45,7 @@ class Choices {
   std::span<const std::uint8_t> bytes_;
 };
 
-/// Checks that the data of a complete response lie inside the received bytes and have the requested size.
+/// Checks that the data of a complete response lie within the received bytes and have the requested size.
 void check_complete(const ModbusReply& reply, const ModbusRequest& request,
                     std::span<const std::uint8_t> bytes) {
   require(reply.data.empty() || (reply.data.data() >= bytes.data() &&
@@ -57,7 +57,7 @@ void check_complete(const ModbusReply& reply, const ModbusRequest& request,
   require(reply.data.size() == expected);
 }
 
-/// Converts the registers to numbers and scales them, and checks the validity of each reading.
+/// Converts the registers to numbers, scales the numbers, and checks the validity of each reading.
 void judge_all(std::span<const std::uint8_t> data, Choices& choices) {
   std::vector<std::uint16_t> words;
   for (std::size_t i = 0; i + 1 < data.size(); i += 2) words.push_back(word_at(data, i));
@@ -96,8 +96,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::uint8_t unit = choices.byte();
   const std::span<const std::uint8_t> bytes = choices.rest();
 
-  // Parse the bytes one by one, as they arrive from a slow board. After the parser has accepted or refused
-  // the response, further bytes may change the result only to "defective".
+  // Add the bytes one by one, as they arrive from a slow board, and parse all bytes each time. If additional
+  // bytes follow an accepted or refused response, its state must become "defective".
   State last = State::incomplete;
   for (std::size_t have = 0; have <= bytes.size(); ++have) {
     const ModbusReply reply = parse_reply(bytes.first(have), request, transaction, unit);

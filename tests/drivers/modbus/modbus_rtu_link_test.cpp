@@ -25,7 +25,7 @@ using test::Bytes;
 using test::checked;
 using test::ScriptedLine;
 
-// Longest time by which a call may exceed its deadline on a computer under load. A call that waited for a
+// Largest time by which a correct call exceeds its deadline on a computer under load. A call that waits for a
 // late or slow response would exceed the deadline by much more.
 constexpr Nanoseconds slack = 400'000'000;
 constexpr Nanoseconds deadline = 100'000'000;
@@ -44,8 +44,8 @@ SerialLine line_at(const std::string& device, std::uint32_t baud = 115200) {
 }
 
 /// Returns a line at 9600 baud. After a fault, the next session first listens for the duration of the longest
-/// frame, which is 0.25 s at this rate. This is much longer than a computer under load delays a byte. At
-/// 115200 baud, the 22 ms would be too short.
+/// frame, which is 0.25 s at 9600 baud. This time is much longer than the delay of a byte on a computer under
+/// load. At 115200 baud, the duration would be only 22 ms, which is too short.
 SerialLine listening_long() {
   return line_at("", 9600);
 }
@@ -74,8 +74,8 @@ struct Outcome {
   std::string detail;
 };
 
-/// Sends one request, to which `misbehave` responds, and then opens a session with a correct module. Returns
-/// the outcome of the request.
+/// Sends one request, to which `misbehave` responds. Then opens a session with a correct module. Returns the
+/// outcome of the first request.
 Outcome ask_once(const std::function<void(ScriptedLine&, const Bytes&)>& misbehave,
                  SerialLine settings = line_at("")) {
   ScriptedLine line([&](ScriptedLine& self, const Bytes& request, std::size_t index) {
@@ -131,8 +131,8 @@ TEST(ModbusRtuLink, ADripFedReplyDoesNotExtendTheDeadline) {
   expect_end(ask_once(
                  [](ScriptedLine& line, const Bytes& request) {
                    Bytes reply = good_reply(request);
-                   reply.resize(3);  // only 3 bytes are sent; the last one arrives after the deadline, while
-                                     // the next session listens
+                   reply.resize(3);  // the module sends 3 bytes; the last byte arrives after the deadline,
+                                     // while the next session listens
                    line.drip(reply, 55ms);
                  },
                  listening_long()),
@@ -150,8 +150,8 @@ TEST(ModbusRtuLink, ALateReplyIsNeverTakenForALaterAnswer) {
                  [](ScriptedLine& line, const Bytes& request) {
                    line.wait(110ms);
                    Bytes late = good_reply(request);
-                   late[4] = 9;  // change the data, so that they differ from the correct data of the next
-                                 // response
+                   late[4] = 9;  // change the data, so that the test can distinguish this response from the
+                                 // correct one
                    late.resize(late.size() - 2);
                    line.send(checked(late));
                  },
@@ -196,8 +196,8 @@ TEST(ModbusRtuLink, WhatIsNotTheAnswer) {
              BusStatus::bad_reply, "checksum");
   expect_end(ask_once([](ScriptedLine& line, const Bytes& request) {
                Bytes reply = good_reply(request);
-               reply.resize(reply.size() + 5);  // the shortest response has 5 bytes, so these 5 bytes could
-                                                // be another response
+               reply.resize(reply.size() + 5);  // add 5 bytes: the shortest response has 5 bytes, so these
+                                                // bytes could be a second response
                line.send(reply);
              }),
              BusStatus::bad_reply, "bytes follow");
@@ -205,8 +205,8 @@ TEST(ModbusRtuLink, WhatIsNotTheAnswer) {
              BusStatus::bad_reply, "returns the sent bytes");
 }
 
-// Fewer additional bytes than the shortest response has cannot be another response. They must be ignored as
-// noise.
+// The shortest response has 5 bytes. Fewer than 5 additional bytes cannot be a response, so the link must
+// ignore these bytes as noise.
 TEST(ModbusRtuLink, StrayBytesAreThrownAway) {
   for (const std::uint8_t stray : std::initializer_list<std::uint8_t>{0x00, 0xff, 0x01, 0x04}) {
     for (const auto& [before, behind] :
@@ -256,8 +256,7 @@ TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondAnswerIsNotBelieved) {
     ScriptedLine line([lost](ScriptedLine& self, const Bytes& request, std::size_t index) {
       if (index == 0 && lost) return;
       if (index == 0)
-        self.wait(130ms);  // this response is late; the module also responds to all later
-                           // requests
+        self.wait(130ms);  // this response is late; the module responds to all later requests as well
       const std::size_t one = 8;
       for (std::size_t at = 0; at + one <= request.size(); at += one) {
         const auto first = request.begin() + static_cast<std::ptrdiff_t>(at);
@@ -277,7 +276,7 @@ TEST(ModbusRtuLink, ALostRequestIsRepeatedAndASecondAnswerIsNotBelieved) {
   }
 }
 
-// A module may send a message when it starts. The link must not take this message for a response.
+// A module may send a message when it starts. The link must not interpret this message as a response.
 TEST(ModbusRtuLink, NothingIsSentBeforeTheSettleTimeIsOver) {
   std::atomic<Nanoseconds> first_request{0};
   ScriptedLine line([&](ScriptedLine& self, const Bytes& request, std::size_t index) {
@@ -384,8 +383,8 @@ TEST(ModbusRtuLink, ALineHasOneMaster) {
   EXPECT_EQ(second.open(now() + generous), BusStatus::ok) << second.detail();
 }
 
-/// Checks the duration of an exchange that the link calculates. One exchange writes one register and reads
-/// one register, which takes 31 bytes in total.
+/// Checks the duration that the link calculates for an exchange. This exchange writes one register and reads
+/// one register. Its frames have 31 bytes in total.
 TEST(ModbusRtuLink, TheCostAddsUp) {
   const std::vector<TransactionSize> pair{{5, 5}, {5, 4}};  // function codes 6 and 3, each for one register
   const auto cost_ms = [&](std::uint32_t baud) {

@@ -1,6 +1,6 @@
-// Tests RTU frames on a TCP connection if the server closes the connection. Two other files test the contents
-// of the frames: tests/simulation/emulator/board_habits_test.cpp with the emulator, and
-// modbus_rtu_link_test.cpp on a serial line.
+// Tests RTU frames on a TCP connection that the server closes. Two other files test the contents of the
+// frames: tests/simulation/emulator/board_habits_test.cpp with the emulator, and modbus_rtu_link_test.cpp on
+// a serial line.
 
 #include "drivers/modbus/modbus_rtu_tcp_link.h"
 
@@ -24,8 +24,8 @@ TcpAddress rtu_at(std::uint16_t port) {
 }
 
 TEST(ModbusRtuTcpLink, AConnectionThatIsClosedBeforeItsFirstAnswerIsNamed) {
-  // The server expects TCP frames. It takes the RTU frame for the beginning of a longer TCP frame and waits
-  // for further bytes until it is stopped.
+  // The server expects TCP frames. It interprets the RTU frame as the beginning of a longer TCP frame and
+  // waits for more bytes until the test stops it.
   auto server = std::make_unique<test::ScriptedServer>([](test::Peer&, const test::Bytes&, std::size_t) {});
   ModbusRtuTcpLink link(rtu_at(server->port()));
   ASSERT_EQ(link.open(monotonic_now() + generous), BusStatus::ok) << link.detail();

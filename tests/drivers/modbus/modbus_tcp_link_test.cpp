@@ -1,5 +1,5 @@
-// Tests the session with a server that shows every possible fault. Each test states the expected status and
-// the longest duration of the call.
+// Tests a session with a server that shows every possible fault. Each test states the expected status and the
+// longest duration of the call.
 
 #include "drivers/modbus/modbus_tcp_link.h"
 
@@ -31,8 +31,8 @@ using test::Bytes;
 using test::Peer;
 using test::ScriptedServer;
 
-// Longest time by which a call may exceed its deadline on a computer under load. A call that waited for a
-// late or slow response would exceed the deadline by much more, and the test would fail.
+// Largest time by which a correct call exceeds its deadline on a computer under load. A call that waits for a
+// late or slow response would exceed the deadline by much more, so the test would fail.
 constexpr Nanoseconds slack = 400'000'000;
 constexpr Nanoseconds deadline = 50'000'000;
 constexpr Nanoseconds generous = 5'000'000'000;
@@ -74,8 +74,9 @@ struct Outcome {
   std::string detail;
 };
 
-/// Sends one request. `misbehave` gives the server's first response; all later responses are correct. Checks
-/// that a new session then reads the correct values. Returns the outcome of the first request.
+/// Sends one request. `misbehave` sends the first response of the server; all later responses are correct.
+/// Then opens a new session and checks that it reads the correct values. Returns the outcome of the first
+/// request.
 Outcome ask_once(const std::function<void(Peer&, const Bytes&)>& misbehave,
                  const ModbusRequest& request = read_four, Nanoseconds within = deadline) {
   ScriptedServer server([&](Peer& peer, const Bytes& asked, std::size_t index) {
@@ -103,7 +104,7 @@ Outcome ask_once(const std::function<void(Peer&, const Bytes&)>& misbehave,
   return outcome;
 }
 
-/// Calls ask_once() with a correct response that `spoil` has changed.
+/// Calls ask_once() with a response that is correct except for the change that `spoil` makes.
 Outcome ask_spoiled(const std::function<void(Bytes&)>& spoil) {
   return ask_once([&](Peer& peer, const Bytes& request) {
     Bytes reply = test::registers_reply(request, register_value);
@@ -139,7 +140,7 @@ TEST(ModbusTcpLink, DripFedReplyDoesNotExtendTheDeadline) {
   const Outcome outcome = ask_once(
       [](Peer& peer, const Bytes& request) {
         peer.drip(test::registers_reply(request, register_value), 10ms);  // all bytes of the response take
-                                                                          // 2.6 s, longer than the deadline
+                                                                          // 2.6 s, which exceeds the deadline
       },
       large);
   expect_poisoned(outcome, BusStatus::timed_out, deadline + slack);
@@ -188,8 +189,8 @@ TEST(ModbusTcpLink, ByteCountContradictsTheLength) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply[8] = 6; }), BusStatus::bad_reply, slack);
 }
 
-// The session waits for the number of bytes that the response announces, as libmodbus does. At the deadline,
-// it evaluates the bytes that have arrived.
+// Like libmodbus, the session waits for the number of bytes that the response announces. At the deadline, it
+// evaluates the bytes that have arrived.
 TEST(ModbusTcpLink, ByteCountOfMoreThanThereIs) {
   const Outcome outcome = ask_spoiled([](Bytes& reply) { reply[8] = 200; });
   expect_poisoned(outcome, BusStatus::bad_reply, deadline + slack);
@@ -285,7 +286,8 @@ int listening(int backlog, std::uint16_t& port) {
   return listener;
 }
 
-/// A server that accepts a connection, sends `greeting`, and closes the connection if `closes` is true.
+/// A server that accepts a connection and sends `greeting`. If `closes` is true, it then closes the
+/// connection.
 class Greeter {
  public:
   Greeter(const std::string& greeting, bool closes) {
@@ -408,9 +410,9 @@ TEST(ModbusTcpLink, WriteConfirmedForAnotherAddress) {
   expect_poisoned(outcome, BusStatus::bad_reply, slack);
 }
 
-// If a response is duplicated once, a careless client assigns every later response to the wrong request. This
-// server duplicates random responses and sends the copy immediately or later. Each request reads other
-// registers, so that a wrong assignment is detected.
+// If a server sends one response twice, a careless client assigns every later response to the wrong request.
+// This server sends some responses twice, at random. The copy follows immediately or later. Each request
+// reads different registers, so the test detects a wrong assignment.
 TEST(ModbusTcpLink, DuplicatedRepliesNeverMoveTheAnswers) {
   const unsigned seed = 20250411;
   std::mt19937 random(seed);
@@ -463,8 +465,8 @@ TEST(ModbusTcpLink, NamesAreNotResolved) {
   EXPECT_NE(std::string(session.detail()).find("numeric"), std::string::npos) << session.detail();
 }
 
-// The queue of this listener is full. The kernel then drops the first packet of every further connection, so
-// that connecting must time out.
+// The queue of this listener is full. The kernel then drops the first packet of every new connection, so the
+// attempt to connect must time out.
 TEST(ModbusTcpLink, ConnectingIsBoundedWhenNobodyAnswers) {
   std::uint16_t port = 0;
   const int listener = listening(0, port);
@@ -486,8 +488,8 @@ TEST(ModbusTcpLink, ConnectingIsBoundedWhenNobodyAnswers) {
 TEST(ModbusTcpLink, AHalfOpenSessionTimesOut) {
   ScriptedServer server([](Peer& peer, const Bytes& request, std::size_t index) {
     if (index == 0)
-      answer_well(peer, request);  // the server does not respond to later requests, but keeps the connection
-                                   // open
+      answer_well(peer, request);  // the server keeps the connection open but does not respond to later
+                                   // requests
   });
   ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
   ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
@@ -502,8 +504,8 @@ TcpAddress repeating(std::uint16_t port, bool numbered = true) {
   return {.host = "127.0.0.1", .port = port, .habits = {.repeat_after_s = 0.05}, .numbered = numbered};
 }
 
-// The link may repeat a lost request. The repetition is an identical frame, so it writes the same output
-// values.
+// The link may send a request a second time if the response is missing. The second frame must be identical,
+// so that it writes the same output values.
 TEST(ModbusTcpLink, ALostRequestIsRepeatedBeforeTheSessionIsGivenUp) {
   std::vector<Bytes> asked;
   ScriptedServer server([&](Peer& peer, const Bytes& request, std::size_t index) {
@@ -519,8 +521,8 @@ TEST(ModbusTcpLink, ALostRequestIsRepeatedBeforeTheSessionIsGivenUp) {
   EXPECT_EQ(server.sessions(), 1U);
 }
 
-// The repetition of a request must not delay the next session, because the next session writes the safe
-// outputs.
+// The next session writes the safe outputs. The repetition of a request must therefore not delay the next
+// session.
 TEST(ModbusTcpLink, RepeatingDoesNotExtendTheDeadline) {
   std::atomic<std::size_t> asked{0};
   ScriptedServer server([&](Peer&, const Bytes&, std::size_t) { ++asked; });
@@ -533,8 +535,8 @@ TEST(ModbusTcpLink, RepeatingDoesNotExtendTheDeadline) {
   EXPECT_GE(asked, 2U);
 }
 
-/// Simulates a board whose first response is late. It then responds to the request and to each repetition of
-/// the request.
+/// Simulates a board whose first response is late. After this delay, the board responds to the request and to
+/// each repetition of the request.
 void answer_late_once(Peer& peer, const Bytes& request, std::size_t index, bool numbered) {
   if (index == 0) peer.wait(130ms);
   Bytes reply = test::registers_reply(request, register_value);
@@ -590,8 +592,9 @@ TEST(ModbusTcpLink, ADeadlineInThePastFailsAtOnce) {
   EXPECT_EQ(session.ask(1, read_four, now() - 1), BusStatus::timed_out);
 }
 
-// The test opens files until new descriptors are 1024 or above. These descriptors do not fit into the fd_set
-// with which libmodbus waits. A link with a lower descriptor must continue to work in all later sessions.
+// The test opens files until new descriptors have numbers above 1024. Such a descriptor does not fit into the
+// fd_set with which libmodbus waits. A link that was created earlier must use its lower descriptor in all
+// later sessions.
 TEST(ModbusTcpLink, DescriptorsAboveTheFdSet) {
   rlimit limit{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &limit), 0);
@@ -620,7 +623,7 @@ TEST(ModbusTcpLink, DescriptorsAboveTheFdSet) {
   ::setrlimit(RLIMIT_NOFILE, &before);
 }
 
-// A timer interrupts every wait of the link. An interruption must neither end the wait early nor restart it.
+// A timer interrupts every wait of the link. An interrupted wait must end neither too early nor too late.
 TEST(ModbusTcpLink, SignalsDoNotMoveTheDeadline) {
   struct sigaction handler {};
   struct sigaction old {};

@@ -1,5 +1,5 @@
 #pragma once
-// Returns the settings of a board that consists of one Modbus module on this computer.
+// Returns the settings of a board that consists of one Modbus module at an address of this computer.
 
 #include <utility>
 

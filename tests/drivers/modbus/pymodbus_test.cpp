@@ -1,5 +1,5 @@
-// Tests the driver with pymodbus, an independent Modbus server that has the registers of an ADAM-6024. The
-// test compares these registers with the values that the driver writes and reads.
+// Tests the driver with pymodbus, an independent Modbus server. The server has the registers of an ADAM-6024.
+// The test compares these registers with the values that the driver writes and reads.
 
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -25,10 +25,10 @@ using Json = nlohmann::json;
 
 constexpr auto generous = 10s;
 
-/// A Python process with the pymodbus server. The test and the process exchange lines of JSON.
+/// A Python process that runs the pymodbus server. The test exchanges lines of JSON with this process.
 class PymodbusBoard {
  public:
-  /// Starts the server. `how` is nullptr for TCP, or "serial" for a serial line.
+  /// Starts the server. `how` is nullptr for a TCP server, and "serial" for a serial server.
   explicit PymodbusBoard(const char* how = nullptr) {
     std::array<int, 2> to{};
     std::array<int, 2> from{};
@@ -71,7 +71,8 @@ class PymodbusBoard {
   void set(const std::string& table, int address, const std::vector<int>& values) {
     ask({{"set", {table, address, values}}});
   }
-  /// Returns table, address and values of every write that the server has received since the last call.
+  /// Returns the table, the address and the values of every write that the server has received since the last
+  /// call.
   Json writes() { return ask({{"writes", true}})["writes"]; }
 
   void kill() {
@@ -129,8 +130,8 @@ class PymodbusTest : public testing::Test {
 };
 
 TEST_F(PymodbusTest, AdamRegistersAreWrittenAndRead) {
-  settings_.modules[0].map.read_back.reset();  // an ADAM shows its outputs as input registers, but in
-                                               // pymodbus these are separate registers
+  settings_.modules[0].map.read_back.reset();  // an ADAM shows its outputs in input registers; pymodbus does
+                                               // not copy them there
   ModbusBoard board(settings_);
   ASSERT_EQ(board.connect(generous), BusStatus::ok) << board.detail();
   EXPECT_EQ(server_.writes(), Json::array()) << "connecting writes nothing";

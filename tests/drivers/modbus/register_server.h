@@ -1,6 +1,6 @@
 #pragma once
-// A correct Modbus server on real sockets, which records the requests. In tests of the driver it simulates
-// the board. It does not use any code of drivers/.
+// A correct Modbus server on real sockets that records all requests. It simulates the board in tests of the
+// driver. It uses no code of drivers/.
 
 #include <cstdint>
 #include <map>
@@ -14,12 +14,13 @@ namespace softgrip::drivers::test {
 
 class RegisterServer {
  public:
-  /// A request that the server has received: function code, address, and the registers or the value to write.
+  /// A request that the server has received: function code, address, and either the number of registers or
+  /// the written value.
   struct Request {
     std::uint8_t function = 0;
     std::uint16_t address = 0;
     std::uint16_t count = 0;          ///< number of registers to read; 0: the request only writes
-    std::uint16_t write_address = 0;  ///< first address to write, for function codes 5, 6, 16 and 23
+    std::uint16_t write_address = 0;  ///< first address to write, with function codes 5, 6, 16 and 23
     std::vector<std::uint16_t> written;
 
     bool operator==(const Request&) const = default;
@@ -36,22 +37,23 @@ class RegisterServer {
   void set_coil(std::uint16_t address, std::uint16_t value);
   [[nodiscard]] std::uint16_t holding(std::uint16_t address);
   [[nodiscard]] std::uint16_t coil(std::uint16_t address);
-  /// If `mirrored` is true, a read of input registers returns the holding registers, as on many boards.
+  /// If `mirrored` is true, a read of input registers returns the holding registers. Many boards do the same.
   void mirror_inputs(bool mirrored);
-  /// From now on, the server responds to requests with this function code with the exception `code`. For
+  /// Makes the server respond to requests with the function code `function` with the exception `code`. With
   /// nullopt, all responses are normal.
   void refuse(std::optional<std::uint8_t> function, std::uint8_t code = 2);
   /// If `ignored` is true, the server confirms writes but does not execute them.
   void ignore_writes(bool ignored);
-  /// Sets a function that is called before each request is executed. The function may change registers,
-  /// because the server holds the lock during the call.
+  /// Sets a function that the server calls before it executes each request. The function may change
+  /// registers, because the server holds the lock during the call.
   void on_request(std::function<void(RegisterServer&, const Request&)> hook);
   /// Delays every response of the server by `duration`.
   void delay(std::chrono::milliseconds duration);
   /// Returns all requests that the server has received since the last call.
   [[nodiscard]] std::vector<Request> take_requests();
 
-  // The register tables. They are public for the functions of on_request(), during which the lock is held.
+  // The register tables. They are public, so that the function of on_request() can change them while the
+  // server holds the lock.
   std::map<std::uint16_t, std::uint16_t> holding_;
   std::map<std::uint16_t, std::uint16_t> input_;
   std::map<std::uint16_t, std::uint16_t> coils_;
@@ -70,8 +72,8 @@ class RegisterServer {
   bool mirrored_ = false;
   std::chrono::milliseconds delay_{0};
   std::function<void(RegisterServer&, const Request&)> hook_;
-  ScriptedServer server_;  // declared last, because its thread uses all other members and must end before
-                           // they are destroyed
+  ScriptedServer server_;  // declared last: its thread uses all other members, so it must end before their
+                           // destruction
 };
 
 }  // namespace softgrip::drivers::test

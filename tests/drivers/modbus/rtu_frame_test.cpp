@@ -28,8 +28,8 @@ ModbusReply parse(const Bytes& bytes, const ModbusRequest& request, std::uint8_t
   return parse_rtu_reply(bytes, request, unit, built(request, unit));
 }
 
-/// Compares computed checksums with those in the Modbus specification (serial line, V1.02, section 6.2.2) and
-/// in the manuals of vendors.
+/// Compares computed checksums with published ones: those in the Modbus specification (serial line, V1.02,
+/// section 6.2.2) and those in the manuals of vendors.
 TEST(RtuFrame, ChecksumsOfOthers) {
   EXPECT_EQ(crc16(Bytes{0x02, 0x07}), 0x1241);
   const std::vector<std::uint16_t> one_milliampere{1000};
@@ -103,8 +103,8 @@ TEST(RtuFrame, NoiseIsNeverAnAnswer) {
     for (std::size_t at = 3; at < noise.size(); ++at) noise[at] = static_cast<std::uint8_t>(random());
     complete += parse(noise, request).state == State::complete ? 1 : 0;
   }
-  // A 16-bit checksum accepts one random frame in 65536, so 3 accepted frames are expected. The probability
-  // of more than 12 is below 1e-4.
+  // A 16-bit checksum accepts one random frame in 65536, so the expected number of accepted frames is 3. The
+  // probability of more than 12 accepted frames is below 1e-4.
   EXPECT_LE(complete, 12) << "seed " << seed;
 }
 

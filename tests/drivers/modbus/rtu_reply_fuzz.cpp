@@ -1,5 +1,6 @@
-// Fuzz target: takes arbitrary bytes as the response on a serial line and parses them one by one. The parser
-// must not accept a response without a correct checksum and must not read beyond the last byte.
+// Fuzz target: receives arbitrary bytes as a response on a serial line and parses the response after each
+// byte. The parser must not accept a response without a correct checksum and must not read beyond the last
+// byte.
 
 #include <array>
 #include <cstdint>

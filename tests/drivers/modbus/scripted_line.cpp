@@ -19,8 +19,8 @@ constexpr int look_ms = 20;
 }  // namespace
 
 Bytes checked(Bytes bytes) {
-  // Compute the checksum bit by bit without a table, so that the algorithm differs from the algorithm of the
-  // driver.
+  // Compute the checksum bit by bit, because the driver uses a table. Two different algorithms do not contain
+  // the same error.
   std::uint32_t crc = 0xffff;
   for (const std::uint8_t byte : bytes) {
     crc ^= byte;

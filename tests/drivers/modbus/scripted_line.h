@@ -1,6 +1,6 @@
 #pragma once
-// A serial module on a pseudo-terminal. The test specifies its response to each request. It uses no code of
-// drivers/, so that an error in drivers/ cannot hide itself.
+// A serial module on a pseudo-terminal. The test specifies its response to each request. The module uses no
+// code of drivers/, because the same error in the module and the driver would remain undetected.
 
 #include <atomic>
 #include <chrono>
@@ -14,17 +14,17 @@ namespace softgrip::drivers::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Returns the bytes with the checksum of a serial frame appended.
+/// Returns the bytes and, after them, the checksum of a serial frame.
 [[nodiscard]] Bytes checked(Bytes bytes);
 
 class ScriptedLine {
  public:
-  /// Function that is called for each request. `index` is the number of the request, from 0. `request`
+  /// Function that sends the response to a request. `index` is the number of the request, from 0. `request`
   /// contains all bytes that arrived before the line was quiet for 3 ms.
   using Handler = std::function<void(ScriptedLine& line, const Bytes& request, std::size_t index)>;
 
-  /// Opens a pseudo-terminal. If `name` is not empty, creates a link with this path to it. Otherwise,
-  /// device() returns its path.
+  /// Opens a pseudo-terminal. If `name` is not empty, creates a link with the path `name` to the
+  /// pseudo-terminal. Otherwise, device() returns the path of the pseudo-terminal.
   explicit ScriptedLine(Handler handler, std::string name = "");
   ScriptedLine(const ScriptedLine&) = delete;
   ScriptedLine& operator=(const ScriptedLine&) = delete;

@@ -1,6 +1,7 @@
 #pragma once
-// A TCP server whose response to each request the test specifies, for example a faulty response. It uses
-// plain sockets and no code of drivers/, so that an error in drivers/ cannot hide itself.
+// A TCP server for tests. The test specifies the response to each request, for example a faulty response. The
+// server uses plain sockets and no code of drivers/, because the same error in the server and the driver
+// would remain undetected.
 
 #include <sys/types.h>
 
@@ -18,15 +19,15 @@ namespace softgrip::drivers::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// The server's end of one TCP session with a client.
+/// The server's end of a TCP session with a client.
 class Peer {
  public:
   Peer(int socket, class ScriptedServer& server) : socket_(socket), server_(server) {}
   void send(const Bytes& bytes);
-  /// Sends the bytes one by one at intervals of `pause`. Ends earlier if the client closes the connection or
-  /// the server is stopped.
+  /// Sends the bytes one by one at intervals of `pause`. Stops early if the client closes the connection or
+  /// the test stops the server.
   void drip(const Bytes& bytes, std::chrono::milliseconds pause);
-  /// Waits for `duration`, or until the server is stopped.
+  /// Waits for `duration`. Returns earlier if the test stops the server.
   void wait(std::chrono::milliseconds duration);
   /// Closes the session in the normal way, with FIN.
   void hang_up();
@@ -42,8 +43,8 @@ class Peer {
 
 class ScriptedServer {
  public:
-  /// Function that is called for each request. `index` is the number of the request, counted from 0 across
-  /// all sessions. `request` is one complete frame.
+  /// Function that sends the response to a request. `index` is the number of the request, counted from 0
+  /// across all sessions. `request` is one complete frame.
   using Handler = std::function<void(Peer& peer, const Bytes& request, std::size_t index)>;
 
   /// Listens on a free port of 127.0.0.1. Serves one session after the other.
@@ -79,9 +80,10 @@ class ScriptedServer {
 [[nodiscard]] std::uint16_t word(const Bytes& bytes, std::size_t at);
 void set_word(Bytes& bytes, std::size_t at, std::uint16_t value);
 
-/// Returns a correct frame with the given PDU. The transaction id and the unit id are copied from `request`.
+/// Returns a correct frame with the given PDU. The transaction id and the unit id are those of `request`.
 [[nodiscard]] Bytes frame_for(const Bytes& request, const Bytes& pdu);
-/// Returns a correct response to a read request, in which register `address` contains value_of(address).
+/// Returns a correct response to a read request. In the response, register `address` contains
+/// value_of(address).
 [[nodiscard]] Bytes registers_reply(const Bytes& request,
                                     const std::function<std::uint16_t(std::uint16_t)>& value_of);
 [[nodiscard]] Bytes exception_reply(const Bytes& request, std::uint8_t code);

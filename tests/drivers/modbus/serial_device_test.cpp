@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 const std::string by_id = "/dev/serial/by-id/usb-1a86_USB_Serial-if00-port0";
 
-/// Tests with a folder that contains /dev and /run with the links that udev creates.
+/// Tests with simulated folders /dev and /run. The folder /run contains the links that udev creates.
 class SerialDevice : public testing::Test {
  protected:
   void plug(const std::string& node, const std::string& number, const std::string& port,
@@ -35,8 +35,7 @@ class SerialDevice : public testing::Test {
   void make_folder_of(const std::string& path) const { fs::create_directories(at(path).parent_path()); }
   void place_link(const std::string& path, const std::string& target) const {
     make_folder_of(path);
-    fs::remove(at(path));  // replace an existing link, because udev gives the link to the device that
-                           // appeared last
+    fs::remove(at(path));  // replace an existing link, as udev does when a second device claims the link
     fs::create_symlink(target, at(path));
   }
 

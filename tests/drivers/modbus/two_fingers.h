@@ -1,5 +1,5 @@
 #pragma once
-// Wiring that most tests use: two fingers on the first terminals of a board.
+// Wiring that most tests of the drivers use: two fingers on the first terminals of a board.
 
 #include <string>
 #include <vector>

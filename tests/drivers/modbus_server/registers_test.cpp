@@ -8,8 +8,8 @@
 namespace softgrip::modbus::registers_test {
 namespace {
 
-/// A register map with holding registers 0 to 3, input registers 10 and 11, and coil 5. Of the holding
-/// registers, 2 and 3 are writable.
+/// A register map with holding registers 0 to 3, input registers 10 and 11, and coil 5. A client may write
+/// only the holding registers 2 and 3.
 constexpr std::array<std::uint8_t, 7> functions{MODBUS_FC_READ_COILS,
                                                 MODBUS_FC_READ_HOLDING_REGISTERS,
                                                 MODBUS_FC_READ_INPUT_REGISTERS,

@@ -21,7 +21,7 @@ TEST(Ageing, GainDriftsWithTheTimeOfTheCampaign) {
   Block weaker = make<Block>({-0.5});
   pass(weaker, Segment<double>::straight(1.0, 0, 10), later);
   EXPECT_NEAR(weaker.output(), 2.5,
-              1e-12);  // below the linear range, the gain factor is -1/(4 x), and here x = -1
+              1e-12);  // below the linear range, the gain factor is -1/(4 x); here x = -1
 }
 
 }  // namespace

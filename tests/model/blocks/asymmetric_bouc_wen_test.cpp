@@ -13,7 +13,7 @@
 namespace softgrip::model::testing::asymmetric_bouc_wen_test {
 namespace {
 
-// Parameters alpha, beta, gamma, eta and exponent of the skewed element.
+// Parameters of the element: alpha, beta, gamma, eta and exponent.
 const std::vector<std::vector<double>> materials{
     {0.35, 0.2, 0.03, 0.05, 1}, {0.35, 0.2, -0.02, 0.05, 1}, {0.211, 0.171, 0.004, 0.006, 2}};
 
@@ -25,7 +25,7 @@ Model skewed(const std::vector<double>& material, double delta_per_kpa, double e
 
 const std::vector<double> turns{40, 12, 33, -15, 8, -3, 60, 0, 25, 0};
 
-// Integrates the published equation with the Runge-Kutta method, with 200 steps per kPa.
+// Integrates the published equation with the Runge-Kutta method and 200 steps per kPa.
 double integrated(const std::vector<double>& v, const BoucWenSkew<double>& skew,
                   const std::vector<double>& turning_points,
                   const std::function<void(double p, double y)>& at) {
@@ -57,7 +57,7 @@ TEST(AsymmetricBoucWen, SkewsTheChainsBoucWenByItsEquation) {
       const double delta = share * std::min(material[3], material[2] + material[3]);
       Chain<double> chain(skewed(material, delta));
       integrated(material, {delta, 0, 0}, turns, [&](double p, double y) {
-        // The equation has a kink at h = 0, where the integration error reaches 2e-5.
+        // The equation has a kink at h = 0. At this kink, the integration error of the test reaches 2e-5.
         ASSERT_NEAR(chain.step(1.0, p), y, 2e-5) << "exponent " << material[4] << " at " << p;
       });
     }
@@ -76,8 +76,8 @@ TEST(AsymmetricBoucWen, LoadingAndUnloadingHaveNumbersOfTheirOwn) {
   }
 }
 
-// The state has saturated in one direction. For all parameter values, it must decrease when the pressure
-// changes its direction.
+// The hysteretic state has saturated in one direction. When the pressure changes its direction, the state
+// must decrease, for all parameter values.
 TEST(AsymmetricBoucWen, NoSkewLetsTheStateGrowOnTheWayBack) {
   for (const std::vector<double>& material : materials) {
     for (const double epsilon : {-5.0, 5.0}) {
@@ -113,7 +113,7 @@ TEST(AsymmetricBoucWen, SkewLeavesNoTraceAtZero) {
   }
 }
 
-// The inverse uses peek(), so peek() must take account of the skew.
+// The inverse of the model uses peek(), so peek() must include the effect of the skew parameters.
 TEST(AsymmetricBoucWen, PeekKnowsOfTheSkew) {
   for (const std::vector<double>& material : materials) {
     Chain<double> chain(skewed(material, -0.7 * material[3], 0.2 * material[3], -0.1));
@@ -127,8 +127,8 @@ TEST(AsymmetricBoucWen, PeekKnowsOfTheSkew) {
   }
 }
 
-// During the first loading, the parameter delta has the same effect as an increase of gamma + eta. Only
-// unloading shows the difference.
+// During the first loading, the parameter delta has the same effect as an increase of gamma + eta. During
+// unloading, the effects differ.
 TEST(AsymmetricBoucWen, FirstLoadingSeesTheSkewAsPartOfTheSum) {
   const std::vector<double> other{0.35, 0.2, 0.02, 0.04, 1};
   Chain<double> a(skewed({0.35, 0.2, 0.03, 0.05, 1}, -0.02));

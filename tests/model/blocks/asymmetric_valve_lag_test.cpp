@@ -42,7 +42,7 @@ TEST(AsymmetricValveLag, IsTheValveLagWhereBothAreAlike) {
 }
 
 TEST(AsymmetricValveLag, MeetsASmallStepIntegrator) {
-  // The reference solution is computed by the explicit midpoint method with steps of 10 us. It uses no
+  // The reference solution is computed by the explicit midpoint method in steps of 10 us, without an
   // exponential function.
   std::mt19937_64 random(22);
   std::uniform_real_distribution<double> pressure(0, 60), duration(0.01, 0.2);

@@ -13,8 +13,8 @@ namespace {
 
 using Block = BoucWen<double>;
 
-// Parameters alpha, beta, gamma, eta and exponent. eta exceeds |gamma|, so a closed hysteresis loop cannot
-// produce energy.
+// Parameters alpha, beta, gamma, eta and exponent. eta exceeds |gamma|, so a closed hysteresis loop never
+// produces energy.
 const std::vector<std::vector<double>> materials{{0.211, 0.171, 0.016, 0.024, 1},
                                                  {0.35, 0.2, -0.02, 0.05, 1},
                                                  {0.211, 0.171, 0.004, 0.006, 2},
@@ -58,8 +58,8 @@ TEST(BoucWen, StepSizeDoesNotMatter) {
 }
 
 TEST(BoucWen, SolvesItsEquation) {
-  // Compares finite differences of the closed-form solution with the equation for dh/dp. Points near a sign
-  // change of h are left out.
+  // Compares finite differences of the closed-form solution with the differential equation for dh/dp. Omits
+  // points near a sign change of h.
   for (const auto& v : materials) {
     Block block = make_material(v);
     double from = 0;
@@ -95,7 +95,7 @@ TEST(BoucWen, StateStaysBounded) {
 }
 
 TEST(BoucWen, ClosedLoopsDissipate) {
-  // The work of the pressure over a settled hysteresis loop is never negative. It is positive if eta is
+  // The pressure never does negative work over a settled hysteresis loop. The work is positive if eta is
   // positive.
   for (const auto& v : materials) {
     Block block = make_material(v);

@@ -15,8 +15,8 @@ TEST(ClockOffset, AStraightMotionIsReadAheadOfTime) {
   EXPECT_NEAR(block.output(), 3 + 5 * (0.02 * 50 + 0.12), 1e-12);
 }
 
-// The block takes the slope of its input at the middle of the last step. So its error is proportional to the
-// step length.
+// The block uses the slope of its input at the middle of the last step. For a parabola, the error is
+// therefore proportional to the step length.
 TEST(ClockOffset, AParabolaIsReadWithAnErrorInProportionToTheStep) {
   constexpr double lead_s = 0.12;
   for (const double step_s : {0.02, 0.01, 0.005}) {

@@ -11,7 +11,8 @@ namespace {
 
 using Block = CrescentHysteresis<double>;
 
-/// Returns half the displacement [mm] between the loading envelope and the unloading envelope.
+/// Returns half the displacement [mm] between the loading envelope and the unloading envelope at one
+/// pressure.
 double half_width(double gain, double bend, double range, double p) {
   const double x = p / range;
   return 0.5 * gain * range * (x - x / (1 + bend * (1 - x)));
@@ -30,8 +31,8 @@ TEST(CrescentHysteresis, RestsBetweenTheEnvelopes) {
   Block block = make<Block>({0.05, 3.0, 50.0});
   double from = 0;
   const double at_30 = move(block, from, 30, 1), at_28 = move(block, from, 28, 1);
-  // Between the two envelopes, the slope of the displacement over the pressure is the mean slope of the
-  // envelopes.
+  // Between the two envelopes, the slope of the displacement over the pressure is the mean of the slopes of
+  // the two envelopes.
   const auto middle = [](double p) { return p / 50 - half_width(1, 3, 50, p) / 50; };
   EXPECT_NEAR(at_28 - at_30, 0.05 * 50 * (middle(30) - middle(28)), 1e-12);
   EXPECT_NEAR(move(block, from, 30, 1), at_30, 1e-12);

@@ -36,8 +36,8 @@ TEST(DuhemHysteresis, NeitherTimeNorStepSizeMatters) {
   }
 }
 
-// Returns a measure of the asymmetry of a settled loop between 10 and 50 kPa. The measure is 0 for a loop
-// with point symmetry.
+// Returns a measure of the asymmetry of a settled loop between 10 and 50 kPa. For a loop with point symmetry,
+// the measure is 0.
 double asymmetry(double unloading_kpa, double loading_kpa) {
   Block block = make<Block>({0.05, unloading_kpa, loading_kpa});
   double from = 0;

@@ -15,14 +15,14 @@ namespace {
 using Block = Leak<double>;
 constexpr double atmosphere_kpa = LineLoss<double>::atmosphere_kpa;
 
-/// Returns the flow of ISO 6358-1, divided by the conductance. The pressures are absolute, and the critical
-/// pressure ratio is 0.5.
+/// Returns the mass flow of ISO 6358-1, divided by the conductance. The arguments are absolute pressures. The
+/// critical pressure ratio is 0.5.
 double flow(double from_kpa, double to_kpa) {
   const double ratio = std::max(to_kpa / from_kpa, 0.5);
   return from_kpa * std::sqrt(1 - std::pow((ratio - 0.5) / 0.5, 2));
 }
 
-/// Returns the gauge pressure at the finger at which inflow and outflow are equal. The pressure is found by
+/// Returns the gauge pressure at the finger at which inflow and outflow are equal. Finds this pressure by
 /// bisection.
 double balanced_kpa(double before_kpa, double conductance_ratio) {
   double low = 0, high = before_kpa;

@@ -21,7 +21,7 @@ TEST(Outliers, AsManyAsTheirProbabilityUpAndDown) {
     down += y == -1.0;
     ASSERT_TRUE(y == 1.0 || y == 3.0 || y == -1.0);
   }
-  EXPECT_NEAR(up, 500, 110);  // the tolerance of the count is 5 standard deviations
+  EXPECT_NEAR(up, 500, 110);  // the tolerance is 5 standard deviations of the count
   EXPECT_NEAR(down, 500, 110);
 }
 

@@ -53,8 +53,8 @@ TEST(PrandtlIshlinskii, ATrainedFingerLoadsAsItWillAgain) {
 }
 
 TEST(PrandtlIshlinskii, ReturnsOnTheSameCurveTwiceAsLarge) {
-  // Masing's rule: after a reversal, the curve is the initial loading curve, scaled by the factor 2 in
-  // pressure and in displacement.
+  // Masing's rule: after a reversal, the curve is the initial loading curve with both pressure and
+  // displacement scaled by the factor 2.
   Block virgin = fresh();
   Block back = fresh();
   back.step(straight(0, 60), {});
@@ -113,7 +113,7 @@ TEST(PrandtlIshlinskii, MeanIsThatOfManySmallSteps) {
 }
 
 TEST(PrandtlIshlinskii, GivesNoEnergyAway) {
-  // The work of the pressure on the displacement over a closed hysteresis loop is never negative.
+  // The pressure never does negative work over a closed hysteresis loop.
   std::mt19937_64 random(13);
   std::uniform_real_distribution<double> pressure(0, 60);
   std::vector<double> bent = operators;
@@ -137,8 +137,8 @@ TEST(PrandtlIshlinskii, GivesNoEnergyAway) {
   }
 }
 
-/// Generalised plays must have the same output as ordinary plays with another input: the envelope function of
-/// the pressure.
+/// Generalised play operators must have the same output as ordinary play operators whose input is the
+/// envelope function of the pressure.
 TEST(PrandtlIshlinskii, BentEnvelopesAreAPressureOfTheirOwn) {
   const double bend = 0.3, skew = -0.15, end_kpa = 50;
   const auto seen_kpa = [&](double p) {

@@ -16,8 +16,8 @@ namespace {
 
 using Block = PressureRegulator<double>;
 
-/// The reference solution. It integrates the equations in steps of 2 us without exponential functions. Its
-/// code for the flow of ISO 6358 is independent of the block.
+/// Computes the reference solution: integrates the equations in steps of 2 us without exponential functions.
+/// Its code for the flow of ISO 6358 is independent of the code of the block.
 class SmallSteps {
  public:
   SmallSteps(double filling_s, double venting_s, double overlap, double integral_s, double full)
@@ -53,8 +53,8 @@ class SmallSteps {
   double integral_ = 0;
 };
 
-/// Compares the block with the reference solution. The inputs are constant between steps, as a board writes
-/// them, or ramps of up to 600 kPa/s.
+/// Compares the block with the reference solution. Some inputs are constant over a step, like the output of a
+/// board. Other inputs are ramps of up to 600 kPa/s.
 TEST(PressureRegulator, MeetsASmallStepIntegrator) {
   std::mt19937_64 random(31);
   std::uniform_real_distribution<double> pressure(0, 60), duration(0.1, 0.4);
@@ -69,8 +69,8 @@ TEST(PressureRegulator, MeetsASmallStepIntegrator) {
     worst = std::max(worst, std::abs(block.output() - referee.pressure_));
     at = to;
   }
-  // The largest error is 0.2 % of the largest jump. It occurs when the integral starts to change within a
-  // step.
+  // The largest error is 0.2 % of the largest jump. This error occurs when the integral starts to change
+  // within a step.
   EXPECT_LT(worst, 0.002 * 62) << "seed 31";
 }
 
@@ -80,8 +80,8 @@ TEST(PressureRegulator, StandsStillWithinItsOverlapUntilTheIntegralHasGrown) {
   pass(block, Segment<double>::straight(0, 20, 20.4));
   pass(block, Segment<double>::straight(0.05, 20.4, 20.4));
   EXPECT_EQ(block.output(), 20);
-  // The control error plus its integral is 0.4 kPa (1 + t / 0.4 s). After 0.1 s this sum reaches the overlap
-  // of 0.5 kPa, and the valve opens.
+  // The control error plus the integral of the control error is 0.4 kPa (1 + t / 0.4 s). After 0.1 s, this
+  // sum reaches the overlap of 0.5 kPa, so the valve opens.
   pass(block, Segment<double>::straight(0.04, 20.4, 20.4));
   EXPECT_EQ(block.output(), 20);
   pass(block, Segment<double>::straight(0.5, 20.4, 20.4));

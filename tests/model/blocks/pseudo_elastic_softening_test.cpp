@@ -18,7 +18,7 @@ TEST(PseudoElasticSoftening, FirstLoadingIsFreeOfIt) {
   EXPECT_EQ(block.largest_kpa(), 40);
 }
 
-// Compares the output of the block with the published formula. The formula gives the input as a function of
+// Compares the output of the block with the published formula. This formula gives the input as a function of
 // the output, so the test needs no iteration.
 TEST(PseudoElasticSoftening, ObeysTheSourcesFormulaBelowTheLargestLoad) {
   Block block = make<Block>({0.01, 10.0});
@@ -38,11 +38,11 @@ TEST(PseudoElasticSoftening, GoesTheSameWayBackAndJoinsTheFirstLoading) {
   EXPECT_NEAR(out[3], out[1], 1e-12);
   EXPECT_NEAR(out[4], 40, 1e-12);
   EXPECT_EQ(out[5], 45);
-  EXPECT_GT(out[6], out[1]);  // the load of 45 has softened the finger more than the load of 40
+  EXPECT_GT(out[6], out[1]);  // the load of 45 kPa has softened the finger more than the load of 40 kPa
 }
 
-// With these parameters, a softening factor on the pressure would decrease faster than the pressure rises. So
-// the output would fall while the pressure rises.
+// With these parameters, a softening factor that multiplies the pressure would decrease faster than the
+// pressure rises. The output would then fall while the pressure rises.
 TEST(PseudoElasticSoftening, RisesWithThePressureWhateverItsNumbers) {
   Block block = make<Block>({0.5, 0.5});
   drive(block, 0, std::vector<double>{50}, 1.0);

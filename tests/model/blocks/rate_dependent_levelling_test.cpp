@@ -21,8 +21,8 @@ struct Move {
 };
 const std::vector<Move> moves{{40, 1}, {40, 0.5}, {12, 0.2}, {33, 3}, {5, 0.1}, {5, 1}, {50, 0.01}, {0, 2}};
 
-// Compares the chain, which uses the rate at the beginning of each step, with an integration of the equation
-// in steps of 10 us.
+// Compares the chain with an integration of the equation in steps of 10 us. In each of its steps, the chain
+// uses the rate at the beginning of the step.
 TEST(RateDependentLevelling, SaturatesTheChainsBoucWenByItsEquation) {
   for (const double saturation : {1.5, -0.6}) {
     Chain<double> chain(saturating(saturation));

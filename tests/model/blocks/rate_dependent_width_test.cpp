@@ -12,8 +12,8 @@
 namespace softgrip::model::testing::rate_dependent_width_test {
 namespace {
 
-// Returns a Bouc-Wen element whose loop becomes wider with the input rate. The second parameter makes its
-// saturation depend on the rate, too.
+// Returns a Bouc-Wen element whose loop becomes wider with the input rate. If `saturation` is not 0, the
+// saturation of the element depends on the rate as well.
 Model widened(double growth, double saturation = 0) {
   Model model{"widened", "test", {BlockSpec{block_type<BoucWen>(), {0.35, 0.2, 0.03, 0.05, 1}}}};
   model = with_block(model, {block_type<RateDependentWidth>(), {growth, 15.0, 0.08}});
@@ -26,7 +26,7 @@ struct Move {
 };
 const std::vector<Move> moves{{40, 1}, {40, 0.5}, {12, 0.2}, {33, 3}, {5, 0.1}, {5, 1}, {50, 0.01}, {0, 2}};
 
-// Compares the chain with an integration of the equations by Heun's method, with steps of 20 us.
+// Compares the chain with an integration of the equations by Heun's method in steps of 20 us.
 TEST(RateDependentWidth, WidensTheChainsBoucWenByItsEquation) {
   Chain<double> chain(widened(0.6));
   double p = 0, h = 0, r = 0;

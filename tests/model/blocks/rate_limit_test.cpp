@@ -17,7 +17,7 @@ namespace {
 using Block = RateLimit<double>;
 
 TEST(RateLimit, RisesAndFallsAtTheStatedRates) {
-  Block block = make<Block>({0.1, 0.25});  // 10 kPa/s up, 4 kPa/s down
+  Block block = make<Block>({0.1, 0.25});  // 10 kPa/s for rising pressure, 4 kPa/s for falling pressure
   pass(block, Segment<double>::straight(0, 0, 8));
   pass(block, Segment<double>::straight(0.5, 8, 8));
   EXPECT_NEAR(block.output(), 5, 1e-12);
@@ -31,7 +31,8 @@ TEST(RateLimit, RisesAndFallsAtTheStatedRates) {
 TEST(RateLimit, DividesTheSegmentInWhichThePressureMeetsTheCommand) {
   Block block = make<Block>({0.1, 0.1});
   pass(block, Segment<double>::straight(0, 0, 6));
-  const auto out = pass(block, Segment<double>::straight(1, 6, 5));  // the gap closes by 11 kPa/s
+  const auto out = pass(block, Segment<double>::straight(1, 6, 5));  // pressure and command approach each
+                                                                     // other at 11 kPa/s
   ASSERT_EQ(out.size(), 2U);
   EXPECT_NEAR(out[0].duration_s, 6.0 / 11, 1e-12);
   EXPECT_NEAR(out[0].end, 60.0 / 11, 1e-12);
@@ -49,7 +50,7 @@ TEST(RateLimit, FollowsAtOnceInADirectionWithoutLimit) {
   EXPECT_NEAR(block.output(), 10, 1e-12);
 }
 
-// The reference moves the output in steps of 10 us towards the command.
+// In steps of 10 us, the reference moves its output towards the command within the rate limits.
 TEST(RateLimit, AgreesWithASmallStepIntegrator) {
   std::mt19937_64 random(23);
   std::uniform_real_distribution<double> pressure(0, 60), duration(0.01, 0.4);
@@ -72,7 +73,8 @@ TEST(RateLimit, AgreesWithASmallStepIntegrator) {
   EXPECT_GT(limited, 50);
 }
 
-// A lag before the rate limit bends its output. The mean of each segment must lie between the ends.
+// The input of the rate limit is curved, like the output of a lag. The mean of each output segment must lie
+// between the values at the ends of the segment.
 TEST(RateLimit, ABentInputGivesMonotoneSegments) {
   std::mt19937_64 random(24);
   std::uniform_real_distribution<double> pressure(0, 60), duration(0.01, 0.4), bend(0.02, 0.98);

@@ -14,7 +14,7 @@ namespace {
 
 using Block = RelaxingFriction<double>;
 
-// Returns the width of the settled loop at 20 kPa. The input is a triangle between 0 and 40 kPa.
+// Returns the width of the settled loop at 20 kPa for a triangular pressure between 0 and 40 kPa.
 double width(double rate_kpa_per_s) {
   Block block = make<Block>({0.03, 10.0, 1.0});
   double from = 0;
@@ -32,10 +32,10 @@ double width(double rate_kpa_per_s) {
 
 TEST(RelaxingFriction, LoopGrowsWithTheRateUpToItsWidth) {
   EXPECT_NEAR(width(0.01), 2 * 0.03 * 0.01,
-              1e-5);  // for a slow input, the friction is viscous, so half the width is gain * tau * rate
+              1e-5);  // for a slow input, the friction is viscous: half the width is gain * tau * rate
   EXPECT_GT(width(10), 2 * width(1.0));
-  // For a fast input, the friction is dry. While the pressure rises from 0 to 40 kPa, the state z goes from
-  // -turn to turn. At 20 kPa, the state is `middle`.
+  // For a fast input, the friction is dry. While the pressure rises from 0 to 40 kPa, the state of the
+  // friction rises from -turn to turn. At 20 kPa, the state is `middle`.
   const double turn = 10 * std::tanh(2.0);
   const double middle = 10 - (10 + turn) * std::exp(-2.0);
   EXPECT_NEAR(width(1e6), 2 * 0.03 * middle, 1e-5);

@@ -32,7 +32,7 @@ double rms(const std::vector<double>& x) {
   return std::sqrt(sum / static_cast<double>(x.size()));
 }
 
-// The standard errors for 100,000 samples: 0.003 for the mean, 0.0022 for the RMS, and 0.003 for a
+// For 100,000 samples, the standard errors are 0.003 for the mean, 0.0022 for the RMS, and 0.003 for a
 // correlation.
 TEST(SensorNoise, HasItsRmsAndIsWhite) {
   const std::vector<double> x = readings({0.05, 0.0}, 7, 100000, 0.001);
@@ -64,7 +64,8 @@ TEST(SensorNoise, SameSeedSameNoiseOtherSeedOtherNoise) {
 }
 
 TEST(SensorNoise, GoldenFirstNumbers) {
-  // The test fails if the random generator changes, because a change would alter the recordings.
+  // The test fails if the output of the random generator changes, because simulated recordings would then
+  // differ from earlier ones.
   const auto x = readings({1.0, 0.0}, 1, 3, 0.01);
   EXPECT_NEAR(x[0], normal_at(1, 0), 0);
   EXPECT_NEAR(uniform_at(1, 0), 0.03401170130434644, 1e-16);

@@ -16,8 +16,8 @@ TEST(StressSoftening, LaterLoadsFindItSofter) {
   Block block = make<Block>({0.01, 0.0});
   const std::vector<double> out = drive(block, 0, std::vector<double>{20, 0, 10, 20, 40, 10}, 1.0);
   EXPECT_NEAR(out[0], 20 * 1.2, 1e-12);
-  EXPECT_NEAR(out[2], 10 * 1.2, 1e-12);  // after the load of 20, the factor stays 1.2; during the first rise
-                                         // it was 1.1 at this pressure
+  EXPECT_NEAR(out[2], 10 * 1.2, 1e-12);  // after the load of 20 kPa, the factor is 1.2; during the first
+                                         // rise, it was 1.1 at 10 kPa
   EXPECT_NEAR(out[3], out[0], 1e-12);
   EXPECT_NEAR(out[4], 40 * 1.4, 1e-12);
   EXPECT_NEAR(out[5], 10 * 1.4, 1e-12);
@@ -44,8 +44,8 @@ TEST(StressSoftening, LevelsOffWithLargerLoads) {
   EXPECT_NEAR(out[0], 20 * (1 + 0.2 / 2), 1e-12);
   EXPECT_NEAR(out[1], 10 * (1 + 0.2 / 2), 1e-12);
   EXPECT_NEAR(out[3], 10 * (1 + 0.4 / 3), 1e-12);
-  // Compares two means of the output over a rise within one sample. The block computes its mean by Simpson's
-  // rule; the test averages 1000 shorter steps.
+  // Compares two means of the output over a pressure rise within one sample. The block computes its mean with
+  // Simpson's rule. The test averages the means of 1000 shorter steps.
   Block once = make<Block>({0.01, 0.05}), often = make<Block>({0.01, 0.05});
   double fine = 0;
   for (int i = 0; i < 1000; ++i)

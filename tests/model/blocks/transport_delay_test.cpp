@@ -13,7 +13,7 @@ namespace {
 
 using Block = TransportDelay<double>;
 
-// Returns the value at time t of a piecewise linear signal with corners at multiples of dt.
+// Returns the value at time t of a piecewise linear signal whose corners are at multiples of dt.
 double between(const std::vector<double>& corners, double dt, double t) {
   if (t <= 0) return corners.front();
   const auto i = static_cast<std::size_t>(t / dt);
@@ -61,8 +61,8 @@ TEST(TransportDelay, PiecesSumToTheSampleAndJoin) {
     ASSERT_NEAR(sum, dt, 1e-12);
     mean_in += 0.5 * (corners[i - 1] + corners[i]) * dt;
   }
-  // The delay line still contains the last part of the input. Zeros are fed into the block until the delay
-  // line is empty.
+  // The delay line still contains the last part of the input. Apply the input 0 until the delay line is
+  // empty.
   for (const Segment<double>& s : pass(block, Segment<double>::straight(0, corners.back(), 0))) {
     mean_out += s.mean * s.duration_s;
   }
@@ -83,8 +83,8 @@ TEST(TransportDelay, AKinkInsideASampleMakesTwoSegments) {
 }
 
 TEST(TransportDelay, OnTheGridASampleStaysOneSegment) {
-  // The delay 0.13 s is 26 steps of 0.005 s, except for a rounding error. This error must not create a very
-  // short segment that splits every following sample.
+  // The delay of 0.13 s is 26 steps of 0.005 s, apart from a rounding error. This rounding error must not
+  // divide every following sample into a very short segment and a long one.
   for (const double delay : {0.13, 0.3, 0.07, 0.005}) {
     Block block = make<Block>({delay});
     for (int i = 0; i < 1000; ++i) {
@@ -95,7 +95,7 @@ TEST(TransportDelay, OnTheGridASampleStaysOneSegment) {
 }
 
 TEST(TransportDelay, AHeldOutputArrivesAsJumps) {
-  // The delay is exactly 3 samples. So the jump must appear at the start of the fourth sample.
+  // The delay is exactly 3 samples, so the jump must appear at the start of the fourth sample.
   for (const double sample_time : {0.0, 0.1}) {
     Block block = make<Block>({0.3}, sample_time);
     std::vector<double> after;

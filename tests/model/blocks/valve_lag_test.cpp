@@ -26,8 +26,8 @@ TEST(ValveLag, StepAndRampResponsesAreTheTextbookOnes) {
 }
 
 TEST(ValveLag, MeanIsExact) {
-  // tau (y1 - y0) = dt (mean(u) - mean(y)) for every input u and output y. Here y0 and y1 are the outputs at
-  // the start and the end of a step dt.
+  // For every input u and output y of a lag, tau (y1 - y0) = dt (mean(u) - mean(y)). Here y0 and y1 are the
+  // outputs at the start and the end of a step of duration dt.
   Block block = make<Block>({0.05});
   double from = 0;
   for (const double to : {5.0, 9.0, 9.0, 2.0, 1.0, 30.0}) {
@@ -46,7 +46,8 @@ TEST(ValveLag, TurnsWhereItMeetsTheInput) {
   const auto out = pass(block, Segment<double>::straight(0.2, 20, 0));
   ASSERT_EQ(out.size(), 2u);
   const double turn = out[0].duration_s;
-  EXPECT_NEAR(out[0].end, 20 - 100 * turn, 1e-12);  // a lag has its maximum where its output equals the input
+  EXPECT_NEAR(out[0].end, 20 - 100 * turn, 1e-12);  // the output of a lag has its maximum where it equals the
+                                                    // input
   EXPECT_GT(out[0].end, out[0].begin);
   EXPECT_LT(out[1].end, out[1].begin);
   // Before and after the maximum, the output is lower than at the maximum.

@@ -52,8 +52,8 @@ TEST(ValveStiction, StaircaseDoesNotDependOnTheStepSize) {
 }
 
 // Compares the block with the usual algorithm, which compares the command with the held value at many sample
-// times. The algorithm detects a jump slightly late and makes the jump slightly too large. So the outputs of
-// the block and the algorithm may differ when the command is close to the threshold of a jump.
+// times. The usual algorithm detects a jump slightly late, and its jump is slightly too large. The two
+// outputs may therefore differ when the command is close to the threshold of a jump.
 TEST(ValveStiction, IsTheHoldAndJumpOfARegulatorThatLooksVeryOften) {
   constexpr double band = 1.7;
   Block block = sticking(band);
@@ -76,8 +76,7 @@ TEST(ValveStiction, IsTheHoldAndJumpOfARegulatorThatLooksVeryOften) {
 TEST(ValveStiction, FollowsWhatIsTooFastToStick) {
   Block block = sticking(2.0);
   const auto out = pass(block, Segment<double>::straight(0.005, 0, 49));
-  ASSERT_EQ(out.size(), 3u);  // the 3 segments are the time until the valve breaks free, the jump, and the
-                              // remaining motion
+  ASSERT_EQ(out.size(), 3u);  // segments: until the valve breaks free, the jump, and the remaining motion
   EXPECT_NEAR(out[0].duration_s, 0.005 * 2 / 49, 1e-15);
   EXPECT_EQ(block.output(), 49);
   const auto on = pass(block, Segment<double>::straight(0.0005, 49, 50));

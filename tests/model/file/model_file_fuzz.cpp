@@ -1,5 +1,5 @@
 // Fuzz target: passes arbitrary bytes to the reader of model files. The reader must refuse the bytes or
-// return a model. A model must stay the same if it is written and read back.
+// return a model. If a returned model is written and read again, the result must equal this model.
 //
 //   scripts/fuzz.sh model_file_fuzz 30
 

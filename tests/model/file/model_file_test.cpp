@@ -26,7 +26,8 @@ Outcome read(const std::string& text) {
   return outcome;
 }
 
-// Returns a random value of any magnitude between the bounds, with all digits.
+// Returns a random value between the bounds. A value that need not be whole has a random magnitude and uses
+// all digits of a double.
 double random_value(const ParameterSpec& spec, std::mt19937& generator) {
   if (spec.whole)
     return std::floor(std::uniform_real_distribution<double>(spec.lower, spec.upper + 1)(generator));
@@ -111,8 +112,8 @@ TEST(ModelFile, PresetsHoldTheNumbersOfTheirSources) {
   EXPECT_EQ(number(twin, "kelvin_voigt.c1_kpa_s_per_mm"), 299.8);
 }
 
-/// Reads a model file. Its actuator has a spring, and its station `station` has the blocks in the text
-/// `block`.
+/// Reads a model file. The actuator of the model has a spring, and the component `station` has the blocks
+/// that the text `block` lists.
 Outcome read_with(const std::string& station, const std::string& block) {
   const std::string spring =
       "actuator:\n  - kelvin_voigt: {k0_kpa_per_mm: 5, k1_kpa_per_mm: 5, c1_kpa_s_per_mm: 5}\n";
@@ -121,15 +122,15 @@ Outcome read_with(const std::string& station, const std::string& block) {
   return read("name: old\nsource: before\n" + spring + station + ":\n" + item);
 }
 
-/// Returns the blocks of the file that read_with() reads. The spring is left out.
+/// Returns the blocks of the model that read_with() reads, without the spring.
 std::vector<BlockSpec> blocks_of(const std::string& station, const std::string& block) {
   const Outcome outcome = read_with(station, block);
   if (!outcome.model) throw std::runtime_error(block + "\n" + outcome.problems.format());
   return without_block<KelvinVoigt>(*outcome.model).blocks;
 }
 
-// These parameters do not exist in the first version of the file format. They are optional, so that older
-// files keep their meaning.
+// The first version of the file format does not have these parameters. They are optional, so that files of
+// the first version have the same meaning as before.
 TEST(ModelFile, LaterParametersMayBeLeftOut) {
   EXPECT_EQ(blocks_of("sensor", "sensor_wander: {wander_sin_mm: 0.1}"),
             (std::vector<BlockSpec>{{block_type<SensorWander>(), {0.1, 0, 300}}}));
@@ -143,7 +144,7 @@ struct Earlier {
   std::vector<BlockSpec> means;
 };
 
-// Some blocks of earlier versions have been divided into several blocks. All of these blocks must belong to
+// Some blocks of earlier versions have been divided into several blocks. The new blocks must all belong to
 // the same component (valve, actuator, load or sensor), because an older file lists the original block under
 // one component.
 TEST(ModelFile, EarlierBlocksBecameBlocksOfOneStation) {
@@ -158,8 +159,8 @@ TEST(ModelFile, EarlierBlocksBecameBlocksOfOneStation) {
   }
 }
 
-// Some blocks of earlier versions contained several mechanisms. The reader converts such a block to the
-// present blocks.
+// Some blocks of earlier versions contained several mechanisms. The reader must convert such a block to the
+// blocks of the present version.
 TEST(ModelFile, EarlierBlocksAreReadIntoWhatTheyBecame) {
   const std::vector<Earlier> files{
       {"valve", "valve_deadband: {band_kpa: 2}", {{block_type<ValveDeadband>(), {2}}}},
@@ -212,8 +213,8 @@ TEST(ModelFile, EarlierBlocksAreReadIntoWhatTheyBecame) {
   for (const Earlier& file : files) EXPECT_EQ(blocks_of(file.station, file.text), file.means) << file.text;
 }
 
-// In earlier versions, ageing added the gains of its two mechanisms. The present blocks multiply the two
-// gains. So a file that uses both mechanisms must be refused.
+// In earlier versions, the block `ageing` added the gains of its two mechanisms. The present blocks multiply
+// the two gains. Therefore the reader must refuse an older file that uses both mechanisms.
 TEST(ModelFile, EarlierBlocksThatMeanSomethingElseTogetherAreRefused) {
   const Outcome outcome = read_with("actuator", "ageing: {gain_per_h: 0.1, run_in: 0.2, run_in_time_s: 40}");
   EXPECT_FALSE(outcome.model);
@@ -347,8 +348,8 @@ TEST(ModelFile, AllErrorsAtOnce) {
       "-5}\n"
       "actuator:\n  - bouc_wen: {alpha_mm_per_kpa: x, beta_mm_per_kpa: 0.1, gamma_per_kpa: 0.1, exponent: "
       "9}\n");
-  // the reader must report an unknown key nam, a missing name, an unknown time_constant, a missing
-  // time_constant_s, and errors of limit, alpha, eta and exponent
+  // The reader must report the unknown keys `nam` and `time_constant` and the missing keys `name` and
+  // `time_constant_s`. It must also report errors of limit, alpha, eta and exponent.
   EXPECT_GE(outcome.problems.size(), 6u) << outcome.problems.format();
   EXPECT_FALSE(outcome.model);
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Writes chain_golden.csv, a solution of the continuous equations with Python and SciPy. It is independent of the C++
-code of the project.
+"""Solves the continuous equations with Python and SciPy and writes chain_golden.csv. The solution is independent of
+the C++ code of the project.
 
 The script intentionally contains its own copy of the signals and parameters, so that it reads nothing from model/ or
 config/. Needs python3-scipy. Usage: ./make_golden.py > chain_golden.csv
@@ -36,8 +36,7 @@ def steps():
 
 
 def integrate(m, corners, times):
-    """Returns the displacement at `times`. The function integrates every linear segment of the delayed command
-    separately."""
+    """Returns the displacement at `times`. Integrates each linear segment of the delayed command separately."""
     corners = [(0.0, 0.0)] + [(t + m["delay"], p) for t, p in corners if t + m["delay"] > 0]
     corners.append((times[-1] + 1, corners[-1][1]))
     state = [0.0, 0.0] + [0.0] * len(m["branches"])

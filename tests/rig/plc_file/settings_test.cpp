@@ -18,7 +18,8 @@ std::string shipped() {
   return text.str();
 }
 
-/// Replaces the text `was` of the shipped file by `is`. Returns the problems of the changed file.
+/// Replaces the text `was` of the shipped file config/plc.yaml by `is`. Returns the problems of the changed
+/// file.
 std::string said_of(const std::string& was, const std::string& is) {
   std::string text = shipped();
   const std::size_t at = text.find(was);

@@ -10,7 +10,8 @@
 namespace softgrip::web::settings_test {
 namespace {
 
-/// Replaces the text `was` of the shipped file by `is`. Returns the problems of the changed file.
+/// Replaces the text `was` of the shipped file config/web.yaml by `is`. Returns the problems of the changed
+/// file.
 std::string said_of(const std::string& was, const std::string& is) {
   std::string text = *read_file(SOFTGRIP_SOURCE_DIR "/config/web.yaml", 65536);
   const std::size_t at = text.find(was);

@@ -1,5 +1,6 @@
-// Tests boards and gateways with unusual behaviour, on real sockets and serial lines. The emulator has the
-// behaviour. The driver can communicate with the emulator only if the key for this behaviour is set.
+// Tests boards and gateways with unusual behaviour, on real sockets and serial lines. The emulator simulates
+// the behaviour. The driver can communicate with the emulator only if the rig file contains the key for this
+// behaviour.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +34,7 @@ RunningRigSettings rig_with(FaultSpec habit) {
   habit.name = "habit";
   RunningRigSettings settings;
   settings.maps = {shipped("softgrip-sim.yaml")};
-  settings.maps[0].watchdog.timeout_s = 60;  // watchdog time-out [s], longer than any pause of a busy machine
+  settings.maps[0].watchdog.timeout_s = 60;  // watchdog time-out [s]: longer than any pause of a busy machine
   settings.maps[0].setup.clear();
   settings.names = {"sim"};
   settings.habits = {std::move(habit)};
@@ -56,8 +57,9 @@ struct Client {
 };
 
 /// The board ignores requests during the first 0.4 s of a connection. A client without a settle time
-/// reconnects after each time-out, so the 0.4 s start again and the board never responds. The settle time
-/// does not delay safe outputs, because the board would ignore every write during this time.
+/// reconnects after each time-out. Each new connection begins with another 0.4 s without responses, so this
+/// client never gets a response. The settle time does not delay safe outputs, because the board would ignore
+/// every write during the 0.4 s.
 TEST(BoardHabits, ABoardThatIgnoresWhatComesFirstIsReachedBehindItsSettleTime) {
   RunningRig rig(rig_with(settling(0.4)));
   ModbusSettings settings = rig.board();
@@ -72,7 +74,8 @@ TEST(BoardHabits, ABoardThatIgnoresWhatComesFirstIsReachedBehindItsSettleTime) {
   }
   std::get<drivers::TcpAddress>(settings.links[0]).habits.settle_s = 0.4;
   Client settled(settings);
-  for (int session = 0; session < 2; ++session) {  // tests the first session and a reconnection
+  for (int session = 0; session < 2; ++session) {  // tests the first session and the session after a
+                                                   // reconnection
     ASSERT_EQ(settled.board.connect(generous), BusStatus::ok) << settled.board.detail();
     ASSERT_EQ(settled.exchange(10 + session), BusStatus::ok) << settled.board.detail();
   }
@@ -92,7 +95,7 @@ TEST(BoardHabits, TheSettleTimeIsPartOfTheDeadlineForConnecting) {
 }
 
 /// If a request is lost, the driver repeats the request within the deadline of the exchange and keeps the
-/// connection. So a lost request does not delay the safe outputs.
+/// connection. A lost request therefore does not delay the safe outputs.
 TEST(BoardHabits, ALostRequestIsRepeatedWithinTheDeadline) {
   FaultSpec habit = fault_of(FaultKind::lost_request);
   habit.replies = 1;
@@ -156,7 +159,7 @@ TEST(BoardHabits, RtuFramesThatAreRepeatedOrWrongEndTheSession) {
   }
 }
 
-/// Tests a serial line, and a serial server that is connected to the network.
+/// Tests a serial line of the computer, and a serial line that is connected through a network server.
 TEST(BoardHabits, StrayBytesAreThrownAway) {
   FaultSpec habit = fault_of(FaultKind::stray_bytes);
   habit.before = 1;
@@ -173,7 +176,7 @@ TEST(BoardHabits, StrayBytesAreThrownAway) {
 }
 
 /// The board has 16 input and 4 output registers. One request may contain at most 4 registers. The driver
-/// must not split a value between two requests, and must assign each input to its channel.
+/// must not divide a value between two requests. It must assign each input to the correct channel.
 TEST(BoardHabits, ABoardThatTakesFewRegistersGetsSeveralRequests) {
   FaultSpec habit = fault_of(FaultKind::few_registers);
   habit.most = 4;

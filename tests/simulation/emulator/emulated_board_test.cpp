@@ -18,7 +18,7 @@ drivers::BoardMap adam() {
   return *map;
 }
 
-/// Returns the Modbus message (PDU) of function 16 that writes both outputs of the ADAM-6024.
+/// Returns the Modbus message (PDU) with function code 16 that writes both outputs of the ADAM-6024.
 Bytes write_outputs(std::uint16_t first, std::uint16_t second_value) {
   Bytes pdu{0x10, 0, 10, 0, 2, 4};
   append_word(pdu, first);

@@ -1,4 +1,5 @@
-// Fuzz target: sends arbitrary bytes, divided into pieces of any size, to the emulator as a client would.
+// Fuzz target: sends arbitrary bytes to the emulator. Like a client, it divides the bytes into pieces of any
+// size.
 //
 //   cmake --preset fuzz && cmake --build --preset fuzz --target emulator_fuzz
 //   build/fuzz/tests/tools/emulator_fuzz -max_total_time=660 -max_len=1024

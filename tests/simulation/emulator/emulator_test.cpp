@@ -21,8 +21,8 @@ FaultSpec fault(std::string name, FaultKind kind) {
   return spec;
 }
 
-/// An emulated ADAM-6024 with two fingers of the model bench_twin without noise, and a client. The client
-/// counts its transactions.
+/// An emulated ADAM-6024 and a client that counts its transactions. The emulator simulates two fingers of the
+/// model bench_twin without noise.
 class EmulatorTest : public testing::Test {
  protected:
   static EmulatorSettings settings(std::vector<FaultSpec> faults = {}) {
@@ -42,7 +42,7 @@ class EmulatorTest : public testing::Test {
   static Reply ask(Emulator& emulator, Nanoseconds now, Bytes pdu, std::uint8_t unit = 1) {
     return emulator.serve(now, {7, unit, std::move(pdu)});
   }
-  /// Commands the same pressure for both valves. Returns true if the board has answered.
+  /// Commands the same pressure for both valves. Returns true if the board has confirmed the command.
   static bool command(Emulator& emulator, Nanoseconds now, double pressure_kpa) {
     const auto raw = static_cast<std::uint16_t>(pressure_kpa / 100 * 4095);
     Bytes pdu{0x10, 0, 10, 0, 2, 4};
@@ -56,7 +56,8 @@ class EmulatorTest : public testing::Test {
     const double volts = word_at(reply.pieces.at(0).bytes, 9) * 20.0 / 65535 - 10;
     return volts / 10 * 50 - 5;
   }
-  /// Sends requests at intervals of at most 0.1 s until the time `until`, so that the watchdog does not trip.
+  /// Sends requests until the time `until`, at intervals of at most 0.1 s, so that the watchdog does not
+  /// trip.
   static void keep_alive(Emulator& emulator, Nanoseconds until) {
     while (emulator.now() < until) {
       (void)ask(emulator, std::min(until, emulator.now() + second / 10), {0x04, 0, 0, 0, 1});

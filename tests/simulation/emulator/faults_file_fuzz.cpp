@@ -1,6 +1,6 @@
 // Fuzz target: passes arbitrary bytes to the reader of the emulator's faults files. The reader must return
-// faults within their bounds, or refuse the bytes with a line and a column. The emulator must be able to
-// schedule all accepted faults.
+// faults within their bounds, or refuse the bytes with a message that states line and column. The emulator
+// must be able to schedule all accepted faults.
 //
 //   scripts/fuzz.sh faults_file_fuzz 30
 

@@ -1,9 +1,9 @@
 // Compares the measured rate of exchanges with the rate that the driver predicts before it connects. The
-// exchanges use a pseudo-terminal whose other end delays the bytes like a real line. If the system permits
-// it, both ends run at real-time priority on one processor, so that the test does not measure the load of the
-// machine. A kernel thread transfers the bytes of a pseudo-terminal. On a busy machine, this transfer took up
-// to 0.7 ms per transaction. Therefore the modules on the fastest line have a response time, like real
-// modules.
+// exchanges use a pseudo-terminal. Its other end delays the bytes like a real serial line. If the system
+// permits it, both ends run at real-time priority on one processor, so that other programs do not change the
+// measured rate. A kernel thread transfers the bytes of a pseudo-terminal. On a busy machine, this transfer
+// took up to 0.7 ms per transaction. Therefore the modules on the fastest line have a response time, like
+// real modules.
 
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -27,7 +27,8 @@ struct Rate {
   int exchanges;
 };
 
-/// While an object of this class exists, this thread and the threads that it starts have real-time priority.
+/// While an object of this class exists, this thread has real-time priority, and so have the threads that it
+/// starts.
 class RealTime {
  public:
   RealTime() {
@@ -84,7 +85,7 @@ TEST_P(LineRate, IsWithinATenthOfTheBudget) {
     ASSERT_EQ(board.exchange(commands, readings, 10s), BusStatus::ok) << board.detail();
     took_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
   }
-  // The test compares the median, because a busy machine delays single exchanges.
+  // The test compares the median of the measured durations, because a busy machine delays single exchanges.
   std::nth_element(took_s.begin(), took_s.begin() + static_cast<std::ptrdiff_t>(took_s.size() / 2),
                    took_s.end());
   const double median_s = took_s[took_s.size() / 2];

@@ -1,5 +1,5 @@
 #pragma once
-// Runs the emulator in a thread of the test. The emulator uses free ports or a pseudo-terminal. The header
+// Runs the emulator in a thread of the test. The emulator uses free ports or a pseudo-terminal. This header
 // also provides the board settings with which a driver connects to the emulator.
 
 #include <string>
@@ -14,15 +14,16 @@ namespace softgrip::simulation::test {
 struct RunningRigSettings {
   std::vector<drivers::BoardMap> maps;  ///< board map of each module
   std::vector<std::string> names;       ///< names of the modules
-  Wire wire = Wire::tcp;                ///< type of connection; on a network, every module is a separate host
+  Wire wire = Wire::tcp;                ///< type of connection; on a network, every module has its own
+                                        ///< address
   drivers::SerialLine line;             ///< settings of a serial line; RunningRig creates its pseudo-terminal
   std::size_t channels = 2;
-  std::vector<FaultSpec> habits{};  ///< unusual behaviour of the board that is present from the start
+  std::vector<FaultSpec> habits{};  ///< unusual behaviour of the board, active from the start
   bool rtu_over_tcp = false;        ///< true: the network connection uses RTU frames
 };
 
-/// An emulated rig with fingers of the model bench_twin without noise. Its wiring is the result of
-/// default_wiring(). On a serial line, the unit addresses of the modules are 1, 2, ...
+/// An emulated rig with fingers of the model bench_twin without noise. default_wiring() determines the
+/// wiring. On a serial line, the modules have the unit addresses 1, 2, ...
 class RunningRig {
  public:
   explicit RunningRig(const RunningRigSettings& settings);
@@ -34,7 +35,7 @@ class RunningRig {
 
   /// Returns the settings with which a driver connects to the emulator.
   [[nodiscard]] const drivers::ModbusSettings& board() const noexcept { return board_; }
-  /// Stops the emulator and returns it. A test may inspect the emulator only after it has stopped.
+  /// Stops the emulator and returns it. A test must not read the state of the emulator before this call.
   const Emulator& stop();
 
  private:

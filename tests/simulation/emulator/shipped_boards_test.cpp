@@ -1,6 +1,6 @@
 // Tests every shipped board map with the driver and the emulator on real sockets and pseudo-terminals. A
-// written pressure must move the finger of the same channel. The driver must detect a trip of the watchdog.
-// The watchdog must stay tripped until a new session resets it.
+// pressure written for one channel must move the finger of this channel. The driver must detect a watchdog
+// trip. The trip must remain until a new session resets it.
 
 #include <gtest/gtest.h>
 
@@ -91,8 +91,8 @@ TEST_P(ShippedBoard, APressureThatIsWrittenMovesTheFingerThatIsRead) {
     const simulation::Plant& plant = truth.fingers()[i].plant();
     EXPECT_EQ(last[i].validity, model::Validity::valid);
     EXPECT_GT(last[i].displacement_mm, at_rest_mm + 5) << "the finger must move by more than 5 mm";
-    // The tolerance is half a step of the coarsest input (12 bits over 50 mm), plus the motion of the finger
-    // since the reading was taken.
+    // The tolerance is half a step of the input with the lowest resolution (12 bits over 50 mm), plus the
+    // motion of the finger since the reading.
     EXPECT_NEAR(last[i].displacement_mm, plant.displacement_mm(), 0.05);
     EXPECT_NEAR(plant.held_command_kpa(), 40, 0.02)
         << "the tolerance is half a step of an output with 12 bits over 100 kPa";

@@ -31,7 +31,7 @@ void settle(Plant& plant, double command_kpa, double seconds) {
   for (int i = 0; i < static_cast<int>(seconds / 0.005); ++i) plant.advance(0.005);
 }
 
-// Without an object, a plant must give exactly the same displacement as its model, bit for bit.
+// Without an object, the displacement of a plant must equal the displacement of its model bit for bit.
 TEST(Plant, WithoutObjectItIsItsModelBitForBit) {
   const unsigned seed = 5;
   std::mt19937 random(seed);
@@ -50,8 +50,7 @@ TEST(Plant, WithoutObjectItIsItsModelBitForBit) {
   EXPECT_GT(plant.displacement_mm(), 1);
 }
 
-// Under a constant command, the displacement does not depend on the time steps with which the plant is
-// advanced.
+// Under a constant command, the displacement must not depend on the lengths of the simulation steps.
 TEST(Plant, AdvancingInPiecesIsTheSame) {
   Plant coarse(settings_of(twin()));
   Plant fine(settings_of(twin()));

@@ -111,8 +111,8 @@ TEST(SimulatedBoard, MovesWhatItIsToldAndReadsItBack) {
   EXPECT_EQ(rig.readings[0].sampled_at, rig.clock.now() - period);
 }
 
-// The board takes the readings of an exchange before the commands of this exchange take effect. So even a
-// finger without latency shows its motion only in the next exchange.
+// In each exchange, the board first takes the readings and then applies the commands. Even a finger without
+// latency therefore shows its motion only in the next exchange.
 TEST(SimulatedBoard, AReadingDoesNotKnowTheCommandOfItsOwnExchange) {
   SimulatedBoardSettings settings = two_twins();
   for (SimulatedChannel& channel : settings.channels) {
@@ -172,7 +172,7 @@ TEST(SimulatedBoard, AnObjectIsPulledOutAtItsTime) {
   EXPECT_NEAR(rig.readings[0].displacement_mm, rig.readings[1].displacement_mm, 1e-9);
 }
 
-// A simulated event must take effect at its own time, even if no exchange happens at this time.
+// A simulated event must take effect at its scheduled time, even if no exchange happens at this time.
 TEST(SimulatedBoard, EventsHappenAtTheirOwnTimeNotAtTheNextExchange) {
   SimulatedBoardSettings settings = two_twins();
   settings.events.push_back(

@@ -30,7 +30,7 @@ TEST(BasePrediction, OfAPressureThatFollowsAtOnceADelayOfHalfASampleIsTheMeanOfT
   for (std::size_t i = 1; i < p.size(); ++i) ASSERT_NEAR(p[i], expected[i], 1e-6) << i;
 }
 
-/// Returns a baseline model in which the filter bank contributes a large part of the prediction.
+/// Returns a baseline model whose filter bank contributes a large part of the prediction.
 Base with_a_large_filter_part() {
   Base base = fit_base(make_records(test::logs_of({}, 1), {}), Judged::displacement, Drive::command, {});
   const Record& record = base.records.front();

@@ -16,8 +16,8 @@ Base base_of(const std::vector<Log>& healthy) {
   return fit_base(make_records(healthy, {}), Judged::displacement, Drive::command, {});
 }
 
-/// Removes the mean of each log from the residual of the baseline model. Returns the RMS [mm] of the result
-/// over all logs.
+/// Subtracts the mean of each log from the residual of the baseline model in this log. Returns the RMS [mm]
+/// of the result over all logs.
 double left_of_mm(const Base& base, const std::vector<Log>& logs) {
   const std::vector<Record> records = make_records(logs, {});
   const std::vector<std::vector<double>> left = residuals_of(base, records);
@@ -33,7 +33,7 @@ double left_of_mm(const Base& base, const std::vector<Log>& logs) {
 }
 
 /// A drift of the sensor zero does not depend on the command. A held-out block and its neighbouring blocks
-/// contain the same drift. The filter bank must not learn the drift from the neighbours.
+/// contain the same drift. The filter bank must not learn this drift from the neighbouring blocks.
 TEST(Base, LeavesOfAnotherDayWhatItLeavesOfHealthyLogsHeldOut) {
   const test::Finger drifting{.drift_mm = 0.1};
   const Base base = base_of(test::logs_of(drifting, 1));
@@ -61,8 +61,8 @@ TEST(Base, WhatAValveDoesIsJudgedInShorterBinsThanAFinger) {
   EXPECT_DOUBLE_EQ(fit_base(behind_it, Judged::displacement, Drive::measured, {}).bin_s, 0.05);
 }
 
-/// Returns the logs with readings of a finger behind a pressure regulator. The response of this regulator is
-/// not a first-order lag.
+/// Returns the logs with the readings of a finger that is connected to a pressure regulator. The response of
+/// this regulator is not a first-order lag.
 std::vector<Log> behind_a_narrow_port(std::vector<Log> logs) {
   const Regulator narrow{
       .play_kpa = 0.3, .dead_kpa = 0.9, .full_kpa = 20, .port_per_s = 0.5, .tube_per_s = 2};

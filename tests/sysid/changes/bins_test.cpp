@@ -16,7 +16,7 @@ std::vector<Record> records() {
 }
 
 TEST(Bins, AverageWhatIsThereAndLeaveHolesWhereNothingIs) {
-  const Record record = records().front();  // sampled at 50 Hz
+  const Record record = records().front();  // the record is sampled at 50 Hz
   std::vector<double> series(record.size(), 1.0);
   series[0] = 3;
   series[5] = series[6] = series[7] = series[8] = series[9] = std::numeric_limits<double>::quiet_NaN();

@@ -27,8 +27,8 @@ double width(const std::optional<Interval>& interval) {
   return interval ? interval->upper - interval->lower : 0;
 }
 
-// Compares the width of the intervals with the scatter of the estimates. Each estimate has a different input
-// and different noise.
+// Compares the width of the intervals with the scatter of the estimates. Each estimate has another input
+// signal and other noise.
 TEST_F(ChangeIntervals, AreAsWideAsTheNumberScattersAndHoldIt) {
   constexpr double delay_s = 0.06;
   constexpr int draws = 30;
@@ -47,8 +47,8 @@ TEST_F(ChangeIntervals, AreAsWideAsTheNumberScattersAndHoldIt) {
   const double scatter = std::sqrt((squares - sum * sum / draws) / (draws - 1));
   RecordProperty("held", held);
   EXPECT_GE(held, 25) << "number of intervals that contain the true delay, of "
-                      << draws;  // with 95 % coverage, fewer than 25 intervals contain the true delay in 1 of
-                                 // 5000 tests
+                      << draws;  // 25 of 30: with 95 % coverage, fewer than 25 intervals contain the true
+                                 // delay in 1 of 5000 tests
   EXPECT_GT(widths, 0.6 * 2 * 1.96 * scatter);
   EXPECT_LT(widths, 2.5 * 2 * 1.96 * scatter);
 }
@@ -65,12 +65,12 @@ TEST_F(ChangeIntervals, AreWiderWhereHealthyUnitsDifferInTheSameNumber) {
   };
   const double alone = width(intervals_of(later, {delay}, {})[0].numbers.at(0));
   const double between = width(intervals_of(later, {delay}, {unit(0.01, 1), unit(0.02, 1)})[0].numbers.at(0));
-  // The delays of the two healthy runs are 0.01 s and 0.02 s. Their mean square is 0.00025 s^2. Multiplied by
-  // 1.5, it is the variance of the difference between one run and the mean of two runs.
+  // The delays of the two healthy runs are 0.01 s and 0.02 s. Their mean square is 0.00025 s^2. The variance
+  // of the difference between one run and the mean of two runs is 1.5 times this mean square.
   const double expected = 2 * 1.96 * std::sqrt(0.00025 * 1.5);
   EXPECT_NEAR(between, std::hypot(alone, expected), 1e-3 * between);
-  // A fit to a healthy run that does not reduce the error says nothing about the differences between runs.
-  // Its interval must be that of the later readings alone.
+  // A fit to a healthy run gives no information about the differences between runs if it does not reduce the
+  // error. In this case, the interval must be that of the later readings alone.
   EXPECT_DOUBLE_EQ(width(intervals_of(later, {delay}, {unit(0.04, -0.1)})[0].numbers.at(0)), alone);
 }
 
@@ -95,7 +95,8 @@ TEST_F(ChangeIntervals, AreWiderBesideAnEffectThatLooksAlike) {
 TEST_F(ChangeIntervals, OfANumberThatNothingShowsThereIsNone) {
   const LaterReadings later = readings({}, 5);
   FittedEffect stop = fitted(later, "pressure_saturation");
-  stop.numbers.at(0) = stop.effect.numbers[0].upper;  // set far above the commanded pressures
+  stop.numbers.at(0) = stop.effect.numbers[0].upper;  // the limit is set far above the commanded pressures,
+                                                      // so it has no effect
   const EffectIntervals intervals = intervals_of(later, {stop}, {}).front();
   EXPECT_FALSE(intervals.numbers.at(0));
   EXPECT_FALSE(intervals.size);

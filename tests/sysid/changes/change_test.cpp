@@ -32,8 +32,8 @@ TEST(Change, AnotherInputAndAnotherZeroAreNoChange) {
   EXPECT_NEAR(d.readings.back().zero_mm, 0.4, 0.03);
 }
 
-/// A payload changes the gain and the zero offset at the same time. If only the gain has changed, payload
-/// must not be an alternative.
+/// A payload changes the gain and the zero offset at the same time. If a change affects the gain but not the
+/// zero offset, payload must not be an alternative.
 TEST(Change, AnotherGainBesideAnotherZeroMayBeAWeight) {
   const auto may_be_a_weight = [](const Finger& later) {
     const ChangeDiagnosis d = changed(later);
@@ -47,8 +47,8 @@ TEST(Change, AnotherGainBesideAnotherZeroMayBeAWeight) {
   EXPECT_FALSE(may_be_a_weight({.gain = 0.2 * 0.95}));
 }
 
-/// Replaces the reading of sample i of the later logs by that of sample `sample(i)`. Returns the diagnosis of
-/// these logs.
+/// In the later logs, replaces the reading of sample i by the reading of sample `sample(i)`. Returns the
+/// diagnosis of the changed logs.
 ChangeDiagnosis read_at(std::size_t (*sample)(std::size_t)) {
   std::vector<Log> later = logs_of({}, 5);
   for (Log& log : later) {
@@ -68,8 +68,8 @@ TEST(Change, AReadingThatIsUpdatedTooRarelyIsSampling) {
   EXPECT_NEAR(d.causes[0].size.value, 0.2, 1e-3);
 }
 
-/// Adds an alternating error during 3 of every 5 s. During the other 2 s, adds single errors that are twice
-/// as large. The single errors are outliers only if the noise is underestimated.
+/// In every period of 5 s, adds an alternating error for 3 s, and single errors that are twice as large for 2
+/// s. The single errors look like outliers only if the noise is underestimated.
 std::vector<Log> humming(std::vector<Log> logs) {
   constexpr std::size_t per_s = 50;
   for (Log& log : logs) {
@@ -125,7 +125,7 @@ TEST(Change, AnotherGainIsAgeingInPercent) {
   EXPECT_EQ(d.causes[0].id, "ageing");
   EXPECT_EQ(d.causes[0].size.unit, "%");
   EXPECT_NEAR(d.causes[0].size.value, 3, 0.4);
-  // The result lists the causes that were compared, and the reason why each rejected cause was rejected.
+  // The result lists the compared causes. For each rejected cause, it states the reason of the rejection.
   const JudgedChange& judged = d.readings.back();
   EXPECT_EQ(judged.healthy_runs, logs_of({}, 1).size());
   EXPECT_GT(judged.healthy_mm, 0);
@@ -156,7 +156,7 @@ TEST(Change, AGainThatFollowsTheTemperatureNeedNotBeWhatItWasOnTheHealthyDay) {
   ASSERT_FALSE(d->causes.empty()) << change_sentence(*d);
   EXPECT_EQ(d->causes[0].id, "thermal_gain");
   EXPECT_EQ(d->causes.size(), 1U);
-  // the change per degree is relative to the gain at 24 degC, the mean temperature of the healthy logs
+  // the change per degree refers to the gain at 24 degC, the mean temperature of the healthy logs
   EXPECT_NEAR(d->causes[0].size.value, 100 * 0.01 / (1 + 0.01 * (24 - 15)), 0.1);
 }
 
@@ -220,8 +220,8 @@ TEST(Change, ASensorThatEndsJustBelowTheLargestReadingIsFound) {
   for (const Log& log : logs_of({}, 5))
     largest_mm =
         std::max(largest_mm, *std::max_element(log.displacement_mm.begin(), log.displacement_mm.end()));
-  // The limit of the sensor is close to the largest reading. The search estimates its first start value from
-  // the error; this value is above all readings.
+  // The limit of the sensor is close to the largest reading. The search computes its first start value from
+  // the error, and this value is above all readings.
   const double end_mm = largest_mm - 0.25;
   const ChangeDiagnosis d = changed({.stop_mm = end_mm});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
@@ -239,9 +239,10 @@ TEST(Change, ALeakIsSeenInThePressureAndNotInTheFinger) {
   EXPECT_EQ(d.causes.size(), 1U);
 }
 
-/// Replaces the pressure of the logs by the pressure behind a simulated regulator. The simulation does not
-/// use the project's equations of a regulator. Beyond a dead zone, the error and its integral open a port to
-/// a chamber. The chamber empties through a narrow tube into the finger, and a leak empties the finger.
+/// Replaces the pressure of the logs by a simulated pressure downstream of a regulator. The simulation does
+/// not use the project's equations of a regulator. Outside a dead zone, the control error and its integral
+/// open a port to a chamber. The chamber empties through a narrow tube into the finger, and the finger
+/// empties through a leak.
 std::vector<Log> behind_a_regulator(std::vector<Log> logs, double tube_per_s, double leak_per_s) {
   std::mt19937 random(static_cast<unsigned>(1000 * leak_per_s + tube_per_s));
   std::normal_distribution<double> noise(0, 0.03);
@@ -269,7 +270,7 @@ std::vector<Log> behind_a_regulator(std::vector<Log> logs, double tube_per_s, do
 }
 
 ChangeDiagnosis changed_behind_a_regulator(double tube_per_s, double leak_per_s) {
-  // Each log must last one minute, because a small leak is not found in shorter logs.
+  // Each log must last one minute, because the diagnosis does not find a small leak in shorter logs.
   const auto d = diagnose_change(behind_a_regulator(logs_of({}, 1, true, 3000), 40, 0),
                                  behind_a_regulator(logs_of({}, 5, true, 3000), tube_per_s, leak_per_s));
   EXPECT_TRUE(d) << d.error();
@@ -282,8 +283,8 @@ TEST(Change, ALeakThatARegulatorMakesUpForIsSeenWhereItsPortsOpen) {
   EXPECT_EQ(d.causes[0].id, "leak");
   EXPECT_EQ(d.causes[0].fitted.effect.form, "leak_past_a_regulator");
   EXPECT_EQ(d.causes.size(), 1U) << change_sentence(d);
-  // The pressure reaches 58 kPa, and the leak loses 20 % of the pressure per second. The simulated leak and
-  // the diagnosis use different laws of flow, so only the order of magnitude can agree.
+  // The pressure reaches 58 kPa, and the leak loses 20 % of the pressure per second. The simulation and the
+  // diagnosis use different flow equations for the leak, so their results can differ by up to a factor of 2.
   EXPECT_GT(d.causes[0].size.value, 0.5 * 0.2 * 58);
   EXPECT_LT(d.causes[0].size.value, 2 * 0.2 * 58);
 }
@@ -393,9 +394,9 @@ TEST(Change, TooLittleIsRefused) {
   EXPECT_FALSE(diagnose_change({}, logs_of({}, 5)));
 }
 
-/// A lag of 0.01 s causes a larger error than the healthy runs have, but the error is below the limit for a
-/// new run. The diagnosis finds the lag if the later run starts like the healthy runs. It does not find the
-/// lag if the later run starts under pressure.
+/// A lag of 0.01 s causes an error that is larger than in the healthy runs but below the limit for a new run.
+/// If the later run starts like the healthy runs, the diagnosis finds the lag. If the later run starts under
+/// pressure, it does not find the lag.
 TEST(Change, AnotherStartNeedsALargerError) {
   const std::vector<Log> healthy{log_of({}, 1), log_of({}, 2), log_of({}, 3)};
   const Log at_rest = log_of({.valve_lag_s = 0.01}, 5);

@@ -1,4 +1,4 @@
-// Runs the commands softgrip baseline and softgrip diagnose --healthy as a user does.
+// Runs the commands softgrip baseline and softgrip diagnose --healthy as a user runs them.
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

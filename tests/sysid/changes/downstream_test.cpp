@@ -63,15 +63,15 @@ TEST(Downstream, IsWhatTheWholeChainShowsBitForBit) {
       whole = model::with_block(std::move(whole), blocks.back());
     }
     if (!is_downstream(blocks, base(), record)) {
-      EXPECT_STREQ(chain.back(), "ageing");  // ageing is not downstream, because it acts before the contact
+      EXPECT_STREQ(chain.back(), "ageing");  // ageing acts before the contact, so it is not downstream
       continue;
     }
     EXPECT_EQ(downstream(blocks, record, plain), walked(whole, record));
   }
 }
 
-// is_downstream() is true for blocks that can be applied directly to the samples of a prediction. For each of
-// these blocks, the result must equal the result of the whole model.
+// is_downstream() returns true if a block can be applied directly to the samples of a prediction. The result
+// for such a block must equal the result of the complete model.
 TEST(Downstream, HoldsForEveryBlockThatSaysSo) {
   const Record record = waving();
   const std::vector<double> plain = walked(base(), record);

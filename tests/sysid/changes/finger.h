@@ -1,6 +1,6 @@
 #pragma once
-// A simulated finger for tests of changes. It does not use the formulas of the models. It has an elastic
-// part, a part with play and a part that creeps, and its valve has no dynamics.
+// A simulated finger for tests of changes. Its equations are not those of the models. The finger has an
+// elastic part, a part with play and a part that creeps. Its valve has no dynamics.
 
 #include <algorithm>
 #include <cmath>
@@ -17,19 +17,19 @@ struct Finger {
   double gain = 0.2;     ///< gain of the finger, mm/kPa
   double stop_mm = 1e9;  ///< largest displacement [mm]
   double zero_mm = 0;
-  double lost_kpa_per_s = 0;  ///< rate at which the pressure falls while the command is constant, up to a
-                              ///< loss of 1.5 kPa
+  double lost_kpa_per_s = 0;  ///< rate of the pressure loss under a constant command [kPa/s], up to a loss of
+                              ///< 1.5 kPa
   double delay_s = 0;
   double valve_lag_s = 0;
   double per_c = 0;  ///< relative change of the gain per degree above 15 degC
   bool with_temperature = false;
-  double bend_per_mm = 0;  ///< stiffens with the displacement; at 12 mm the displacement is unchanged
-  double crescent_mm = 0;  ///< width of a loop that rises along a parabola and falls along a line
-  double drift_mm = 0;     ///< amplitude of a drift of the zero offset with a period of about 15 s
+  double bend_per_mm = 0;  ///< stiffening with the displacement; the displacement of 12 mm does not change
+  double crescent_mm = 0;  ///< width of a loop [mm] that rises along a parabola and falls along a line
+  double drift_mm = 0;     ///< amplitude of a drift of the zero offset [mm] with a period of about 15 s
 };
 
-/// Returns a command of ramps to random pressures, holds, and ramps to 0. `seed` determines the pressures and
-/// the durations.
+/// Returns a command that repeats a ramp to a random pressure, a hold, and a ramp to 0. `seed` determines the
+/// pressures and the durations.
 inline std::vector<double> command_kpa(unsigned seed, std::size_t samples, double rate_hz) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> height(20, 58), time(1.5, 4);

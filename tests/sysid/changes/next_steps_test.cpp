@@ -15,8 +15,8 @@ TEST(NextSteps, EveryCauseHasTwoThingsToDoAndPlainWords) {
   std::vector<std::string_view> ids;
   for (const CauseWithoutBlock& cause : causes_without_block) ids.push_back(cause.id);
   for (const Cause& cause : all_causes()) {
-    // hysteresis_shape can only be the cause of a model error, and pressure_scale is only listed as an
-    // alternative to a leak. So a diagnosis of a change never reports them.
+    // A diagnosis of a change never reports hysteresis_shape or pressure_scale. hysteresis_shape is a cause
+    // of a model error, but not of a change. pressure_scale is listed only as an alternative to a leak.
     if (cause.id != "hysteresis_shape" && cause.id != "pressure_scale") ids.push_back(cause.id);
   }
   for (const std::string_view id : ids) {
@@ -33,7 +33,7 @@ TEST(NextSteps, ASizeThatIsANumberIsOneOfTheCausesBlock) {
   std::size_t numbers = 0;
   for (const Cause& cause : all_causes()) {
     const SizedBy size = sized_by(cause.id);
-    // a leak has its own search, which also computes its size
+    // a leak has a separate search, which also computes its size
     if (size.of != SizedBy::Of::number || cause.id == leak.id) continue;
     ++numbers;
     EXPECT_FALSE(size.unit.empty()) << cause.id;

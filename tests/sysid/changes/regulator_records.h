@@ -1,5 +1,5 @@
 #pragma once
-// Creates records with given commands, for the tests of regulators.
+// Creates records with given commands for the tests of regulators.
 
 #include <cmath>
 #include <vector>

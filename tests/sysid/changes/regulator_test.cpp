@@ -37,8 +37,8 @@ TEST(Regulator, APortThatIsOpenFillsByWhatStandsBeforeIt) {
   const Regulator narrow{.port_per_s = 0.3, .tube_per_s = 30, .spool_lag_s = 0, .chamber_share = 0};
   record.supply_kpa.assign(record.size(), 500.0);
   const std::vector<double> p = regulated(narrow, record, record.drive_kpa);
-  // The flow is choked almost until the end. Per second, the pressure rises by 0.3 times the absolute supply
-  // pressure of 601 kPa.
+  // The flow is choked almost until the end of the rise. The pressure therefore rises at a constant rate: 0.3
+  // per second times the absolute supply pressure of 601 kPa.
   EXPECT_NEAR(p[60] - p[55], 0.05 * 0.3 * 601.3, 0.5);
   record.supply_kpa.assign(record.size(), 300.0);
   EXPECT_NEAR(regulated(narrow, record, record.drive_kpa)[60], 401.3 / 601.3 * p[60], 0.5);
@@ -55,8 +55,8 @@ TEST(Regulator, WhilePortsAreShutALeakEmptiesTheFinger) {
   EXPECT_NEAR(regulated(shut, record, record.drive_kpa).back(), 50, 1e-9);
 }
 
-/// The simulation divides each sample into 50 steps, whether the sample lasts 0.1 s or 1 s. With ten times as
-/// many steps, the result must not change.
+/// The simulation divides a sample into 50 steps, for samples of 0.1 s and of 1 s. A simulation with ten
+/// times as many steps must give the same result.
 TEST(Regulator, SlowSamplesNeedNoFinerSteps) {
   const Record slow = record_of(test::command_kpa(3, 120, 1), 1);
   constexpr std::size_t parts = 10;
@@ -77,8 +77,8 @@ TEST(Regulator, AnswersForALeakWhereItsPortsOpen) {
   const std::vector<double> tight = regulated(regulator, record, record.drive_kpa);
   regulator.leak_per_s = 0.1;
   const std::vector<double> leaking = regulated(regulator, record, record.drive_kpa);
-  EXPECT_NEAR(leaking.back(), tight.back(), 0.3);  // the integral of the controller compensates the leak,
-                                                   // which loses 13 kPa/s
+  EXPECT_NEAR(leaking.back(), tight.back(), 0.3);  // the leak loses 13 kPa/s, but the integral of the
+                                                   // controller compensates it
   EXPECT_LT(leaking[70], tight[70] - 0.2);
 }
 
@@ -151,7 +151,8 @@ TEST(Regulator, AnswersAsAnotherProgramsValveByTheSameStandard) {
       const double far_kpa = rms(record.drive_kpa, p);
       EXPECT_GT(far_kpa, 0.3);
       EXPECT_LT(rms(regulated(regulator, record, record.drive_kpa), p), 0.08 * far_kpa) << leak;
-      // With the small steps of the reference solution, the difference must become small.
+      // If the regulator is simulated with steps as small as those of the reference solution, the difference
+      // must be small.
       constexpr std::size_t parts = 40;
       const Record fine = finer_record(record, parts);
       const std::vector<double> at_all = regulated(regulator, fine, fine.drive_kpa);

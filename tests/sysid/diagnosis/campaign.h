@@ -1,5 +1,5 @@
 #pragma once
-// Records with known commands for tests, and residuals with known properties for these records.
+// Creates records with known commands for tests, and residuals with known properties for these records.
 
 #include <cmath>
 #include <limits>
@@ -11,8 +11,8 @@
 
 namespace softgrip::sysid {
 
-/// Returns records of `logs` logs, each one minute long and sampled at 50 Hz. The commands are triangles with
-/// several amplitudes and rates, with holds and rests.
+/// Returns the records of `logs` logs. Each log is one minute long and sampled at 50 Hz. The commands are
+/// triangles with several amplitudes and rates, with holds and rests.
 inline std::vector<Record> known_campaign(std::size_t logs) {
   std::vector<Record> records;
   double largest = 0;
@@ -60,7 +60,7 @@ inline ByRecord readings_of(const std::vector<Record>& records) {
   return readings;
 }
 
-/// Returns noise with the given standard deviation. `correlation` is the correlation between successive
+/// Returns noise with a given standard deviation. `correlation` is the correlation between successive
 /// samples.
 inline ByRecord noise_for(const std::vector<Record>& records, double deviation, double correlation,
                           std::uint64_t seed) {

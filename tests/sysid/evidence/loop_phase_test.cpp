@@ -14,9 +14,8 @@ struct Signals {
   std::vector<double> command, reading;
 };
 
-/// Returns the signals of a PI controller that keeps the flow behind a valve at 0.
-/// @param band  change of the command that the valve needs to break free and jump.
-/// @param wave  amplitude of a disturbance of the flow.
+/// Returns the signals of a PI controller that keeps the flow through a valve at 0. @param band  change of
+/// the command at which the valve breaks free and jumps. @param wave  amplitude of a disturbance of the flow.
 Signals loop(double band, double wave, double proportional, double integral, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 0.01);
@@ -76,7 +75,7 @@ TEST(LoopPhase, APlannedCommandIsNoLoopHoweverLateTheFingerIs) {
 }
 
 /// The reading follows a random command, so the cross-correlation of the two signals is one-sided. Its odd
-/// part is as large as for a valve with stiction. The test expects that no loop is reported.
+/// part is as large as for a valve with stiction. Nevertheless, no control loop may be reported.
 TEST(LoopPhase, ARandomCommandIsNoLoop) {
   std::mt19937 random(9);
   std::normal_distribution<double> normal(0, 1);

@@ -11,8 +11,8 @@
 namespace softgrip::sysid::descent_test {
 namespace {
 
-/// Rosenbrock's function as the two residuals 10 (y - x^2) and 1 - x. The variables have bounds. The minimum
-/// is 0 at (1, 1).
+/// Rosenbrock's function, written as the two residuals 10 (y - x^2) and 1 - x. The variables have bounds. The
+/// minimum is 0 at (1, 1).
 struct Rosenbrock {
   Eigen::Vector2d lower = Eigen::Vector2d::Constant(-1e9);
   Eigen::Vector2d upper = Eigen::Vector2d::Constant(1e9);
@@ -45,7 +45,8 @@ TEST(Descent, FindsTheMinimumOfRosenbrocksValley) {
 }
 
 TEST(Descent, StaysWithinBoundsAndMovesAlongThem) {
-  // With the bound y <= 0.25, the minimum is where 400 x^3 - 98 x - 2 = 0. This x is close to 0.5.
+  // With the bound y <= 0.25, the minimum is at the x for which 400 x^3 - 98 x - 2 = 0. This x is close to
+  // 0.5.
   Rosenbrock problem;
   problem.upper(1) = 0.25;
   const auto end = descend(problem, Eigen::Vector2d(-0.3, 0.25), {.most_steps = 200, .least_gain = 1e-16});
@@ -95,8 +96,8 @@ TEST(Descent, CountsStepsAndTrials) {
   const auto end = descend(problem, Eigen::Vector2d(-1.2, 1), {.most_steps = 3});
   EXPECT_EQ(end.steps, 3);
   EXPECT_FALSE(end.converged);
-  // The start is the minimum, so no trial step reduces the loss. The loss is computed once for the start and
-  // once for each of the 5 trials.
+  // The start point is the minimum, so no trial step reduces the loss. The loss must be computed once for the
+  // start point and once for each of the 5 trial steps.
   Rosenbrock again;
   const auto none = descend(again, Eigen::Vector2d(1, 1), {.most_trials = 5});
   EXPECT_EQ(none.steps, 0);

@@ -13,8 +13,8 @@
 namespace softgrip::sysid::fit_space_test {
 namespace {
 
-/// The parameters of a nonlinear envelope are fitted again if a cause is added. Linear envelopes have no
-/// parameters to fit.
+/// When a cause is added, the parameters of a nonlinear envelope are fitted a second time. A linear envelope
+/// has no such parameters.
 TEST(IsMovable, OfTheEnvelopesWhereTheyAreBentAlone) {
   for (const double end_kpa : {0.0, 50.0}) {
     const model::Model plays = model::with_block(

@@ -76,8 +76,8 @@ class GradientOf : public ::testing::TestWithParam<Operation> {};
 TEST_P(GradientOf, AgreesWithCentralDifferences) {
   const Operation& operation = GetParam();
   constexpr double x = 0.7, y = 1.9, h = 1e-6;
-  // x depends on parameters 0 and 3 with the slopes 1 and 2. y depends on parameters 1 and 3 with the slopes
-  // 1 and -1.
+  // The value x depends on the parameters 0 and 3 with the slopes 1 and 2. The value y depends on the
+  // parameters 1 and 3 with the slopes 1 and -1.
   Number a = seeded(x, 0, 1), b = seeded(y, 1, 1);
   a.v.set(3, 2);
   b.v.set(3, -1);

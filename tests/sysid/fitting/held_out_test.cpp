@@ -18,7 +18,7 @@ struct Predicted {
       {simulated(twin, SignalName::tp1, 50, 0.05, 1), simulated(twin, SignalName::steps, 50, 0.05, 2)}, {});
   FitPoint point{twin, rest_starts(twin, records)};
 
-  /// Sets the readings to the prediction of the model, and the offset of the start states to `off_mm`.
+  /// Sets the readings to the prediction of the model. The start states have the offset `off_mm`.
   explicit Predicted(double off_mm) {
     for (std::size_t r = 0; r < records.size(); ++r) {
       records[r].reading_mm = predict(twin, records[r], point.starts[r]);
@@ -42,8 +42,8 @@ TEST(HeldOutLosses, OfAModelThatIsOffByAMillimetreAreOneInEveryBlock) {
 TEST(HeldOutLosses, AreThoseOfAFitThatNeverSawTheBlock) {
   const Predicted exact(0);
   const Division division = divide_into_fifths(exact.records);
-  // This "fit" returns the number of readings that it finds in the last block of the second log, as its
-  // offset. If the block is hidden, this number is 0.
+  // This function replaces the fit. It counts the readings of the last block of the second log and returns
+  // this number as the offset. If the block is hidden, the number is 0.
   const Block last = division.blocks.back();
   const BlockLosses losses = held_out_losses(exact.records, division, [&](const std::vector<Record>& rest) {
     double seen = 0;

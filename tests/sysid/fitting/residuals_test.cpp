@@ -43,7 +43,7 @@ Model three_branches() {
   kv.insert(kv.end(), {5.0, 0.5});
   return model;
 }
-/// Returns a model with a negative gamma. While the hysteretic state shrinks, the slope of the hysteresis
+/// Returns a model with a negative gamma. While the hysteretic state decreases, the slope of the hysteresis
 /// exceeds beta.
 Model odd_hysteresis() {
   Model model = loaded("zhang2025");
@@ -102,8 +102,8 @@ std::vector<std::size_t> all_but_the_exponent(const Model& model) {
 
 class BothWays : public ::testing::TestWithParam<World> {};
 
-/// The automatic differentiation of the chain and the closed form are two implementations of the same
-/// equations.
+/// The chain with automatic differentiation and the closed form are two implementations of the same
+/// equations. Their results must agree.
 TEST_P(BothWays, ValuesAndDerivativesAgree) {
   const World& world = GetParam();
   const std::vector<Record> records = records_of(world);
@@ -127,7 +127,7 @@ TEST_P(BothWays, ValuesAndDerivativesAgree) {
   double worst = 0;
   for (std::size_t i = 0; i < rows; ++i) worst = std::max(worst, std::abs(r1[i] - r2[i]));
   // If the output of a lag reverses within a sample, the chain computes the creep with two parabolas. The
-  // closed form uses one parabola.
+  // closed form uses one parabola, so the results differ slightly.
   const bool lagged = model::position_of(world.model, "valve_lag").has_value();
   EXPECT_LT(worst, lagged ? 1e-6 : 1e-9) << "largest difference [mm]";
   for (std::size_t c = 0; c < z.size(); ++c) {
@@ -156,7 +156,8 @@ TEST_P(BothWays, ValuesWithoutDerivativesAreTheSame) {
   }
 }
 
-// The function evaluates records and groups of derivatives in parallel.
+// The function evaluates records and groups of derivatives in parallel. The number of threads must not change
+// the result.
 TEST_P(BothWays, AreBitForBitTheSameOnMoreThreads) {
   const World& world = GetParam();
   const std::vector<Record> records = records_of(world);
@@ -179,7 +180,7 @@ TEST_P(BothWays, AreBitForBitTheSameOnMoreThreads) {
 INSTANTIATE_TEST_SUITE_P(Worlds, BothWays, testing::ValuesIn(worlds()),
                          [](const auto& world) { return world.param.name; });
 
-/// Compares the derivatives with central differences of the model's prediction.
+/// Compares the derivatives with central differences of the prediction of the model.
 TEST(ChainResiduals, DerivativesAreThoseOfTheModel) {
   World world{"TwinUnknownStart", bench_twin(), true, false, true};
   const std::vector<Record> records = records_of(world);
@@ -212,8 +213,8 @@ TEST(ChainResiduals, DerivativesAreThoseOfTheModel) {
   }
 }
 
-/// The measured pressure begins slightly below zero. At such a pressure, the rest position of a soft spring
-/// is far from zero.
+/// The measured pressure begins slightly below zero. At this pressure, the rest position of a soft spring is
+/// far from zero.
 TEST(SeparableResiduals, AgreeWithTheModelWhereABranchHasNextToNoSpring) {
   for (const double stiffness : {1e-3, 1e-9, 1e-14, 0.0}) {
     Model model = loaded("zhang2025");

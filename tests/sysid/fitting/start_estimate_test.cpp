@@ -25,7 +25,7 @@ using model::SignalName;
 
 constexpr double noise_mm = 0.05, rate_hz = 50;
 
-/// Returns a finger with play operators, a dead time, and creep over two decades of time constants.
+/// Returns a finger with play operators and a dead time. Its creep has time constants over two decades.
 model::Model play_finger() {
   model::Model m;
   m.name = "play_finger";
@@ -45,7 +45,7 @@ Record whole(const model::Model& finger, SignalName signal, RecordOptions option
   return make_records({simulated(finger, signal, rate_hz, noise_mm, 11)}, options).front();
 }
 
-/// Returns the samples of a run from sample `first` on as a separate log.
+/// Returns a separate log with the samples of a run from sample `first` on.
 Record cut(const model::Model& finger, SignalName signal, std::size_t first, RecordOptions options = {}) {
   const Log log = simulated(finger, signal, rate_hz, noise_mm, 11);
   return make_records({slice(log, first, log.size())}, options).front();
@@ -55,8 +55,8 @@ double error_mm(const model::Model& finger, const Record& record, const StartSta
   return rms(residual(record, predict(finger, record, start)));
 }
 
-/// Returns sample indices at which a record can be cut. Ten indices have equal distances. The others are the
-/// samples at which the pressure returns to 0 and at least 3 s of the record follow.
+/// Returns the indices of samples at which a record can be cut. Ten of them have equal distances. At the
+/// others, the pressure returns to 0, and at least 3 s of the record follow.
 std::vector<std::size_t> moments_to_cut(const Record& record) {
   constexpr std::size_t cuts = 10;
   std::vector<std::size_t> moments;
@@ -123,8 +123,8 @@ TEST(EstimatedStart, OfARunFromRestIsRest) {
 }
 
 /// The pressure cycles between two values, and the hysteresis of this finger needs many cycles to settle. The
-/// model has an error that any initial state could explain. So the first half cycle of the log does not show
-/// the initial state.
+/// model has an error that a wrong initial state could explain. Therefore the first half cycle of the log
+/// does not suffice to estimate the initial state.
 TEST(EstimatedStart, AnActuatorInItsCycleIsPredictedInItsCycle) {
   model::Model finger;
   finger.name = "slow_to_cycle";
@@ -142,7 +142,7 @@ TEST(EstimatedStart, AnActuatorInItsCycleIsPredictedInItsCycle) {
   }
   Record record = make_records({log}, {}).front();
   log.displacement_mm = predict(finger, record, StartState{});
-  // The log starts at 35 kPa in the thirteenth cycle. The readings have a lag that the model does not have.
+  // The log starts at 35 kPa in the thirteenth cycle. The readings have a lag, but the model has none.
   Log late = slice(log, 4807, log.size());
   double lagging = late.displacement_mm.front();
   for (double& y : late.displacement_mm) y = lagging += 0.2 * (y - lagging);
@@ -154,8 +154,8 @@ TEST(EstimatedStart, AnActuatorInItsCycleIsPredictedInItsCycle) {
   EXPECT_LT(error_mm(finger, record, start), 0.15 * span_mm);
 }
 
-/// Without the delay, the model has an error of at least 1 mm on a ramp. The estimate must not explain this
-/// error by a different start state.
+/// A model without the delay has an error of at least 1 mm on a ramp. The estimate must not explain this
+/// error by another start state.
 TEST(EstimatedStart, AnErrorOfTheModelIsNotTakenForAStart) {
   const model::Model finger = loaded("bench_twin");
   model::Model without_delay = finger;
@@ -173,10 +173,10 @@ TEST(EstimatedStart, OfAKnownRestHasNoHysteresisAndNoCreep) {
   EXPECT_FALSE(is_at_rest(estimated_start(finger, unknown), unknown));
 }
 
-/// A log may be cut at any time, even during a motion or between two cycles. The prediction of the readings
-/// after the cut may then have a larger error than the prediction of the same readings in the complete log.
-/// This increase of the error may be at most 3 % of the span as RMS over all cuts, and at most 8 % for a
-/// single cut. The model is exact, so only the estimated start causes the increase.
+/// A log may be cut at any time, even during a motion or between two cycles. After a cut, the error of the
+/// prediction may be larger than for the same readings in the complete log. The increase may be at most 3 %
+/// of the span as RMS over all cuts, and at most 8 % for a single cut. The model is exact, so the estimated
+/// start state is the only cause of the increase.
 TEST(EstimatedStart, ALogThatIsCutAnywhereIsPredictedNearlyAsWell) {
   for (const model::Model& finger : fingers()) {
     for (const SignalName signal : {SignalName::tp1, SignalName::sp2}) {

@@ -24,16 +24,16 @@ class Healthy {
   double mean_, spread_;
 };
 
-// Two-sided quantiles of Student's t from Abramowitz and Stegun, table 26.10. The values for p = 0.05 and p =
-// 0.001 correspond to the normal values 1.960 and 3.291.
+// Source of the two-sided quantiles of Student's t: Abramowitz and Stegun, table 26.10. The quantiles for p =
+// 0.05 and p = 0.001 correspond to the normal values 1.960 and 3.291.
 TEST(ControlChart, WallacesFormulaTurnsStudentsTIntoANormalValue) {
   EXPECT_NEAR(normal_of_t(2.776, 4), 1.960, 0.02);
   EXPECT_NEAR(normal_of_t(2.228, 10), 1.960, 0.01);
   EXPECT_NEAR(normal_of_t(4.587, 10), 3.291, 0.02);
   EXPECT_NEAR(normal_of_t(-3.646, 30), -3.291, 0.01);
   EXPECT_EQ(normal_of_t(0, 5), 0);
-  // With one degree of freedom, the approximation may give a normal value that is too small, but not one that
-  // is too large.
+  // With one degree of freedom, the normal value of the approximation may be too small, but it must not be
+  // too large.
   EXPECT_LT(normal_of_t(12.706, 1), 1.960);
   EXPECT_LT(normal_of_t(636.6, 1), 3.291);
 }
@@ -82,14 +82,14 @@ TEST(ControlChart, AlarmsAsOftenAsStatedWhereNothingIsWrong) {
     double total = 0;
     constexpr int runs = 1500;
     for (int run = 0; run < runs; ++run) total += length_of_run(healthy, limits);
-    // The mean of nearly geometric run lengths has a standard error of 2.6 %. The rest of the tolerance
-    // covers two effects: the approximations by Siegmund and Wallace, and the small correlation that the
-    // chart estimates although the values are independent.
+    // The run lengths are nearly geometric, so their mean has a standard error of 2.6 %. The rest of the
+    // tolerance covers two effects: the approximations by Siegmund and Wallace, and the small correlation
+    // that the chart estimates for independent values.
     EXPECT_NEAR(total / runs / stated, 1.1, 0.17) << "stated run length " << stated;
   }
 }
 
-// The alarm rate of a chart with few points must not exceed that of a chart with many points.
+// A chart with few points must not have a higher alarm rate than a chart with many points.
 TEST(ControlChart, AlarmsNoMoreOftenInItsYouth) {
   Healthy healthy(23, 0, 1);
   const ChartLimits limits = ChartLimits::for_run_length(20000);
@@ -103,7 +103,7 @@ TEST(ControlChart, AlarmsNoMoreOftenInItsYouth) {
   EXPECT_LT(alarms / (static_cast<double>(charts) * youth / 20000), 1.6);
 }
 
-/// A first-order autoregressive process with standard deviation 1. `persistence` is the correlation of
+/// A first-order autoregressive process with standard deviation 1. `persistence` is the correlation between
 /// successive values.
 class Weather {
  public:
@@ -130,8 +130,8 @@ TEST(ControlChart, FindsHowMuchValuesTakeAfterTheOneBefore) {
   }
 }
 
-// Effects of the weather persist for days. If the chart treated the days as independent, two thirds of the
-// charts would raise a false alarm.
+// Effects of the weather last for days. If the chart treated successive days as independent, two thirds of
+// the charts would raise a false alarm.
 TEST(ControlChart, WeatherThatStaysIsSeldomAnAlarm) {
   const ChartLimits limits = ChartLimits::for_run_length(30000);
   int alarms = 0;
@@ -152,8 +152,8 @@ TEST(ControlChart, FewerFalseAlarmsNeedWiderLimits) {
   EXPECT_NEAR(std::erfc(seldom.single / std::sqrt(2.0)) * 60000, 1, 1e-6);
 }
 
-/// Shifts the values by `spreads` standard deviations. Returns the median number of points from the shift to
-/// the alarm.
+/// Shifts the values by `spreads` standard deviations. Returns the number of points from the shift to the
+/// alarm, as the median over many simulated charts.
 int noticed_after(double spreads, int healthy_points) {
   std::vector<int> delays;
   for (unsigned seed = 0; seed < 101; ++seed) {
@@ -179,8 +179,8 @@ TEST(ControlChart, NoticesWhatIsLargeAtOnceAndWhatStaysSoon) {
   EXPECT_GT(noticed_after(2, 40), noticed_after(4, 40));
 }
 
-/// The chart must not add points of a possible change to its reference. Otherwise the changed values would
-/// have the same weight as the 8 healthy values.
+/// The chart must not add points of a possible change to its reference. The reference has only 8 healthy
+/// values, so the changed values would soon dominate it.
 TEST(ControlChart, NoticesAChangeThatComesSoonAfterTheStart) {
   int noticed = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
@@ -206,7 +206,7 @@ TEST(ControlChart, SaysSinceWhenAndByHowMuch) {
   EXPECT_GT(chart.alarm()->noticed, since);
   for (int i = 0; i < 50; ++i) chart.add({{recipe, healthy() - 0.6}});
   EXPECT_NEAR(chart.alarm()->change, -0.6, 0.1);
-  // The reference must exclude all points since the change began.
+  // The reference must exclude all points after the beginning of the change.
   double usual = 0;
   for (std::size_t i = 0; i < since; ++i) usual += values[i] / static_cast<double>(since);
   EXPECT_NEAR(chart.references().at(recipe).mean(), usual, 1e-12);
@@ -233,7 +233,7 @@ TEST(ControlChart, TakesSomebodyElsesAlarm) {
   EXPECT_FALSE(chart.alarm());
   chart.take_alarm(42);
   EXPECT_EQ(chart.alarm()->since, 42U);
-  chart.take_alarm(43);  // the alarm began before point 43
+  chart.take_alarm(43);  // no effect: the alarm began before point 43
   EXPECT_EQ(chart.alarm()->since, 42U);
   chart.take_alarm(40);
   ASSERT_TRUE(chart.alarm());
@@ -270,8 +270,8 @@ TEST(ControlChart, ARecipeIsComparedWithItselfAlone) {
     chart.add({{far > 0 ? "hand_over" : recipe, far + healthy()}});
   }
   EXPECT_FALSE(chart.alarm());
-  // The values of a new recipe differ greatly from the values of all other recipes. The new recipe gets its
-  // own reference.
+  // The values of a new recipe differ greatly from the values of all other recipes. The new recipe must get a
+  // reference of its own.
   for (int i = 0; i < 10; ++i) chart.add({{"new", 7 + healthy()}});
   EXPECT_FALSE(chart.alarm());
 }

@@ -26,7 +26,7 @@ std::string day_text(int day) {
   return "2026-0" + std::to_string(day / 28 + 1) + "-" + (two.size() < 2 ? "0" : "") + two;
 }
 
-/// A finger with three grips of one recipe per day. From day `from_day` on, `change` is added to its
+/// A finger that performs three grips of one recipe per day. From day `from_day` on, `change` is added to its
 /// indicators.
 struct Life {
   int days = 30;
@@ -74,8 +74,8 @@ FingerHealth judged(const Life& life, const std::vector<Note>& notes = {}) {
   return judge_finger("left", life.runs(), notes, base, {});
 }
 
-// Each finger has 9 charts. The stated rate is one alarm of any chart in 3650 points. So 6.6 alarms are
-// expected for 400 fingers in 60 days.
+// Each finger has 9 charts. The stated rate is one alarm in 3650 points, over all charts of a finger. For 400
+// fingers in 60 days, 6.6 alarms are expected.
 TEST(FingerHealth, OfAHealthyFingerAlarmsNoMoreOftenThanStated) {
   int alarms = 0;
   for (unsigned seed = 1; seed <= 400; ++seed) {
@@ -84,7 +84,7 @@ TEST(FingerHealth, OfAHealthyFingerAlarmsNoMoreOftenThanStated) {
     life.seed = seed;
     alarms += judged(life).state == FingerState::alarm ? 1 : 0;
   }
-  EXPECT_LE(alarms, 14);  // three standard errors above the expected number
+  EXPECT_LE(alarms, 14);  // expected number of alarms plus three standard errors
   EXPECT_GE(alarms, 1);
   RecordProperty("alarms_in_400_lives", alarms);
 }
@@ -139,7 +139,7 @@ TEST(FingerHealth, WhatWasMendedBeginsTheChartsAnew) {
   ASSERT_EQ(health.notes.size(), 1U);
   EXPECT_EQ(health.notes[0].first, 20U);
   EXPECT_NEAR(health.references[0]->mean, 30, 0.2);
-  // A maintenance record of a different finger must have no effect.
+  // A maintenance record of another finger must have no effect on this finger.
   EXPECT_EQ(judged(life, {{day_text(20), "right", "finger replaced"}}).state, FingerState::alarm);
   EXPECT_EQ(judged(life, {{day_text(20), "", "all fingers replaced"}}).state, FingerState::steady);
 }

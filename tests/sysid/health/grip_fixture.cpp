@@ -17,8 +17,8 @@ constexpr double rest_s = 0.5, hold_s = 4, release_s = 0.5, vented_s = 3;
 double command_at(double t, double rise_s) {
   const double down_s = rest_s + rise_s + hold_s;
   if (t < rest_s || t >= down_s + release_s) return 0;
-  // The command rises to half of its maximum, is held, and then rises to its maximum. With a single ramp, lag
-  // and gain could not be separated.
+  // The command rises to half of its maximum, is held, and then rises to its maximum. A single ramp would not
+  // separate the lag from the gain.
   const double risen = (t - rest_s) / rise_s;
   if (risen < 1) return grip_kpa * (risen < 0.3 ? risen / 0.6 : std::max(0.5, 0.5 + (risen - 0.7) / 0.6));
   return t < down_s ? grip_kpa : grip_kpa * (1 - (t - down_s) / release_s);
@@ -55,7 +55,7 @@ Recording grip_of(const GripWorld& world) {
     const double t = log.time_s[i];
     const bool back = t > holding_s + hold_s;
     double y = world.gain * way[i] + (back && way[i] > 0.3 ? world.loop_mm : 0);
-    // The object yields a little. The contact is detected when the displacement is 1 mm below the
+    // The object yields slightly. The contact is detected when the displacement is 1 mm smaller than the
     // displacement of a finger without contact.
     const double into_mm = std::max(0.0, y - world.object_mm);
     if (0.9 * into_mm > 1 && !std::isfinite(touched_s)) touched_s = t;

@@ -29,7 +29,7 @@ TEST(GripScore, OfAHealthyGripSaysThatNothingIsBesideTheBase) {
   EXPECT_NEAR(score[HealthNumber::loop_width], 0, 0.1);
   EXPECT_NEAR(score[HealthNumber::pressure_loss], 0, 0.05);
   EXPECT_NEAR(score[HealthNumber::leak], 0, 0.05);
-  EXPECT_NEAR(score[HealthNumber::contact], 12.15, 0.05);  // the contact is detected after the object has
+  EXPECT_NEAR(score[HealthNumber::contact], 12.15, 0.05);  // at the detection of the contact, the object has
                                                            // yielded by 0.15 mm
   EXPECT_GT(score[HealthNumber::time_to_grip], 2.9);
 }
@@ -91,7 +91,7 @@ TEST(GripScore, WhatARecordingDoesNotCarryIsAbsent) {
   EXPECT_TRUE(std::isnan(empty[HealthNumber::time_to_grip]));
   EXPECT_TRUE(std::isnan(empty[HealthNumber::leak]));
   EXPECT_TRUE(std::isfinite(empty[HealthNumber::gain]));
-  // A motion of 0.5 mm is too small for an estimate of the gain.
+  // The finger moves by 0.5 mm, which is not enough to estimate the gain.
   const GripScore near = scored({.object_mm = 0.5});
   EXPECT_TRUE(std::isnan(near[HealthNumber::gain]));
   EXPECT_TRUE(std::isnan(near[HealthNumber::lag]));

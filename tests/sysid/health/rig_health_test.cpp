@@ -25,15 +25,15 @@ std::string day_text(int day) {
   return "2026-0" + std::to_string(day / 28 + 1) + "-" + (two.size() < 2 ? "0" : "") + two;
 }
 
-/// Two fingers with three grips per day. The weather changes the gain of both fingers with a standard
-/// deviation of `weather_mm`, and persists for days.
+/// Two fingers that perform three grips per day. The weather changes the gain of both fingers with a standard
+/// deviation of `weather_mm`. An effect of the weather lasts for days.
 struct Rig {
   unsigned seed = 1;
   double weather_mm = 0.12;
   bool thermometer = false;
   double uneven = 1;  ///< factor that scales the effect of the weather on the last finger
   std::vector<std::string> names{"left", "right"};
-  /// Returns by how much an indicator has changed on a day, in the unit of the indicator.
+  /// Returns the change of an indicator on a given day, in the unit of the indicator.
   std::function<double(const std::string& finger, HealthNumber number, int day)> becomes =
       [](const std::string&, HealthNumber, int) { return 0.0; };
 
@@ -70,7 +70,8 @@ struct Rig {
   }
 };
 
-/// Returns a rig whose left finger changes on day `from`. From this day on, its gain differs by `by` [mm].
+/// Returns a rig whose left finger changes on day `from`. From this day on, the gain indicator of the left
+/// finger differs by `by` [mm].
 Rig softening(unsigned seed, double by, int from) {
   Rig rig;
   rig.seed = seed;
@@ -86,8 +87,8 @@ std::size_t alarms_of(const RigHealth& rig) {
   return alarms;
 }
 
-// The 200 fingers have 16,000 points, so 4.4 alarms are expected at the stated rate. If a finger is judged
-// without its peer fingers, the weather causes more alarms.
+// The 200 fingers have 16,000 points, so 4.4 alarms are expected at the stated rate. If a finger were judged
+// without its peer fingers, the weather would cause more alarms.
 TEST(RigHealth, WeatherIsNoAlarmOfAFinger) {
   std::size_t together = 0, alone = 0, warm = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
@@ -274,7 +275,7 @@ TEST(RigHealth, WhatTheRigSharesIsASignOfWhatCameWithIt) {
   SharedChange loss{HealthNumber::pressure_loss, 1, since, since, {"left", "right"}, false, true};
   EXPECT_EQ(suspicion_of(judged.fingers[0]).suspects.front().id, "ageing");
   EXPECT_EQ(suspicion_of(judged.fingers[0], {loss}).suspects.front().id, "leak");
-  loss.since = "2026-12-01";  // the pressure loss began after the date of the alarm
+  loss.since = "2026-12-01";  // the pressure loss begins later than the alarm
   EXPECT_EQ(suspicion_of(judged.fingers[0], {loss}).suspects.front().id, "ageing");
   EXPECT_TRUE(suspicion_of(judged.fingers[1], {loss}).suspects.empty());
 }
@@ -289,8 +290,8 @@ TEST(RigHealth, ThePageSaysWhatCouldNotBeAllowedFor) {
 }
 
 TEST(RigHealth, ADifferenceThatHasNoOwnerYetIsNoAlarm) {
-  // The effect of the weather is much larger than the change of the finger. So the values of one finger alone
-  // do not show which finger has changed.
+  // The effect of the weather is much larger than the change of the finger. The values of a single finger
+  // therefore do not show if this finger has changed.
   int unclear = 0;
   for (unsigned seed = 0; seed < 20; ++seed) {
     Rig rig;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double least = 1e-9;
 
-/// Generates values with a temperature dependence of 0.1 per °C and a standard deviation of 0.05.
+/// Generates values that change by 0.1 per °C and have a standard deviation of 0.05.
 class Warm {
  public:
   explicit Warm(unsigned seed) : random_(seed) {}
@@ -44,8 +44,9 @@ TEST(RunningReference, FindsHowTheNumberFollowsTheTemperature) {
   EXPECT_GT(reference.slope()->highest_c, 22);
 }
 
-// Brown, Durbin and Evans: a recursive residual is the deviation of a value from the line through all earlier
-// values. For healthy values, these residuals are independent and have Student's t distribution.
+// Source: Brown, Durbin and Evans. A recursive residual is the deviation of a value from the regression line
+// through all earlier values. For healthy values, these residuals are independent and have Student's t
+// distribution.
 TEST(RunningReference, HealthyValuesThatFollowTheTemperatureBecomeStandardNormalOnes) {
   double sum = 0, squares = 0, products = 0, count = 0;
   for (unsigned seed = 0; seed < 1500; ++seed) {
@@ -53,8 +54,8 @@ TEST(RunningReference, HealthyValuesThatFollowTheTemperatureBecomeStandardNormal
     RunningReference reference = learnt(warm, 12);
     double before = 0;
     for (int i = 0; i < 20; ++i) {
-      // The temperatures of the test stay within the range of the reference. Outside this range, the
-      // reference adds an uncertainty that a linear dependence does not need.
+      // The temperatures of this test stay within the range of the reference. Outside this range, the
+      // reference would add an uncertainty.
       const double temperature_c = 20 + std::sin(i);
       const double value = warm.at(temperature_c);
       if (reference.slope()) {
@@ -83,7 +84,7 @@ TEST(RunningReference, ASlopeThatMayBeChanceIsNone) {
     for (int i = 0; i < 30; ++i) reference.learn(30 + 0.05 * normal(random), 20 + 2 * normal(random));
     found += reference.slope() ? 1 : 0;
   }
-  EXPECT_LE(found, 12);  // 2.7 of 1000 references are expected at the stated rate
+  EXPECT_LE(found, 12);  // at the stated rate, 2.7 of 1000 references are expected
 }
 
 TEST(RunningReference, TemperaturesThatHardlyDifferTellNoSlope) {
@@ -103,8 +104,7 @@ TEST(RunningReference, BeyondTheTemperaturesSeenHalfOfWhatTheLineAddsIsDoubted) 
   const double beyond = 10 * reference.slope()->per_c;
   const double z = reference.judge(reference.expected(far_c) + beyond, least, far_c).value_or(0);
   EXPECT_NEAR(z, 2, 0.05);
-  // At a temperature within the range of the reference, this deviation would be more than 10 standard
-  // deviations.
+  // At 20 °C, which is within the range of the reference, the same deviation exceeds 10 standard deviations.
   EXPECT_GT(reference.judge(reference.expected(20) + beyond, least, 20).value_or(0), 10);
 }
 

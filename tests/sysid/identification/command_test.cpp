@@ -1,5 +1,5 @@
-// Runs softgrip identify and softgrip validate as a user does. Checks exit codes and files, and that a
-// refused command writes no file.
+// Runs softgrip identify and softgrip validate as a user runs them. Checks exit codes and files. Also checks
+// that a refused command writes no file.
 
 #include <algorithm>
 #include <filesystem>
@@ -74,7 +74,8 @@ TEST_F(Command, EveryScoreSaysWhatDrivesTheModel) {
   }
 }
 
-/// A log that is cut between two cycles, where the pressure is 0, only seems to begin at rest.
+/// If a log is cut between two cycles, where the pressure is 0, it seems to begin at rest although the finger
+/// is not at rest.
 TEST_F(Command, BeginDecidesWhatIsEstimatedOfAStart) {
   const Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
   std::size_t first = log.size() / 4;
@@ -140,7 +141,8 @@ TEST_F(Command, WhatALogProbablyDoesNotMeanIsWarnedOf) {
               std::string::npos);
 }
 
-/// Returns the part of the log from the last rest before the highest pressure up to the highest pressure.
+/// Returns a part of the log. The part begins at the last rest before the highest pressure and ends at the
+/// highest pressure.
 Log loading() {
   const Log whole = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
   const std::vector<double>& kpa = whole.pressure_command_kpa;
@@ -150,7 +152,7 @@ Log loading() {
   return slice(whole, begin, end);
 }
 
-/// Returns the lines of an output before its first empty line.
+/// Returns the lines of an output that precede its first empty line.
 std::string first_lines(const std::string& text) {
   return text.substr(0, text.find("\n\n"));
 }
@@ -183,7 +185,8 @@ TEST_F(Command, OutliersAreNamedFirstAndNotFitted) {
   EXPECT_NE(validated["warnings"].dump().find("are outliers, removed"), std::string::npos);
 }
 
-/// The creep of this model has almost no limit. A short log does not show this property, but a long log does.
+/// The creep of this model continues almost without limit. A long log shows this property, but a short log
+/// does not.
 TEST_F(Command, APredictionThatDivergesIsNotAcceptable) {
   write_log("tp1.csv", model::SignalName::tp1);
   write("loading.csv", format_log(loading()));
@@ -203,8 +206,7 @@ TEST_F(Command, APredictionThatDivergesIsNotAcceptable) {
       << read("out.txt");
 }
 
-/// The reading 9999 is a wrong reading. It is larger than any displacement in mm, but the unit of the column
-/// is correct.
+/// The reading 9999 is wrong: it exceeds any displacement in mm. The unit of the column is correct.
 TEST_F(Command, ALargeCodeIsNoUnit) {
   Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
   log.displacement_mm[30] = log.displacement_mm[50] = 9999;

@@ -25,8 +25,8 @@ const Estimate& find(const std::vector<Estimate>& list, std::string_view name) {
   throw std::runtime_error("no estimate " + std::string(name));
 }
 
-/// Compares each parameter combination of the true model with its interval. The difference must be below
-/// `widths` half-widths of the interval.
+/// Compares each parameter combination of the true model with its confidence interval. The difference to the
+/// estimate must be below `widths` half-widths of the interval.
 void expect_truth(const Identification& result, const Model& truth, double widths) {
   for (const Combination& c : combinations_of(truth)) {
     const Estimate& e = find(result.combinations, c.name);
@@ -91,8 +91,8 @@ TEST(Identify, WithoutLatencyTheTwinLooksNotInvertible) {
                           [](const std::string& w) { return w.find("latency") != std::string::npos; }));
 }
 
-/// The logs come from a program with another integration method and another step. The program shares no code
-/// with the models.
+/// A program with another integration method and another time step has simulated the logs. The program shares
+/// no code with the models.
 TEST(Identify, FindsWhatAnIndependentIntegratorSimulated) {
   const IntegratedFinger finger;
   const std::vector<Log> logs{integrated(finger, SignalName::tp1, 50, 0.05, 21),
@@ -168,8 +168,8 @@ TEST(Identify, AParameterThatDoesNotExistIsRefused) {
   EXPECT_NE(result.error().find("bouc_wen.delta"), std::string::npos);
 }
 
-/// The log begins in the middle of a run. The states of hysteresis and creep and the offset of the sensor
-/// zero are unknown at its start.
+/// The log begins in the middle of a run. At its start, the states of hysteresis and creep and the offset of
+/// the sensor zero are unknown.
 TEST(Identify, EstimatesTheStateInWhichALogBegins) {
   const Model truth = loaded("zhang2025");
   std::vector<Log> logs;
@@ -248,8 +248,8 @@ TEST(Identify, AsManyBranchesAsAskedFor) {
   EXPECT_NEAR(time_constants[1], 1.5, 0.1);
 }
 
-/// A model with a contact has no closed form, so it is fitted with automatic differentiation. The fit must
-/// find the contact.
+/// A model with a contact has no closed form, so the fit uses automatic differentiation. The fit must find
+/// the contact.
 TEST(Identify, AnyBlockCanBeFitted) {
   Model truth = loaded("zhang2025");
   model::BlockSpec contact = model::default_block(*model::find_block("contact"));
@@ -292,7 +292,7 @@ TEST(Identify, WhatIsHeldOutIsNotFitted) {
   ASSERT_TRUE(result);
   EXPECT_NEAR(result->rmse_mm, 0.05, 0.02 * 0.05);
   ASSERT_EQ(result->held_out.size(), 2U);
-  // The last 30 % of the log are held out. The last 25 % of the log contain an error of 4 mm.
+  // The last 30 % of the log are held out. An error of 4 mm is added to the last 25 % of the log.
   EXPECT_NEAR(result->held_out[0].rmse_mm, 4 * std::sqrt(25.0 / 30), 0.1);
 }
 
@@ -337,8 +337,8 @@ TEST(Identify, ProfilesAgreeWithIntervalsWhereTheDataAreStrong) {
   }
 }
 
-/// A short version of bench/sysid_coverage. Fits models with random true parameters to data with white and
-/// correlated noise. Counts how often the interval contains the true value.
+/// A short version of bench/sysid_coverage. Simulates data with random true parameters and with white and
+/// correlated noise. Fits models to these data. Counts how often the interval contains the true value.
 TEST(Identify, IntervalsHoldTheTruthAsOftenAsTheySay) {
   std::size_t inside = 0;
   std::size_t trials = 0;

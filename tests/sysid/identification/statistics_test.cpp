@@ -47,7 +47,7 @@ TEST(NoiseModel, GapsAndSeveralSeriesDoNotMix) {
   EXPECT_NEAR(fit_noise(autocovariance_of({first, second})).lag1_correlation, 0.8, 0.02);
 }
 
-/// Compares the result of the function with a search on a fine grid.
+/// Compares the result with the result of a search on a fine grid.
 TEST(BoundedSolve, FindsTheConstrainedMinimum) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
@@ -120,7 +120,8 @@ TEST(Score, AnotherUnitIsNoDivergence) {
     return score.diverges;
   };
   for (const double factor : {1.0, -1.0, 1e-3, 0.1, 1e3}) EXPECT_FALSE(diverges_at(factor, 0)) << factor;
-  EXPECT_TRUE(diverges_at(0, 0.1));  // the readings alternate and do not follow the command
+  EXPECT_TRUE(diverges_at(0, 0.1));  // the model diverges: its readings alternate and do not follow the
+                                     // command
 }
 
 TEST(Validate, EstimatesOnlyWhatTheLogLeavesOpen) {

@@ -11,8 +11,8 @@
 namespace softgrip::sysid::clock_test {
 namespace {
 
-/// Returns 500 times of a clock that starts at `begin`, advances by `step`, and jumps back by `period` when
-/// it reaches `limit`.
+/// Returns 500 times of a clock. The clock starts at `begin` and advances by `step`. When it reaches `limit`,
+/// it jumps back by `period`.
 std::vector<double> counter(double begin, double step, double limit, double period) {
   std::vector<double> values;
   for (int i = 0; i < 500; ++i) {

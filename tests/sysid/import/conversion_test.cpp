@@ -12,8 +12,8 @@
 namespace softgrip::sysid::conversion_test {
 namespace {
 
-/// Returns a table of 200 samples in which the command rises and falls twice. `row` returns one line of the
-/// table.
+/// Returns a table of 200 samples in which the command rises and falls twice. `row` is a function that
+/// returns one line of the table.
 template <class Row>
 std::string text_of(const std::string& header, Row row) {
   std::string text = header + "\n";
@@ -254,13 +254,13 @@ TEST(Convert, LinesThatAreLeftOutHaveAFateBesideTwoTimes) {
   const auto result = convert(*table, propose(*table, mapping, true).mapping, problems);
   ASSERT_TRUE(result) << problems.format();
   EXPECT_TRUE(result->account.balanced());
-  // Each row of the table has two times, so a row that is left out counts twice. The line with the wrong
-  // number of cells counts once.
+  // Each row of the table has two times, so an omitted row counts twice. The line with the wrong number of
+  // cells counts once.
   EXPECT_EQ(result->account.left_out[static_cast<std::size_t>(LeftOut::bad_line)], 3U);
 }
 
-/// Returns the note about a clock overflow that the import prints. @param broken  index of a row with a cell
-/// that is not a number, or -1.
+/// Returns the note about a clock overflow that the import prints. @param broken  index of a row that gets a
+/// cell that is not a number, or -1.
 std::string note_of_overflow(int broken) {
   const std::string text = text_of("t_ms,set_kpa,tip_mm", [broken](int i, double p, double y) {
     return std::to_string((i * 10 + 65000) % 65536) + "," + shortest(p) + "," +

@@ -69,7 +69,8 @@ TEST(ForeignFile, BrokenBinariesAreRefusedAndMissingOnesUnreadable) {
   EXPECT_TRUE(unreadable);
 }
 
-/// The file is a named pipe. If the function waited for a writer of the pipe, this test would not end.
+/// The file is a named pipe, which the function must refuse. If the function waited for a writer of the pipe,
+/// this test would never end.
 TEST(ForeignFile, APipeIsUnreadableAndNotWaitedFor) {
   const ScratchFolder scratch;
   const std::string pipe = scratch.path() + "/log.csv";

@@ -1,5 +1,5 @@
-// Generates files in many dialects, with different clocks and with damage. The import must state what it did
-// with each row, column and option.
+// Generates files in many dialects, with different clocks and with damage. The import must report the use of
+// each row, column and option.
 
 #include <gtest/gtest.h>
 
@@ -70,11 +70,11 @@ struct Generated {
   std::size_t rows = 0;
   std::map<LeftOut, std::size_t> left_out;
   std::size_t joined = 0;
-  std::map<std::int64_t, double> readings;  ///< readings by time [ms]; the log must have a reading at each of
-                                            ///< these times
+  std::map<std::int64_t, double> readings;  ///< expected readings by time [ms]; the log must have a reading
+                                            ///< at each of these times
   std::map<std::int64_t, double> commands;  ///< commands of the file by time [ms]
   std::vector<std::string> unused;
-  std::vector<std::string> second_times;  ///< unused columns that look like a time
+  std::vector<std::string> second_times;  ///< unused columns whose values look like times
   std::vector<std::string> idle;
 };
 
@@ -242,8 +242,8 @@ void check_rows(const Generated& file, const ImportedLog& result) {
   EXPECT_EQ(sum, file.rows);
 }
 
-/// Checks that the log has every value of the file at the correct time, apart from the values that the import
-/// counts as left out.
+/// Checks that the log has every value of the file at the correct time. Exceptions are the values that the
+/// import reports as omitted.
 void check_values(const Generated& file, const Log& log) {
   std::size_t readings = 0;
   double held = 0;
@@ -285,7 +285,7 @@ TEST(ImportAccount, EachRowColumnAndOptionOfGeneratedFilesHasAFate) {
   }
 }
 
-/// If the import cannot read a time with certainty, it must refuse the file and name the line. It must not
+/// If the import cannot read a time with certainty, it must refuse the file and state the line. It must not
 /// return a shorter log.
 TEST(ImportAccount, AClockThatIsSetBackIsRefused) {
   for (unsigned seed = 0; seed < 50; ++seed) {

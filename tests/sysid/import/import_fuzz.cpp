@@ -1,6 +1,6 @@
 // Fuzz target: passes arbitrary bytes to the readers of external text tables, workbooks, LabVIEW files and
-// MCAP files. A reader must refuse the bytes or return a table. The proposed column mapping of a table can be
-// written as options and as a mapping file. A converted table must be a valid log.
+// MCAP files. A reader must refuse the bytes or return a table. It must be possible to write the proposed
+// column mapping of a returned table as options and as a mapping file. A converted table must be a valid log.
 //
 //   scripts/fuzz.sh import_fuzz 30
 

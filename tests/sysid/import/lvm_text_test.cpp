@@ -75,7 +75,7 @@ TEST(Lvm, WhatDiffersOrIsCutOffIsNamed) {
   EXPECT_FALSE(is_lvm("LabVIEW Measurement\nx\n"));
 }
 
-/// A LabVIEW text file has the same limits on rows and size as every other text file.
+/// The limits on rows and file size are the same for a LabVIEW text file and for every other text file.
 TEST(Lvm, HasTheBoundsOfAText) {
   document::Problems problems;
   const std::string bytes = header("One") + section("12:00:00,0", "0\t1\t2\n1\t3\t4\n");

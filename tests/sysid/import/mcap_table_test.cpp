@@ -172,7 +172,7 @@ TEST(McapTable, RefusesWhatItCannotRead) {
   EXPECT_TRUE(says(refusal(whole(topic(1, "/left") + message(1, 0, keys + "}"))), "more than 10000 keys"));
 }
 
-/// If bytes are truncated or changed, the reader must refuse them or return a table.
+/// If bytes of the file are missing or changed, the reader must refuse the file or return a table.
 TEST(McapTable, SurvivesDamage) {
   const std::string good = whole(two_fingers() + chunk(two_fingers()));
   std::mt19937 random(11);

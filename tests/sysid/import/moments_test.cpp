@@ -11,7 +11,7 @@ double seconds_of(const char* text) {
 }
 
 TEST(Moments, AreSecondsSince1970) {
-  // the output of `date -u -d 2024-05-31T12:00:00Z +%s`
+  // output of the command `date -u -d 2024-05-31T12:00:00Z +%s`
   EXPECT_DOUBLE_EQ(seconds_of("2024-05-31T12:00:00Z"), 1717156800);
   EXPECT_DOUBLE_EQ(seconds_of("2024-05-31 12:00:00"), 1717156800);
   EXPECT_DOUBLE_EQ(seconds_of("2024-05-31T14:00:00+02:00"), 1717156800);

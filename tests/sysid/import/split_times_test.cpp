@@ -14,8 +14,8 @@ TableColumn column(const std::string& name, std::vector<double> values) {
   return made;
 }
 
-/// Returns the sum of two columns [s] if they are the parts of one time, otherwise the values of the first
-/// column alone.
+/// If the two columns are the parts of one time, returns their sum [s]. Otherwise returns the values of the
+/// first column.
 std::vector<double> combined(const TableColumn& seconds, const TableColumn& rest, bool& is_one_time) {
   std::vector<TableColumn> columns{rest, seconds};
   std::vector<std::string> notes;

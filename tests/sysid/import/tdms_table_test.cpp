@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-// tests/system/foreign_files.py writes complete files of this format in its different layouts.
+// tests/system/foreign_files.py writes complete TDMS files in different layouts. This file tests single
+// segments.
 namespace softgrip::sysid::tdms_table_test {
 namespace {
 
@@ -28,7 +29,7 @@ std::string segment(std::uint32_t flags, const std::string& metadata, const std:
          bytes_of(static_cast<std::uint64_t>(metadata.size())) + metadata + raw;
 }
 
-/// Returns the metadata of a channel that has `count` values and no properties.
+/// Returns the metadata of a channel. The channel has `count` values and no properties.
 std::string channel(const std::string& path, std::uint32_t type, std::uint64_t count) {
   return text_of(path) + bytes_of(std::uint32_t{20}) + bytes_of(type) + bytes_of(std::uint32_t{1}) +
          bytes_of(count) + bytes_of(std::uint32_t{0});
@@ -67,7 +68,8 @@ TEST(TdmsTable, ReadsNumbersByTheirTypes) {
 }
 
 TEST(TdmsTable, MetadataHoldsUntilItChanges) {
-  // The second segment has no metadata. The third segment only changes the number of values of one channel.
+  // The second segment has no metadata. The third segment changes the number of values of one channel. All
+  // other metadata stay unchanged.
   const std::string values =
       bytes_of(3.5) + bytes_of(4.5) + bytes_of(std::int32_t{9}) + bytes_of(std::int32_t{10});
   const std::string change =
@@ -80,7 +82,7 @@ TEST(TdmsTable, MetadataHoldsUntilItChanges) {
   EXPECT_EQ(table.columns[1].values, (std::vector<double>{-7, 8, 9, 10, 11}));
 }
 
-/// If the metadata of a segment has no new channel list, it changes the channels that it names. All other
+/// The metadata of a segment without a new channel list change the channels that they name. All other
 /// channels keep their metadata.
 TEST(TdmsTable, ChangedMetadataKeepsTheOtherChannels) {
   const auto more = [](std::uint64_t count, double first, std::int32_t second) {
@@ -104,8 +106,8 @@ TEST(TdmsTable, RefusesWhatItCannotRead) {
   EXPECT_NE(refusal(segment(2 | 4, number_of_objects(5), "")).find("broken metadata"), std::string::npos);
 }
 
-/// A program that is stopped leaves an incomplete last segment. The earlier segments are complete and must be
-/// read.
+/// A program that is stopped leaves an incomplete last segment. The reader must read the complete segments
+/// before it.
 TEST(TdmsTable, KeepsTheCompleteSegmentsOfAFileThatIsCutOff) {
   const std::string good = two_channels();
   const std::string metadata =
@@ -121,7 +123,8 @@ TEST(TdmsTable, KeepsTheCompleteSegmentsOfAFileThatIsCutOff) {
                                 (bytes < 28 ? "first bytes" : "metadata") + ": its " + std::to_string(bytes) +
                                 " bytes are left out");
   }
-  // The file ends after the first of 2 values of the first channel. So both rows of this segment are lost.
+  // The file ends after the first of the 2 values of the first channel. Both rows of this segment are
+  // therefore lost.
   const ForeignTable blocks = cut_at(28 + metadata.size() + 12);
   EXPECT_EQ(blocks.columns[1].values, (std::vector<double>{-7, 8}));
   EXPECT_EQ(notes(blocks), "incomplete rows or blocks of values are left out: 12 bytes");
@@ -159,7 +162,7 @@ TEST(TdmsTable, RefusesMoreValuesThanTheLimit) {
             std::string::npos);
 }
 
-/// If bytes are truncated or changed, the reader must refuse them or return a table.
+/// If bytes of the file are missing or changed, the reader must refuse the file or return a table.
 TEST(TdmsTable, SurvivesDamage) {
   const std::string good = two_channels() + two_channels();
   std::mt19937 random(5);

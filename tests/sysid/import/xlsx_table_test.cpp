@@ -17,7 +17,7 @@
 #include "sysid/import/workbook_sheet.h"
 #include "sysid/import/workbook_xml.h"
 
-// tests/system/foreign_files.py tests complete imports of workbooks with dates and formulas.
+// tests/system/foreign_files.py tests the complete import of workbooks with dates and formulas.
 namespace softgrip::sysid::xlsx_table_test {
 namespace {
 
@@ -54,7 +54,7 @@ Parts book(const std::map<std::string, std::string>& sheets) {
   return parts;
 }
 
-/// Writes numbers as numeric cells and other texts as inline strings. Writes no cell for "".
+/// Writes numbers as numeric cells and other texts as inline strings. Omits the cell for "".
 std::string cells(const Rows& rows, std::size_t first_row = 1, std::size_t first_column = 0) {
   std::string xml = "<sheetData>";
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -248,7 +248,7 @@ TEST(XlsxTable, RefusesWhatIsNoWorkbook) {
   EXPECT_TRUE(has(refusal(parts), "its part 'xl/s1.xml' is missing"));
 }
 
-/// If the bytes are truncated or changed, the reader must refuse them or return the original table.
+/// If bytes of the file are missing or changed, the reader must refuse the file or return the original table.
 TEST(XlsxTable, SurvivesDamage) {
   const std::string good = archive(book({{"Run", cells(three_rows)}}));
   std::mt19937 random(3);
@@ -260,8 +260,8 @@ TEST(XlsxTable, SurvivesDamage) {
     const auto table = read_xlsx_table("b.xlsx", bytes, {}, problems);
     ASSERT_EQ(table.has_value(), problems.empty()) << i;
     refused += table ? 0U : 1U;
-    // A workbook contains checksums. So the reader must refuse a changed workbook, or return the original
-    // table.
+    // A workbook contains checksums. If a workbook has been changed, the reader must refuse it or return the
+    // original table.
     if (table) expect_same(*table, table_of(book({{"Run", cells(three_rows)}})));
   }
   EXPECT_GE(refused, good.size());
@@ -286,7 +286,7 @@ TEST(WorkbookXml, RefusesATreeThatNeedsTooMuchMemory) {
   EXPECT_EQ(loaded.error(), "the sheet has too many cells");
 }
 
-/// A text behind an element is a separate XML node. The reader must include such nodes when it counts the
+/// A text after an element is a separate XML node. The reader must include such texts when it counts the
 /// nodes.
 TEST(WorkbookXml, CountsTheTextsBetweenElements) {
   std::string text = "<a>";
@@ -317,7 +317,7 @@ TEST(WorkbookSheet, DatesCountFrom1900Or1904) {
   WorkbookTexts texts{{}, {false, true}, false};
   EXPECT_EQ(sheet_text(document, texts)->text,
             "2024-05-31T12:00:00.000000,06:00:00.000000,1904-01-02T06:00:00.000000\n");
-  // A title contains a date. The times of day below the title must not be read as dates.
+  // A title contains a date. The reader must not read the times of day below this title as dates.
   xml =
       "<worksheet><sheetData><row r='1'><c s='1'><v>45443.5</v></c></row>"
       "<row r='2'><c t='str'><v>t</v></c><c t='str'><v>p</v></c></row>"

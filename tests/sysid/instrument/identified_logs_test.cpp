@@ -9,7 +9,7 @@
 namespace softgrip::sysid::identified_logs_test {
 namespace {
 
-/// Returns a log of bench_twin in which one reading is 20 mm too large.
+/// Returns a log of bench_twin. One reading of the log is 20 mm too large.
 Log with_an_outlier(std::uint64_t seed) {
   Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 20, 0.05, seed);
   log.name = "log " + std::to_string(seed);

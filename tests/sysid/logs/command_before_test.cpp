@@ -11,9 +11,9 @@ namespace {
 
 constexpr double interval_s = 0.02;
 
-/// Returns a log whose command has stepped from `idle_kpa` to 60 kPa two samples before the log begins. The
-/// command stays at 60 kPa for 4 s and then follows a slow cosine. The pressure follows the command with a
-/// lag of 0.3 s, and its reading is `offset_kpa` too high.
+/// Returns a log that begins two samples after a step of the command from `idle_kpa` to 60 kPa. The command
+/// stays at 60 kPa for 4 s and then follows a slow cosine. The pressure follows the command with a lag of 0.3
+/// s. The pressure reading is `offset_kpa` too high.
 Log begun_at_a_step(double idle_kpa, double offset_kpa = 0) {
   Log log;
   double pressure_kpa = idle_kpa;

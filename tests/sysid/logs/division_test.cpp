@@ -28,8 +28,8 @@ std::size_t readings_of(const Record& record) {
                                                 [](double y) { return std::isfinite(y); }));
 }
 
-/// Expects that every sample of every record is in exactly one block. Expects that the samples of a block are
-/// hidden while this block is held out.
+/// Checks that every sample of every record is in exactly one block. Also checks that the samples of a block
+/// are hidden while this block is held out.
 void expect_each_sample_once(const std::vector<Record>& records, const Division& division) {
   std::vector<std::size_t> next(records.size());
   for (const Block& block : division.blocks) {

@@ -11,7 +11,7 @@
 namespace softgrip::sysid::each_record_test {
 namespace {
 
-/// Returns a record with a reading at every second sample.
+/// Returns a record in which every second sample has a reading.
 Record record_of(std::size_t samples) {
   Record record;
   for (std::size_t i = 0; i < samples; ++i) {

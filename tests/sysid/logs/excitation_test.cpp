@@ -11,7 +11,7 @@ namespace {
 
 using Missing = std::vector<Excitation>;
 
-/// Returns a log of 40 s, sampled at 50 Hz, with the given command.
+/// Returns a log of 40 s with the given command, sampled at 50 Hz.
 template <class Command>
 Log commanded(Command kpa_at) {
   Log log;
@@ -24,7 +24,8 @@ Log commanded(Command kpa_at) {
   return log;
 }
 
-/// Returns a command that rises to `peak_kpa` and falls within 8 s, and then rests for 2 s.
+/// Returns the command at time `t`. In each period of 10 s, the command rises to `peak_kpa` and falls, both
+/// within 8 s, and then rests for 2 s.
 double triangle(double t, double peak_kpa) {
   return peak_kpa * std::max(0.0, 1 - std::abs(std::fmod(t, 10) / 4 - 1));
 }
@@ -43,7 +44,8 @@ TEST(MissingExcitation, OfOneAmplitude) {
             Missing{Excitation::amplitudes});
 }
 
-/// Between two steps of a staircase, the pressure does not fall. So the steps must not be counted as peaks.
+/// Between two steps of this command, the pressure does not fall. The steps must therefore not be counted as
+/// peaks.
 TEST(MissingExcitation, OfAStaircaseWithOnePeak) {
   const auto stairs = [](double t) { return 8 * std::floor(std::max(0.0, 20 - std::abs(t - 20)) / 4); };
   EXPECT_EQ(missing_excitation({commanded(stairs)}), Missing{Excitation::amplitudes});
@@ -59,7 +61,7 @@ TEST(MissingExcitation, OtherLogsMayContainIt) {
   EXPECT_EQ(missing_excitation({ramp, triangles}), Missing{});
 }
 
-/// For a vacuum finger, loading means that the pressure falls.
+/// A vacuum loads this finger, so the pressure falls during loading.
 TEST(MissingExcitation, OfAVacuumIsThatOfAPressure) {
   for (const double peak_kpa : {-40.0, 40.0}) {
     EXPECT_EQ(missing_excitation({commanded([&](double t) { return peak_kpa * t / 40; })}),

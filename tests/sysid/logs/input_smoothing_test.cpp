@@ -12,7 +12,7 @@ struct Signal {
   std::vector<double> time_s, truth, measured;
 };
 
-/// Returns triangles with holds at irregular sample times, like the pressure of a regulator.
+/// Returns triangles with holds, at the irregular sample times that the pressure of a regulator can have.
 Signal triangles(double noise, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -49,8 +49,8 @@ TEST(InputSmoothing, TakesMostOfTheNoiseAwayAndKeepsTheCorners) {
   }
 }
 
-/// Returns holds of some seconds with jumps between them. Before a jump, the slope is 0, so the slope does
-/// not predict the jump.
+/// Returns holds of some seconds with jumps between them. The slope before a jump is 0, so it does not
+/// predict the jump.
 Signal jumps(double noise, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;

@@ -44,8 +44,8 @@ void check(const sysid::Log& log) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   sysid::LogOptions options;
-  // The first byte selects which requirements a log must meet. The tools that read logs have different
-  // requirements.
+  // The tools that read logs have different requirements. The first byte selects the requirements that this
+  // log must meet.
   options.require_motion = size > 0 && (data[0] & 1U) != 0;
   options.need_readings = size > 0 && (data[0] & 2U) != 0;
   const std::vector<std::string> channels = sysid::channels_of(text);

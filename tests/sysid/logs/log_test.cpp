@@ -18,8 +18,8 @@ namespace {
 
 using document::Problems;
 
-/// Returns a valid log with 100 samples of one slow triangle. Its hysteresis is large enough for a plausible
-/// finger.
+/// Returns a valid log with 100 samples of one slow triangle. Its hysteresis is so large that the log looks
+/// like that of a real finger.
 Log good_log() {
   Log log;
   for (int i = 0; i < 100; ++i) {
@@ -34,7 +34,7 @@ std::string good_text() {
   return format_log(good_log());
 }
 
-/// Returns the valid log with a different text in line `number`. The first line is number 1.
+/// Returns the valid log with another text in line `number`. The first line has the number 1.
 std::string with_line(int number, const std::string& line) {
   std::string text = good_text();
   std::size_t begin = 0;
@@ -197,7 +197,7 @@ TEST(Log, TextAndBackLosesNothing) {
   EXPECT_EQ(format_log(*back), format_log(log));
 }
 
-/// Returns a log text in which the column of the readings has the name `name`.
+/// Returns a log text. The column of the readings has the name `name`.
 std::string with_readings_called(const std::string& name, std::string text) {
   const std::string usual = "displacement_mm";
   return text.replace(text.find(usual), usual.size(), name);
@@ -278,8 +278,8 @@ TEST(Log, AcceptsWhatSpreadsheetsWrite) {
   EXPECT_TRUE(parse_log("good.csv", text, problems)) << problems.format();
 }
 
-/// Returns a valid log with an additional column. All rows of this column contain `cell`, except the lines in
-/// `other`.
+/// Returns a valid log with an additional column. Each cell of this column contains `cell`, except in the
+/// lines that `other` contains with their own cells.
 std::string with_column(const std::string& name, const std::string& cell,
                         const std::map<int, std::string>& other = {}) {
   std::istringstream in(good_text());

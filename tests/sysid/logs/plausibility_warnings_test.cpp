@@ -52,8 +52,8 @@ TEST(PlausibilityWarnings, SignScaleAndOrder) {
             std::string::npos);
 }
 
-/// Tests a positive pressure and a vacuum. Each is recorded in every unit whose values differ strongly from
-/// those in kPa.
+/// Tests logs with a positive pressure and logs with a vacuum. Each log is recorded in every unit whose
+/// values differ strongly from those in kPa.
 TEST(PlausibilityWarnings, AUnitThatIsFarFromKpaIsNamed) {
   const auto warnings = [](double peak, double mm) {
     Log log;
@@ -82,7 +82,7 @@ TEST(PlausibilityWarnings, AUnitThatIsFarFromKpaIsNamed) {
   }
 }
 
-/// The warning must state the largest value of the column and the reason why the unit seems wrong.
+/// The warning must state the largest value of the column and the reason why the unit is probably wrong.
 TEST(PlausibilityWarnings, AUnitIsNamedWithItsColumn) {
   Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
   const std::vector<double> kpa = log.pressure_command_kpa;

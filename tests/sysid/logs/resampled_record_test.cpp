@@ -11,7 +11,7 @@
 namespace softgrip::sysid::resampled_record_test {
 namespace {
 
-/// Returns a record of 4 s, sampled at 1 kHz. The readings are a parabola in time with added noise.
+/// Returns a record of 4 s, sampled at 1 kHz. The readings are a parabola over time with added noise.
 Record parabola(double noise_mm) {
   std::mt19937_64 random(20261122);
   std::normal_distribution<double> noise(0, 1);
@@ -94,8 +94,8 @@ TEST(AveragedRecord, KeepsTheMotionAndItsTimes) {
     const double t_s = averaged.time_s[i];
     EXPECT_NEAR(t_s, 0.010 * static_cast<double>(i), 1e-12);
     EXPECT_NEAR(averaged.drive_kpa[i], 10 * t_s, 1e-9);
-    // The expected value is the mean of nine readings of a parabola at intervals of 1 ms. It exceeds the
-    // parabola by half the second derivative times the mean square of the time offsets.
+    // The expected value is the mean of nine readings of a parabola at intervals of 1 ms. The mean exceeds
+    // the parabola by half the second derivative times the mean square of the time offsets.
     EXPECT_NEAR(averaged.reading_mm[i], 2 * t_s * t_s, 2 * 6.7e-6);
   }
 }
@@ -142,7 +142,7 @@ TEST(StridedRecord, LeavesOutReadingsButTellsMotionsApartLikeTheLog) {
       << "a mean over a longer time would smooth a fast signal";
 }
 
-/// Returns a record of a ramp that lasts 4 s, sampled at 1 kHz.
+/// Returns a record of a ramp. The record lasts 4 s and is sampled at 1 kHz.
 Record ramp() {
   Record record;
   for (int i = 0; i <= 4000; ++i) {

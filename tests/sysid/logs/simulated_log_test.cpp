@@ -36,8 +36,8 @@ TEST(Simulate, DoesNotDependOnTheRate) {
   Log fine = sampled_signal(model::SignalName::sp1, 500);
   simulate(model, {}, coarse);
   simulate(model, {}, fine);
-  // The command is so smooth that linear interpolation over 20 ms changes the response by much less than this
-  // tolerance.
+  // The command is smooth. Linear interpolation over 20 ms therefore changes the response by much less than
+  // this tolerance.
   for (std::size_t i = 0; i < coarse.size(); ++i) {
     ASSERT_NEAR(coarse.displacement_mm[i], fine.displacement_mm[10 * i], 0.01)
         << "at " << coarse.time_s[i] << " s";
@@ -84,7 +84,7 @@ TEST(Simulate, UsesTheTimesOfAnIrregularLog) {
   const model::Model model = twin();
   Log regular = sampled_signal(model::SignalName::tp2, 1000);
   simulate(model, {}, regular);
-  // Keep samples at increasing distances. The command remains linear between the kept samples.
+  // Keep samples at increasing distances. The command must remain linear between the kept samples.
   Log irregular;
   for (std::size_t i = 0; i < regular.size(); i += 1 + i % 3) {
     irregular.time_s.push_back(regular.time_s[i]);

@@ -120,7 +120,7 @@ TEST(Thinning, KeepsEveryExtreme) {
   }
   EXPECT_EQ(highest, 50);
   EXPECT_EQ(lowest, -60);
-  // In each pixel column, the drawn curve must have the same minimum and maximum as the data.
+  // In each pixel column, the minimum and the maximum of the drawn curve must equal those of the data.
   std::vector<std::pair<double, double>> data(700, {1e9, -1e9});
   auto drawn = data;
   for (const Pixel& p : curve) {
@@ -228,7 +228,7 @@ TEST(Chart, UnitsOfAxesAreDrawnInWords) {
   EXPECT_NE(to_svg(a_chart()).find(">displacement in millimetres<"), std::string::npos);
 }
 
-// The chart must not draw every distinct point. With all 600,000 noisy readings, the file would have several
+// The chart must not draw every point. With all 600,000 noisy readings, the file would have several
 // megabytes.
 TEST(Chart, AnyLengthOfLogMakesASmallPicture) {
   std::mt19937_64 random(3);
@@ -258,7 +258,7 @@ TEST(Chart, BothColourSchemesAreInTheFileAndColoursAreThereWithoutThem) {
 TEST(Chart, WhatColourTellsApartDashesTellApart) {
   Chart chart = a_chart();
   chart.series.front().dash = Dash::dotted;
-  // the dotted line is drawn once in the curve and once in the legend
+  // the curve and the legend each contain the dotted line once
   EXPECT_EQ(count(to_svg(chart), "stroke-dasharray=\"1.5 2.5\""), 2U);
 }
 

@@ -7,7 +7,7 @@
 namespace softgrip::sysid::ingredient_test {
 namespace {
 
-/// Returns a structure that contains every component.
+/// Returns a model structure that contains every available component.
 BaseStructure complete() {
   return {.second_lag = true,
           .rate_limit = true,

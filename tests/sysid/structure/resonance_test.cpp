@@ -22,7 +22,8 @@ model::Model ringing_finger(double period_s) {
   return model::with_block(finger(0.06), {model::block_type<model::Inertia>(), {period_s, 0.2}});
 }
 
-/// Returns a record of steps between 0 and 60 kPa, each 4 s long. The model predicts its readings.
+/// Returns a record of steps between 0 and 60 kPa, each 4 s long. The readings are the prediction of the
+/// model.
 Record steps(const model::Model& model) {
   Log log;
   log.name = "steps";

@@ -35,7 +35,7 @@ namespace {
 using model::SignalName;
 
 /// Returns a finger with play operators, a nonlinear gain, and creep over three decades of time constants.
-/// Its valve vents slowly. The thresholds and time constants are not values of the grid that the fit uses.
+/// Its valve vents slowly. Its thresholds and time constants are not on the grid of values that the fit uses.
 model::Model play_finger() {
   model::Model m;
   m.name = "play_finger";
@@ -49,7 +49,7 @@ model::Model play_finger() {
   return model::with_block(std::move(m), {model::block_type<model::Characteristic>(), {0.6, 25}});
 }
 
-/// Returns play_finger() with generalised play operators.
+/// Returns play_finger(), but with generalised play operators.
 model::Model bent_play_finger() {
   model::Model m = play_finger();
   std::vector<double>& values = m.blocks[*model::position_of<model::PrandtlIshlinskii>(m)].values;
@@ -64,8 +64,8 @@ Log scaled(Log log, double mm) {
   return log;
 }
 
-/// Predicts a log without noise from a start at rest. Returns the RMS [mm] of the prediction error after the
-/// first part of the log. `share` is the length of this first part.
+/// Predicts a log without noise that starts at rest. Returns the RMS [mm] of the prediction error after the
+/// first part of the log. `share` is the length of this part divided by the length of the log.
 double continuation_rmse_mm(const model::Model& truth, const model::Model& found, SignalName signal,
                             double share) {
   const Log log = simulated(truth, signal, 100, 0, 1);
@@ -96,8 +96,8 @@ TEST(StructureColumns, AreWhatTheBlocksOfTheModelDo) {
   }
 }
 
-// The pressure rises and falls at different limited rates, so that exchanged or omitted parameters change the
-// prediction.
+// The pressure rises and falls at different limited rates. Exchanged or omitted parameters would therefore
+// change the prediction.
 TEST(StructureColumns, AreWhatARateLimitOfTheModelDoes) {
   const model::Model limited =
       model::with_block(play_finger(), {model::block_type<model::RateLimit>(), {0.03, 0.06}});
@@ -157,7 +157,8 @@ TEST(PublishedElement, RefittedWithoutABlockItStaysWhereItWas) {
 }
 
 TEST(StructureProjection, WeightsAreNeverNegative) {
-  // The reading falls while the output of a play operator rises, so the best weight of each operator is 0.
+  // The reading falls while the output of a play operator rises. The best weight of each operator is
+  // therefore 0.
   std::vector<Record> records = make_records({simulated(play_finger(), SignalName::tp1, 50, 0.03, 3)}, {});
   for (double& y : records[0].reading_mm) y = -y;
   const BaseStructure structure{.characteristic = false};
@@ -188,8 +189,8 @@ TEST(WithoutWandering, TakesADriftAwayAndLeavesWhatTheFingerDoes) {
     return moved;
   };
   const std::vector<double> of_steady = moved_mm(steady), of_drifting = moved_mm(drifting);
-  // The correction must remove the drift. Slow creep resembles a drift, so it may also remove a small part of
-  // the creep.
+  // The correction must remove the drift of the readings. Slow creep resembles a drift, so the correction may
+  // remove a small part of the creep as well.
   EXPECT_LT(rms(of_steady), 0.3 * drift_mm);
   std::vector<double> missed(of_drifting.size());
   for (std::size_t i = 0; i < missed.size(); ++i) {
@@ -267,8 +268,8 @@ TEST(IdentifyStructure, FindsAFingerOfPlays) {
   }
 }
 
-/// Generalised plays must be found. A nonlinear gain behind the operators or creep that depends on the
-/// pressure cannot replace them.
+/// The fit must find generalised play operators. Neither a nonlinear gain after the operators nor
+/// pressure-dependent creep can replace them.
 TEST(IdentifyStructure, FindsTheBentEnvelopesOfGeneralisedPlays) {
   const std::vector<Log> logs{simulated(bent_play_finger(), SignalName::tp1, 100, 0.03, 5),
                               simulated(bent_play_finger(), SignalName::sp2, 100, 0.03, 6)};
@@ -297,13 +298,13 @@ TEST(IdentifyStructure, FindsThatAFingerWasLoadedBefore) {
   EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
   const auto block = model::position_of<model::PrandtlIshlinskii>(found->model);
   ASSERT_TRUE(block);
-  // A pressure above twice the largest threshold moves all operators. So any larger earlier pressure has the
-  // same effect.
+  // A pressure above twice the largest threshold moves all operators. All larger earlier pressures therefore
+  // have the same effect.
   EXPECT_GT(found->model.blocks[*block].values.front(), 30);
 }
 
-/// The pressure is not measured, but the overlap of the regulator is visible in the displacement. The fit
-/// must not describe the overlap as a lag.
+/// The log has no measured pressure, but the overlap of the regulator is visible in the displacement. The fit
+/// must not describe this overlap as a lag.
 TEST(IdentifyStructure, FindsTheRegulatorBehindTheCommand) {
   model::Model regulated =
       model::without_block(play_finger(), model::block_type<model::AsymmetricValveLag>());
@@ -324,8 +325,8 @@ TEST(IdentifyStructure, FindsTheRegulatorBehindTheCommand) {
   }
 }
 
-/// The finger has one lag more than play_finger(). The test FindsAFingerOfPlays checks that the fit finds no
-/// second lag in play_finger().
+/// This finger has one lag more than play_finger(). The test FindsAFingerOfPlays checks that the fit finds no
+/// second lag for play_finger().
 TEST(IdentifyStructure, FindsASecondLag) {
   const model::Model slower =
       model::with_block(play_finger(), {model::block_type<model::ValveLag>(), {0.12}});
@@ -375,8 +376,8 @@ TEST(IdentifyStructure, FindsAResonance) {
   EXPECT_GT(without->heldout_rmse_mm, 2 * found->rmse_mm);
 }
 
-/// The fit uses the first 20 s of the log. They contain one cycle that begins at an idle pressure at the
-/// start of the log.
+/// The fit uses the first 20 s of the log. At the start of the log, the pressure is at an idle value, from
+/// which one cycle begins.
 TEST(IdentifyStructure, OneStrokeFromAnIdlePressureIsNoUnsettledCreep) {
   constexpr double idle_kpa = 7;
   const model::Model finger = play_finger();
@@ -403,7 +404,7 @@ TEST(IdentifyStructure, OneStrokeFromAnIdlePressureIsNoUnsettledCreep) {
 
 TEST(SimplestStart, WhatTheCallerStatesAndWhatRestDoesNotExplainStays) {
   const Log whole = simulated(play_finger(), SignalName::tp1, 100, 0.03, 15);
-  Log late;  // the log without its first 3 s, so that it starts during a rise after other cycles
+  Log late;  // the log from 3 s on: it starts during a rise, after other cycles
   late.name = "late";
   for (std::size_t i = 300; i < whole.size(); ++i) {
     late.time_s.push_back(whole.time_s[i] - whole.time_s[300]);
@@ -435,9 +436,8 @@ TEST(IdentifyStructure, TheAnswerDoesNotDependOnTheUnit) {
 }
 
 TEST(IdentifyStructure, NeverEndsAboveItsOwnRelaxation) {
-  // If the nonlinear parameters have their true values and the weights are free, the problem is linear. A fit
-  // of the same structure must reach the minimum of this linear problem, except for the cost of the
-  // regularisation.
+  // If the nonlinear parameters are set to their true values, the weights follow from a linear problem. A fit
+  // of the same structure must reach the minimum of this problem, apart from the regularisation term.
   const std::vector<Log> logs{simulated(play_finger(), SignalName::tp1, 100, 0.03, 8)};
   const std::vector<Record> records = make_records(logs, {});
   const StructureGrid grid = grid_for(records);
@@ -452,7 +452,8 @@ TEST(IdentifyStructure, NeverEndsAboveItsOwnRelaxation) {
 }
 
 TEST(IdentifyStructure, HasTwoStagesWhereThePressureWasMeasured) {
-  // The blocks of the valve predict the measured pressure. The other blocks predict the displacement.
+  // The blocks of the valve must predict the measured pressure. All other blocks must predict the
+  // displacement.
   const model::Model whole = play_finger();
   Log log = simulated(whole, SignalName::tp1, 100, 0.03, 9);
   const model::Model valve =

@@ -1,11 +1,10 @@
 #!/usr/bin/env bash
-# Boots the guest system of prepare.sh. A folder is its second drive. The guest runs the file `run` in this
-# folder and powers off.
+# Boots the guest system of prepare.sh. A folder is its second drive. The guest runs the file `run` in this folder and
+# powers off.
 #   boot.sh WORK FOLDER LOG
-# The output of `run` goes to standard output and to LOG. The console of the guest goes to LOG.console. The
-# disk is not changed. QEMU emulates one processor, so neither KVM nor root is needed. The clock of the guest
-# counts instructions (8 ns each). So the load of the host does not affect the guest, and sleeping takes no
-# time.
+# The output of `run` goes to standard output and to LOG. The console of the guest goes to LOG.console. The disk is not
+# changed. QEMU emulates one processor, so neither KVM nor root is needed. The clock of the guest counts instructions (8
+# ns each). Therefore the load of the host does not affect the guest, and sleeping takes no time on the host.
 set -euo pipefail
 work=$(realpath "$1") folder=$(realpath "$2") log=$3
 kernel=$(cat "$work/release")

@@ -12,8 +12,8 @@ here=$(dirname "$(realpath "$0")")
 mkdir -p "$work"
 say() { printf '   guest: %s\n' "$*"; }
 
-# Sets `kernel` to the release of the archive's PREEMPT_RT kernel. The release is determined once for each
-# folder WORK.
+# Sets `kernel` to the release of the PREEMPT_RT kernel in the archive. The release is determined once and stored in
+# WORK.
 find_kernel() {
   if [ ! -s "$work/release" ]; then
     apt-cache depends linux-image-rt-amd64 |
@@ -33,8 +33,8 @@ fetch() {
   mv "$folder" "$2"
 }
 
-# The kernels of Debian have neither gpio-sim nor the simulated interrupts that gpio-sim needs. Both are built
-# as one module from the kernel source of Debian, with the kernel headers of Debian.
+# Debian kernels contain neither gpio-sim nor the simulated interrupts that gpio-sim needs. Both are built as one module
+# from the kernel source of Debian, with the kernel headers of Debian.
 build_gpio() {
   local build=$work/gpio.part source
   rm -rf "$build" "$work/source" && mkdir -p "$build"
@@ -44,7 +44,7 @@ build_gpio() {
     '*/drivers/gpio/gpiolib.h' '*/kernel/irq/irq_sim.c'
   cp "$work/source/drivers/gpio/gpiolib.h" "$build/"
   cp "$work/source/drivers/gpio/gpio-sim.c" "$build/lines.c"
-  # The kernel does not export irq_to_desc() to modules. It exports generic_handle_irq(), which does the same.
+  # The kernel does not export irq_to_desc() to modules. generic_handle_irq() is exported and does the same.
   sed 's/handle_simple_irq(irq_to_desc(\(.*\)));/generic_handle_irq(\1);/' "$work/source/kernel/irq/irq_sim.c" \
     >"$build/interrupts.c"
   printf 'obj-m := gpio-sim.o\ngpio-sim-objs := lines.o interrupts.o\n' >"$build/Kbuild"
@@ -54,7 +54,7 @@ build_gpio() {
   mv "$build" "$work/gpio"
 }
 
-# Writes the root file system as a tar file. It contains the packages of a technician's computer. It also
+# Writes the root file system as a tar file. It contains the packages that the computer of a technician has. It also
 # contains the dependencies of the softgrip package, because the guest has no network.
 build_root() {
   local needs wanted
@@ -101,8 +101,7 @@ build_disk() {
   rm -rf "$root"
 }
 
-# The initial file system only has to find the disk. It contains busybox, the modules in their order, and a
-# script.
+# The initial file system has one task: to find the disk. It contains busybox, the modules in their order, and a script.
 build_initrd() {
   local folder=$work/initrd file
   rm -rf "$folder" && mkdir -p "$folder"/{bin,modules,proc,sys,dev,root}

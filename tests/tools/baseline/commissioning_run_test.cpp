@@ -11,7 +11,7 @@
 namespace softgrip::tools::commissioning_run_test {
 namespace {
 
-/// Returns the rig of config/rig.yaml without an object between its fingers.
+/// Returns the rig of config/rig.yaml, but without the object between the fingers.
 ExperimentRig free_rig() {
   document::Problems problems;
   rig::RigFile file = rig::load_rig(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems).value();
@@ -69,7 +69,8 @@ TEST(CommissioningRun, AFingerThatGoesFurtherThanItsModelIsKeptWithinItsRange) {
     model::Model& believed = rig.rig.settings.channels[rig.channel].model;
     for (model::BlockSpec& block : believed.blocks) {
       if (std::string_view(model::catalogue()[block.type].info.id) != "bouc_wen") continue;
-      block.values[0] *= share;  // alpha and beta, which determine the immediate response of the finger
+      block.values[0] *= share;  // the values 0 and 1 are alpha and beta, which determine the immediate
+                                 // response of the finger
       block.values[1] *= share;
     }
     rig.rig.settings.channels[rig.channel].limits.displacement_max_mm = 15;

@@ -18,7 +18,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A server that accepts one client, waits for one line, sends the given reply and closes the connection.
+/// A server that accepts one client and waits for one line. It then sends the given reply and closes the
+/// connection.
 class ScriptedDaemon {
  public:
   explicit ScriptedDaemon(std::string reply)

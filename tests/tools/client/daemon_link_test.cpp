@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A socket that accepts connections and sends nothing by itself.
+/// A listening socket in place of a daemon. It sends nothing; a test sends the lines of the daemon itself.
 struct SilentDaemon {
   daemon::testing::TemporaryFolder folder;
   std::string path = folder.path() + "/daemon.sock";

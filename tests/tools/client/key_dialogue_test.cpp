@@ -5,8 +5,8 @@
 namespace softgrip::tools::key_dialogue_test {
 namespace {
 
-/// Returns the request that a key causes. Returns "leave" if the key ends the dialogue, and "" if it causes
-/// no request.
+/// Returns the request that a key causes. Returns "leave" if the key ends the dialogue, and "" if the key
+/// causes no request.
 std::string asked(const KeyDialogue::Outcome& outcome) {
   if (outcome.leave) return "leave";
   return outcome.request ? outcome.request->dump() : "";

@@ -84,7 +84,8 @@ TEST_F(LastHealth, IsNothingWhereThereIsNoResult) {
   EXPECT_TRUE(health_lines(nullptr).empty());
 }
 
-/// If last_health() opened the pipe and waited for a writer, this test would not end.
+/// last_health() must refuse a named pipe. If it waited for a program that writes to the pipe, this test
+/// would never end.
 TEST_F(LastHealth, IsNothingWhereThePathIsAPipe) {
   std::filesystem::create_directories(recordings / "health");
   ASSERT_EQ(::mkfifo((recordings / "health/health.json").c_str(), 0600), 0);

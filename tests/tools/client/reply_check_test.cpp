@@ -25,7 +25,7 @@ std::string error_of(const std::string& line) {
   return parsed ? "accepted" : parsed.error();
 }
 
-/// Passes the event to every function of tools/client that reads an event of the daemon.
+/// Passes the event to each function of tools/client that reads events of the daemon.
 void read_event(const Json& event) {
   LiveState state;
   static_cast<void>(line_of_event(event));
@@ -70,7 +70,7 @@ TEST(ReplyCheck, AcceptsWhatTheDaemonSends) {
     ASSERT_TRUE(parsed) << parsed.error() << "\n" << line;
     EXPECT_EQ(*parsed, line);
   }
-  // Additional keys must be accepted, because a newer daemon may send them.
+  // A newer daemon may send additional keys, so the check must accept them.
   EXPECT_TRUE(parse_reply(R"({"id": 1, "ok": true, "more": [], "result": {"more": {"state": 3}}})"));
 }
 
@@ -101,7 +101,7 @@ TEST(ReplyCheck, RefusesWhatNestsTooDeepBeforeItIsParsed) {
 }
 
 /// In a line of each kind, replaces each value by values of all other JSON types. Either the check must
-/// refuse the changed line, or every function that reads such a line must accept it.
+/// refuse the changed line, or each function that reads this kind of line must accept it.
 TEST(ReplyCheck, WhatPassesBreaksNoReader) {
   std::size_t refused = 0;
   std::size_t passed = 0;

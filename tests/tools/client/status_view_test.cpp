@@ -83,8 +83,8 @@ TEST(StatusView, ALimitThatBindsIsALine) {
       << text;
 }
 
-/// Returns the number of columns that a line occupies. An escape sequence occupies none, and a UTF-8
-/// character occupies one.
+/// Returns the number of screen columns that a line occupies. An escape sequence occupies no column, and a
+/// UTF-8 character occupies one column.
 std::size_t columns_of(const std::string& line) {
   std::size_t columns = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -184,7 +184,7 @@ TEST(StatusView, ABoardThatNeverAnsweredSaysWhatIsTriedAndHowOften) {
   EXPECT_NE(line_of_status(away).find("board NOT CONNECTED"), std::string::npos);
 }
 
-/// Returns the text of a view that is `columns` wide, with every sequence of blanks replaced by one blank.
+/// Returns the text of a view with a width of `columns`. Replaces every sequence of blanks by one blank.
 std::string words_at(std::size_t columns, const Json& shown) {
   std::string text;
   for (const char c : joined(view_of(shown, {columns, false, false}))) {

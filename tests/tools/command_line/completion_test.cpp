@@ -12,7 +12,7 @@
 namespace softgrip::tools::completion_test {
 namespace {
 
-/// Tests with a program that has every kind of option that a completion script must support.
+/// Tests with a program that has options of all kinds that a completion script must support.
 class Completion : public ::testing::Test {
  protected:
   Completion() {
@@ -27,7 +27,7 @@ class Completion : public ::testing::Test {
     study->add_subcommand("control", "One")->add_option("--out", text_, "To");
     study->add_subcommand("published", "Other")->add_option("--out", text_, "To");
   }
-  /// Returns the candidates that bash offers for the last of these words.
+  /// Returns the words that bash offers to complete the last of these words.
   std::string offered(const std::vector<std::string>& words) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     const std::string script = folder / ("completion_" + std::to_string(::getpid()));

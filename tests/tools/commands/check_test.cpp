@@ -1,5 +1,5 @@
-// Tests `softgrip check` as a user runs it. It must refuse every broken configuration with exit code 3, and
-// its output must contain every line of broken/NAME.expected.
+// Tests `softgrip check` as a user runs it. The command must refuse every broken configuration with exit code
+// 3. Its output must contain every line of broken/NAME.expected.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -28,7 +28,8 @@ struct Outcome {
   std::string errors;
 };
 
-/// Returns a folder for the files of this process, which is removed when the process ends.
+/// Creates a folder for the files of this process and returns its path. The folder is removed when the
+/// process ends.
 const std::filesystem::path& scratch() {
   struct Folder {
     std::filesystem::path path =
@@ -59,8 +60,8 @@ std::vector<std::string> names() {
   return result;
 }
 
-/// Returns the command-line arguments for checking a file: the file and all files that must be checked
-/// together with it.
+/// Returns the arguments of `softgrip check` for a file: the path of the file, and the paths of all files
+/// that must be checked together with it.
 std::string arguments_of(const std::string& name) {
   std::string arguments = "broken/" + name + ".yaml";
   std::istringstream also(text_of(folder / "broken" / (name + ".also")));

@@ -1,4 +1,4 @@
-// Tests softgrip calibrate with simulated rigs, whose true scalings are known.
+// Tests softgrip calibrate with simulated rigs. The true scalings of these rigs are known.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,8 @@
 namespace softgrip::tools::calibrate::calibrate_test {
 namespace {
 
-/// Returns four visits to two positions, on the line y = 3 - 2 x.
+/// Returns four visits, two at each of two positions. Apart from small deviations, the visits lie on the line
+/// y = 3 - 2 x.
 std::vector<Visit> visits() {
   std::vector<Visit> list;
   for (const double off : {0.001, -0.001}) {
@@ -110,7 +111,7 @@ TEST(FindDeadZone, DoesNotInventOne) {
       << "the measured signal does not follow the ramp, so there is no dead zone to find";
 }
 
-/// Simulates an operator who reads the gauge at the true position of the simulated finger.
+/// Simulates an operator who reads the gauge. The gauge shows the true position of the simulated finger.
 class KnowingOperator final : public Operator {
  public:
   explicit KnowingOperator(std::function<std::string()> reading) : reading_(std::move(reading)) {}
@@ -120,8 +121,7 @@ class KnowingOperator final : public Operator {
     waited_ = 0;
   }
   std::optional<std::string> answer() override {
-    // The operator needs time to answer. During this time, the session must continue to communicate with the
-    // board.
+    // The operator needs time to answer. Meanwhile, the session must continue to communicate with the board.
     if (++waited_ < 300) return std::nullopt;
     return reading_();
   }
@@ -136,7 +136,7 @@ class KnowingOperator final : public Operator {
   int waited_ = 0;
 };
 
-/// Forwards all exchanges and records the highest command.
+/// A board that forwards all exchanges to another board and records the highest command.
 class WatchedBoard final : public testing::PassingBoard {
  public:
   using PassingBoard::PassingBoard;
@@ -237,7 +237,7 @@ TEST_F(CalibrateTest, RefusesASensorThatIsSaturatedOrOutOfRange) {
   EXPECT_NE(line.error().text.find("not valid (out_of_range)"), std::string::npos) << line.error().text;
 }
 
-/// If the sensor that shows the motion of a finger gives no reading, no procedure may move the finger.
+/// If the sensor that measures the motion of a finger gives no reading, no procedure may move this finger.
 TEST_F(CalibrateTest, NothingRisesWithoutASensorThatTheMotionNeeds) {
   using Procedure = std::function<std::optional<Refusal>(MotionSession&, Operator&)>;
   const auto refusal = [](const auto& result) {
@@ -257,7 +257,8 @@ TEST_F(CalibrateTest, NothingRisesWithoutASensorThatTheMotionNeeds) {
                                    }};
   KnowingOperator person([] { return "1"; });
   for (const bool monitor : {false, true}) {
-    // The last two procedures do not need the pressure monitor, so omit them.
+    // Without the monitor, test the first two procedures only, because the others do not need the pressure
+    // monitor.
     for (std::size_t i = 0; i < (monitor ? 2 : all.size()); ++i) {
       SCOPED_TRACE(std::to_string(i) + (monitor ? " without the monitor" : " without the sensor"));
       simulation::SimulatedEvent blind;
@@ -329,8 +330,8 @@ TEST_F(CalibrateTest, ByHandNothingMoves) {
   make();
   double place = 2;
   KnowingOperator person([&] {
-    // The operator moves the target of the sensor by hand and enters positions that differ by 10 mm. The
-    // reading is constant, because the simulated finger does not move.
+    // The operator should move the target of the sensor by hand. Each time, the operator enters a position
+    // that is 10 mm higher. The reading is constant, because the simulated finger does not move.
     return std::to_string(place += 10);
   });
   const auto line = calibrate_sensor(rig_, *session_, person, settings_);
@@ -396,7 +397,7 @@ TEST_F(CalibrateTest, TheSnippetIsReadByTheRigFilesReader) {
   EXPECT_NE(text.find("the signal rises"), std::string::npos);
   EXPECT_NE(text.find("use 60 % of the valve's range\n"), std::string::npos) << text;
 
-  // Replace the lines of the rig file that the calibration has changed.
+  // Insert the results of the calibration into the rig file.
   std::string file = daemon::testing::text_of(SOFTGRIP_SOURCE_DIR "/config/rig.yaml");
   for (const std::string key : {"sensor", "valve"}) {
     const auto line_at = [&](const std::string& in, std::size_t from) { return in.find(key + ": {", from); };

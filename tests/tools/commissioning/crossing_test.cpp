@@ -11,8 +11,8 @@ namespace {
 constexpr double moved_mm = 6;
 constexpr double step_kpa = 15;
 
-/// The observations when each finger is moved alone. `sensors[i]` and `monitors[i]` are the channels whose
-/// inputs respond to finger i; -1: no channel responds.
+/// Observations when each finger is moved alone. `sensors[i]` and `monitors[i]` are the indices of the
+/// channels whose inputs respond when finger i is moved; -1: no channel responds.
 struct World {
   std::vector<int> sensors;
   std::vector<int> monitors;

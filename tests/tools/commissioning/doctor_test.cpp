@@ -1,4 +1,4 @@
-// Tests softgrip doctor with healthy and with faulty rigs, simulated in virtual time.
+// Tests softgrip doctor with healthy rigs and with faulty rigs. The rigs are simulated in virtual time.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ using simulation::LineFault;
 using simulation::SensorFault;
 using Event = simulation::SimulatedEvent;
 
-/// Forwards all exchanges, but the left pressure monitor gives no readings.
+/// A board that forwards all exchanges to another board. The left pressure monitor gives no readings.
 class BlindMonitor final : public tools::testing::PassingBoard {
  public:
   using PassingBoard::PassingBoard;
@@ -39,7 +39,7 @@ class BlindMonitor final : public tools::testing::PassingBoard {
   }
 };
 
-/// Forwards all exchanges and records the highest command of each channel.
+/// A board that forwards all exchanges to another board and records the highest command of each channel.
 class NotingBoard final : public tools::testing::PassingBoard {
  public:
   using PassingBoard::PassingBoard;
@@ -68,7 +68,7 @@ class SharedBoard final : public tools::testing::PassingBoard {
 class DoctorTest : public ::testing::Test {
  protected:
   DoctorTest() {
-    // Remove the stone, so that the small motion of a finger ends before any contact.
+    // Remove the stone, so that the small test motion of a finger causes no contact.
     for (simulation::SimulatedChannel& channel : simulated().channels) channel.plant.object.reset();
   }
   simulation::SimulatedBoardSettings& simulated() {
@@ -175,8 +175,8 @@ TEST_F(DoctorTest, AWatchdogThatIsMissing) {
   expect("watchdog", Verdict::warn, "the outputs keep their last pressure");
 }
 
-/// On this board, a request of any client resets the watchdog. Some boards of this kind report the number of
-/// their clients.
+/// A request of any client resets the watchdog of this board. Some boards with this property report the
+/// number of their clients.
 TEST_F(DoctorTest, AWatchdogThatReadersFeedIsWarnedOfAndOtherClientsAreFound) {
   rig_.settings.safety.board_vents_when_silent = true;
   board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
@@ -213,8 +213,8 @@ TEST_F(DoctorTest, ASensorThatSeesNothing) {
   expect("sensor left", Verdict::fail, "out_of_range");
 }
 
-/// A finger whose sensor gives no valid reading could exceed its limits unnoticed. Therefore only the other
-/// fingers may be moved.
+/// A finger without valid displacement readings could exceed its limits unnoticed. The command must therefore
+/// not move this finger. It may move the others.
 TEST_F(DoctorTest, ASensorThatSeesNothingIsOneFailureAndItsFingerIsNotMoved) {
   Event blind;
   blind.kind = Event::Kind::sensor_fault;
@@ -239,7 +239,7 @@ TEST_F(DoctorTest, ASensorThatIsLostOnTheWayEndsTheMotion) {
   blind.kind = Event::Kind::sensor_fault;
   blind.channel = 0;
   blind.sensor.kind = SensorFault::Kind::out_of_range;
-  blind.at_s = 1.5;  // during the ramp up, which begins after the check at rest of 1 s and takes 1 s
+  blind.at_s = 1.5;  // during the rise of the pressure, which lasts from 1 s to 2 s
   at_once(blind);
   board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
   NotingBoard board(*board_);
@@ -315,8 +315,8 @@ TEST_F(DoctorTest, AModelOfAnotherFinger) {
   rig_.settings.channels[0].health.model_error_mm = 0.05;
   rig_.settings.channels[0].health.noise_mm = 0.03;
   for (simulation::SimulatedChannel& channel : simulated().channels) {
-    channel.plant.object = simulation::PlantObject{1, 0.5};  // the finger then moves half as far, as if it
-                                                             // were twice as stiff
+    channel.plant.object = simulation::PlantObject{1, 0.5};  // beyond 1 mm, the finger moves half as far, as
+                                                             // if it were twice as stiff
   }
   examine(true);
   expect("model left", Verdict::fail, "unfit above 0.30");
@@ -375,7 +375,7 @@ TEST_F(DoctorTest, ARateBeyondTheBusBudget) {
 }
 
 TEST_F(DoctorTest, StoppedByTheUserTheOutputsAreSafe) {
-  time_.stop_at = 2'500'000'000;  // stop at a time during the ramp up
+  time_.stop_at = 2'500'000'000;  // stop while the pressure rises
   examine(true);
   expect("motion left", Verdict::fail, "stopped by the user");
   EXPECT_EQ(output_kpa(0), 0);
@@ -400,7 +400,7 @@ TEST_F(DoctorTest, AFolderThatCannotBeWrittenAndOneThatCan) {
   expect("disk", Verdict::fail, "no folder");
 }
 
-/// Returns the status that a daemon without problems reports.
+/// Returns the status that a daemon without faults and warnings reports.
 nlohmann::ordered_json healthy_status() {
   return nlohmann::ordered_json::parse(R"({"version": "1", "rig": "bench", "rate_hz": 200, "state": "idle",
     "fault": null, "sequence": null, "bus": {"board": "ADAM", "connected": true},

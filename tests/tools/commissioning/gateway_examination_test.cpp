@@ -27,7 +27,8 @@ class Gateways : public ::testing::Test {
   void enable(const std::string& program) {
     fs::create_symlink("/nowhere", folder_ / (program + ".service"));
   }
-  /// Writes a configuration file of the project in which `port` replaces the text `was`.
+  /// Copies a configuration file of the project to the test folder. In the copy, replaces the text `was` by
+  /// the port `port`.
   void configure(const std::string& name, const std::string& was, std::uint16_t port) {
     std::string text = *read_file(SOFTGRIP_SOURCE_DIR "/config/" + name, 65536);
     const std::size_t at = text.find(was);

@@ -1,5 +1,5 @@
-// Tests manual motion with a board whose watchdog vents: pauses of the process, lost requests and refused
-// writes.
+// Tests manual motion with a board that vents after its watchdog time. The disturbances are pauses of the
+// process, lost requests and refused writes.
 
 #include "tools/commissioning/motion_session.h"
 
@@ -31,8 +31,8 @@ constexpr double speed_kpa_per_s = 12;
 /// Largest difference between two pressures that differ only by rounding [kPa].
 constexpr double equal_kpa = 1e-9;
 
-/// A clock that advances only during sleeps. The first sleep after `pause_at` takes `pause` longer, as if the
-/// process had been stopped.
+/// A clock that advances only during sleeps. The first sleep after the time `pause_at` takes longer by
+/// `pause`, as if the process had been paused.
 class StoppableClock final : public Clock {
  public:
   [[nodiscard]] Nanoseconds now() const noexcept override { return now_; }
@@ -51,8 +51,8 @@ class StoppableClock final : public Clock {
   mutable Nanoseconds now_ = ns_per_s;
 };
 
-/// A board that holds its outputs. Any request restarts its watchdog time, and any write ends a watchdog
-/// trip.
+/// A board that holds its outputs until its watchdog time expires. Any request restarts the watchdog time.
+/// Any write ends a watchdog trip.
 class VentingBoard final : public drivers::Board {
  public:
   explicit VentingBoard(const StoppableClock& clock) : clock_(clock) {}
@@ -95,11 +95,11 @@ class VentingBoard final : public drivers::Board {
 
   Nanoseconds watchdog_ns = watchdog;
   BusStatus next_connect = BusStatus::ok;
-  std::function<void()> on_exchange;  ///< function that is called before a request reaches the board
+  std::function<void()> on_exchange;  ///< function to call before a request reaches the board
   Nanoseconds lost_from = never;      ///< time from which exchanges fail [ns]
   Nanoseconds lost_until = never;     ///< time from which exchanges succeed again [ns]
   BusStatus how = BusStatus::timed_out;
-  bool request_arrives = false;  ///< true: if an exchange fails, the request has arrived and only the
+  bool request_arrives = false;  ///< true: in a failed exchange, the request has arrived, and only the
                                  ///< response is lost
   model::Validity validity = model::Validity::valid;
   bool monitored = true;  ///< false: the pressure monitors give no readings
@@ -129,21 +129,22 @@ class MotionSessionTest : public ::testing::Test {
  protected:
   MotionSessionTest() {
     rig_.loop.exchange_deadline_s = seconds(deadline);
-    // With 80 cycles, the bus fault comes after the watchdog trip, so that only the duration of a gap ends
-    // the session.
+    // 80 failed cycles last longer than the watchdog time. In these tests, the duration of a gap therefore
+    // ends the session before the limit of failed cycles does.
     rig_.settings.faults.bus_down_cycles = 80;
   }
   [[nodiscard]] StopRequest stop() {
     return [this] { return clock_.now() >= stop_at_; };
   }
-  /// Raises the pressure, holds it for 1 s and lowers it again, as calibrate does.
+  /// Raises the pressure, holds it for 1 s and lowers it, as `softgrip calibrate` does.
   MotionSession::Expected<void> move(MotionSession& session) {
     if (auto connected = session.connect(); !connected) return connected;
     if (auto up = session.ramp(0, pressure_kpa, speed_kpa_per_s); !up) return up;
     if (auto there = session.sample(1); !there) return tl::unexpected(there.error());
     return session.ramp(0, 0, speed_kpa_per_s);
   }
-  /// Returns the largest change of a command in one cycle that the limits and the requested speed allow.
+  /// Returns the largest change of a command in one cycle. The limits and the requested speed determine this
+  /// change.
   [[nodiscard]] double step_kpa() const { return speed_kpa_per_s / rig_.settings.rate_hz + equal_kpa; }
 
   rig::RigFile rig_ = daemon::testing::example_rig("rig.yaml");
@@ -195,7 +196,7 @@ TEST_F(MotionSessionTest, APauseOverAVacuumEndsTheMotionAtRest) {
   EXPECT_EQ(board_.outputs_kpa[0], 0);
 }
 
-/// Tests pauses at many times during the motion. Each pause is at least as long as the watchdog time.
+/// Tests pauses at many times during the motion. No pause is shorter than the watchdog time.
 TEST_F(MotionSessionTest, APauseAsLongAsTheWatchdogEndsTheMotionAndNothingRisesBehindIt) {
   const Nanoseconds begin = clock_.now();
   for (const Nanoseconds pause : {500 * ms, 501 * ms, 800 * ms, 1200 * ms, 60'000 * ms}) {
@@ -238,8 +239,8 @@ TEST_F(MotionSessionTest, AShorterPauseIsRiddenThroughWithoutALargerStep) {
   }
 }
 
-/// No program can detect a pause between its last reading of the clock and its write. The session must
-/// therefore return to the rest pressures immediately after this write.
+/// A program cannot detect a pause between its last reading of the clock and its write. The session must
+/// therefore detect the pause after this write and return to the rest pressures immediately.
 TEST_F(MotionSessionTest, APauseInTheMiddleOfAnExchangeIsFoundOutAfterItAndEndsTheMotion) {
   MotionSession session(rig_, board_, clock_, stop());
   ASSERT_TRUE(session.connect());
@@ -281,8 +282,8 @@ TEST_F(MotionSessionTest, RequestsThatAreLostForLongerThanTheWatchdogEndTheMotio
   }
 }
 
-/// The requests arrive, so the board holds its outputs. Because the responses are lost, the session cannot
-/// know that the requests arrive, so the motion must end.
+/// The requests arrive, so the board holds its outputs. The responses are lost, so the session cannot know
+/// that the requests arrive. The session must therefore end the motion.
 TEST_F(MotionSessionTest, RepliesThatAreLostForLongerThanTheWatchdogEndTheMotion) {
   board_.lost_from = clock_.now() + 1500 * ms;
   board_.lost_until = board_.lost_from + 700 * ms;
@@ -374,7 +375,7 @@ TEST_F(MotionSessionTest, WhatIsRequiredAndLostOnTheWayEndsTheMotionWithinItsCyc
     StoppableClock clock;
     VentingBoard board(clock);
     const Nanoseconds lost_at = clock.now() + 1500 * ms;
-    double stood_kpa = 0;  // output after the last exchange in which both sensors gave readings
+    double stood_kpa = 0;  // output after the last exchange with readings of both sensors [kPa]
     bool first_status = true;
     board.on_exchange = [&] {
       if (clock.now() < lost_at) return;

@@ -1,5 +1,5 @@
-// Tests that the reader of rig files accepts every rig file that softgrip init writes, for any answers of the
-// user.
+// Tests the rig files that softgrip init writes. For any answers of the user, the reader of rig files must
+// accept the written file.
 
 #include "tools/commissioning/rig_draft.h"
 
@@ -27,7 +27,7 @@ std::string take(RigDraft& draft, const std::string& key, const std::string& wor
   return "the rig draft has no question with the key " + key;
 }
 
-/// Returns a draft with the given values. All other values have their defaults.
+/// Returns a rig-file draft with the given values. All other values of the draft are defaults.
 RigDraft draft_of(const std::map<std::string, std::string>& given) {
   RigDraft draft;
   draft.sequences_path = config + "sequences";
@@ -155,7 +155,7 @@ TEST_F(RigDraftTest, AFallingSensorAndAnotherValve) {
 }
 
 TEST(DraftFacts, SayWhatIsWrongWithAnAnswer) {
-  std::filesystem::current_path(SOFTGRIP_SOURCE_DIR);  // the test searches names of boards and models
+  std::filesystem::current_path(SOFTGRIP_SOURCE_DIR);  // the test gives the paths of boards and models
                                                        // relative to this folder
   RigDraft draft;
   EXPECT_NE(take(draft, "board", "adam-6042").find("did you mean adam-6024?"), std::string::npos)

@@ -1,4 +1,5 @@
-// Tests that a calibration replaces its points in the rig file and leaves all other lines unchanged.
+// Tests that a calibration replaces the calibration points in the rig file and leaves all other lines
+// unchanged.
 
 #include "tools/commissioning/calibration_results.h"
 

@@ -6,8 +6,8 @@
 #include "model/file/model_file.h"
 #include "tools/exporting/c_fragments.h"
 
-// This file checks the text of the C source. tests/system/test_export.py compares its results with `softgrip
-// simulate`.
+// These tests check the text of the exported C source. tests/system/test_export.py compares the results of
+// the compiled source with `softgrip simulate`.
 namespace softgrip::tools::c_source_test {
 namespace {
 

@@ -1,4 +1,4 @@
-// Tests the benefit of the extended model in closed-loop control.
+// Tests the computation of the improvement that the extended model gives in closed-loop control.
 
 #include "tools/investigation/closed_loop_gain.h"
 
@@ -25,7 +25,7 @@ TEST(ClosedLoopGain, TheTwinsExtensionBeatsTheModelThatHidesItsLatency) {
   question.extended = loaded("bench_twin");
   question.span_mm = 27;
   const ClosedLoopGain gain = measure_closed_loop(question);
-#ifndef __SANITIZE_ADDRESS__  // with this sanitizer, the test takes ten times as long
+#ifndef __SANITIZE_ADDRESS__  // with AddressSanitizer, the test takes ten times as long
   EXPECT_LT(gain.wall_s, 5);
 #endif
   EXPECT_FALSE(gain.recalibrated.refused.empty());
@@ -57,9 +57,9 @@ TEST(ClosedLoopGain, AModelWithoutAnInverseIsPlannedForInstead) {
   EXPECT_NE(json["closed_loop"]["notes"].dump().find("is planned before the run"), std::string::npos);
 }
 
-/// Friction that relaxes within a few ticks has no inverse, and the steps of a planned feedforward are too
-/// long to compensate it. The other blocks of the model predict most of the motion, so they must be used as
-/// the feedforward.
+/// The model contains friction that relaxes within a few ticks. This friction has no inverse, and the time
+/// steps of a planned feedforward are too long to compensate it. The other blocks predict most of the motion,
+/// so the feedforward must use the model without the friction.
 TEST(ClosedLoopGain, WhatOfAModelCanBeUndoneIsItsFeedforward) {
   model::Model finger = model::with_block({}, {model::block_type<model::PrandtlIshlinskii>(),
                                                {0, 0, 0, 0, 0, 0.06, 4, 0.084, 7.3, 0.105, 11.2, 0.108}});
@@ -99,7 +99,7 @@ TEST(ClosedLoopGain, AModelThatMovesNothingIsLeftToThePid) {
 TEST(ClosedLoopGain, TheSameQuestionGivesTheSameNumbersAndEqualModelsGainNothing) {
   ClosedLoopQuestion question;
   question.recalibrated = question.extended = loaded("bench_twin");
-  question.span_mm = 11;  // half of the span that the reference 13 ± 7 mm needs
+  question.span_mm = 11;  // 11 mm; the reference 13 ± 7 mm would need a span of 22 mm
   const ClosedLoopGain one = measure_closed_loop(question);
   const ClosedLoopGain two = measure_closed_loop(question);
   EXPECT_EQ(one.extended.rmse_mm, two.extended.rmse_mm);

@@ -15,8 +15,8 @@ model::Model loaded(const std::string& path) {
   return model::load_model(path, problems).value();
 }
 
-/// The file of an earlier diagnosis must be removed, because a user would take it for a part of the new
-/// model.
+/// The command must remove the file of an earlier diagnosis, because a user would associate this file with
+/// the new model.
 TEST(DiagnosisFolder, HoldsTheModelOfTheFeedforwardWhereThatIsNotTheWholeOne) {
   const ScratchFolder scratch;
   const std::filesystem::path file = std::filesystem::path(scratch.path()) / "feedforward_model.yaml";

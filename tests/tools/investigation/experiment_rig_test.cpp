@@ -1,4 +1,5 @@
-// Tests the exit code of a command for each way in which the daemon of its experiment can end.
+// Tests the exit code of a command that runs an experiment, for each way in which the daemon of the
+// experiment can end.
 
 #include "tools/investigation/experiment_rig.h"
 
@@ -20,7 +21,7 @@ namespace {
 using control::SequenceEnd;
 using daemon::Ending;
 
-/// Returns a rig whose daemon reports a fault and then ends with this outcome.
+/// Returns a rig for an experiment. Its daemon reports a fault and then ends with `outcome`.
 ExperimentRig rig_that_ends(const daemon::Outcome& outcome) {
   document::Problems problems;
   rig::RigFile file = rig::load_rig(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems).value();

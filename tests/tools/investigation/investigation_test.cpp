@@ -1,5 +1,5 @@
-// Tests the steps of `softgrip investigate` for a finger with stress softening. The first log of the finger
-// does not separate the possible causes.
+// Tests the steps of `softgrip investigate` for a finger with stress softening. The first log of this finger
+// does not suffice to distinguish the possible causes.
 
 #include "tools/investigation/investigation.h"
 
@@ -29,18 +29,19 @@ model::Model loaded(const std::string& name) {
   return model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/" + name + ".yaml", problems).value();
 }
 
-/// Returns the true finger. Unlike the given model, it becomes softer after its largest load.
+/// Returns the model of the true finger. Its stress softening is not a part of the model that the command
+/// receives.
 model::Model finger() {
   return model::with_block(loaded("bench_twin"),
                            {sysid::find_cause("stress_softening")->forms.front().type, {0.006, 0}});
 }
 
-/// A command with two loads, of which the second is larger. No load is repeated.
+/// A command with two loads. The second load is larger than the first one, and no load is repeated.
 const sysid::Waveform first_load{
     "first", "", {{0, 0}, {1, 0}, {4, 30}, {7, 0}, {9, 0}, {13, 55}, {17, 0}, {20, 0}}};
 
-/// Returns the response of the finger to the waveform. With `after_first`, the first load and a long rest
-/// precede the waveform, because the finger retains the softening by this load.
+/// Returns the response of the finger to the waveform. If `after_first` is true, the first load and a long
+/// rest precede the waveform. The finger is then still softened by the first load.
 sysid::Log played(const sysid::Waveform& waveform, bool after_first, std::uint64_t seed) {
   sysid::Log log;
   log.name = log.path = waveform.name;
@@ -194,7 +195,8 @@ TEST(CommandPlayer, CallsTheCommandWithACommandFileAndReadsItsLog) {
   fs::remove_all(folder);
 }
 
-/// Tests a finger whose stiffness rises. No command can distinguish it from a finger with a nonlinear sensor.
+/// Tests a finger whose stiffness increases with the displacement. No command can distinguish this finger
+/// from a finger with a nonlinear sensor.
 class GaugeStepTest : public InvestigationTest {
  protected:
   void SetUp() override {

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::size_t samples = 400;
 
-/// Writes a log and returns its path. The log begins with a step of the command from 5 to 60 kPa, which the
-/// pressure follows with a lag of 0.3 s.
+/// Writes a log and returns its path. At the beginning of the log, the command jumps from 5 to 60 kPa, and
+/// the pressure follows with a lag of 0.3 s.
 std::string begun_at_a_step(const daemon::testing::TemporaryFolder& folder, bool measured = true) {
   const std::string path = folder.path() + "/step.csv";
   std::ofstream out(path);

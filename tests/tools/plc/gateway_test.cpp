@@ -23,7 +23,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Tests a gateway with masters. The test chooses the responses of the daemon.
+/// Tests the PLC gateway with several Modbus clients (masters). The test determines the responses of the
+/// daemon.
 class GatewayTest : public ::testing::Test {
  protected:
   static Settings shipped() {
@@ -42,7 +43,7 @@ class GatewayTest : public ::testing::Test {
     static_cast<void>(gateway_.serve(id, request, now_));
   }
   void write(Name name, std::uint16_t value) { write(plc_, name, {value}); }
-  /// Writes a command and its counter in one block of registers.
+  /// Writes a command and its counter in one block of registers, as a master does.
   void put(Masters::Id id, std::uint16_t counter, CommandCode command) {
     write(id, Name::command_counter, {counter, static_cast<std::uint16_t>(command), 1});
   }
@@ -55,7 +56,7 @@ class GatewayTest : public ::testing::Test {
     return modbus::word_at(frame, frame.size() - 2);
   }
   std::uint16_t read(Name name) { return read(plc_, name); }
-  /// Returns the outcome and the reason that this connection reads.
+  /// Returns the outcome and the reason that the gateway shows on this connection.
   std::pair<Outcome, Reason> end_of(Masters::Id id) {
     return {static_cast<Outcome>(read(id, Name::outcome)), static_cast<Reason>(read(id, Name::reason))};
   }
@@ -64,7 +65,7 @@ class GatewayTest : public ::testing::Test {
     gateway_.daemon_came(now_);
     EXPECT_EQ(sent(), (std::vector<std::string>{"hello", "watch"}));
   }
-  /// Returns the commands that were sent to the daemon since the last call.
+  /// Returns the commands that the gateway has sent to the daemon since the last call.
   std::vector<std::string> sent() {
     std::vector<std::string> commands;
     for (const Json& line : gateway_.lines_to_daemon()) {
@@ -82,8 +83,8 @@ class GatewayTest : public ::testing::Test {
       "sequence": null, "channels": []}})"),
                          now_);
   }
-  /// Advances the time in steps, as the loop of the server does. If `daemon_speaks` is true, the daemon sends
-  /// its state in each step.
+  /// Advances the time in steps, as the server does, and calls the gateway in each step. If `daemon_speaks`
+  /// is true, the daemon sends its state in each step.
   void pass(double duration_s, bool daemon_speaks = true) {
     for (const Nanoseconds end = now_ + nanoseconds(duration_s); now_ < end;) {
       now_ += Gateway::longest_pause;
@@ -113,7 +114,7 @@ TEST_F(GatewayTest, RefusesEachCommandOnceWithoutADaemon) {
   EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::no_such_command));
 }
 
-/// If a checked property does not hold, the fuzz target aborts and the test fails.
+/// The fuzz target aborts if a checked property does not hold, and the test then fails.
 TEST(PlcRequests, TheSeedsOfTheFuzzTargetAreAnsweredWholeAndCutOff) {
   std::size_t seeds = 0;
   for (const auto& entry :
@@ -144,8 +145,8 @@ TEST_F(GatewayTest, AnOldBlockFromASecondConnectionStartsNothing) {
   accept();
   put(second, 1, CommandCode::start);
   EXPECT_TRUE(sent().empty());
-  // The connection whose command was refused reads the reason. The other connection reads the end of its own
-  // command.
+  // On the connection whose command was refused, the gateway shows the reason. On the other connection, it
+  // shows the outcome of the executed command.
   EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
   EXPECT_EQ(end_of(plc_), std::pair(Outcome::accepted, Reason::none));
   EXPECT_EQ(read(second, Name::done_counter), 2);
@@ -159,8 +160,7 @@ TEST_F(GatewayTest, ACommandThatWasRefusedOnOneConnectionIsNotExecutedOnAnother)
   daemon_comes();
   const Masters::Id second = come();
   put(plc_, 0, CommandCode::none);
-  put(second, 1, CommandCode::start);  // the start is refused, because this connection has not written the
-                                       // newest counter
+  put(second, 1, CommandCode::start);  // refused, because this connection has not written the newest counter
   EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
   put(plc_, 1, CommandCode::start);
   EXPECT_TRUE(sent().empty());
@@ -176,6 +176,7 @@ TEST_F(GatewayTest, AStartThatIsOlderThanARefusedVentIsNotExecuted) {
   put(plc_, 0, CommandCode::none);
   put(second, 0, CommandCode::none);
   put(second, 2, CommandCode::vent);  // the vent is refused, because the start with counter 1 has not arrived
+                                      // yet
   EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
   put(plc_, 1, CommandCode::start);
   EXPECT_TRUE(sent().empty());
@@ -188,8 +189,8 @@ TEST_F(GatewayTest, TwoMastersDoNotWriteOneCommandTogether) {
   daemon_comes();
   const Masters::Id second = come("127.0.0.2");
   put(plc_, 0, CommandCode::none);
-  write(Name::command, 3);               // the first master prepares a vent
-  write(second, Name::command, {1, 1});  // the second master prepares a start
+  write(Name::command, 3);               // the first master prepares a vent without a new counter
+  write(second, Name::command, {1, 1});  // the second master prepares a start without a new counter
   EXPECT_EQ(read(Name::command), 3);
   write(Name::command_counter, 1);
   EXPECT_EQ(sent(), std::vector<std::string>{"vent"});
@@ -255,7 +256,8 @@ TEST_F(GatewayTest, KeepsTheReactionUntilADaemonHasConfirmedIt) {
   refuse({{"code", "busy"}});
   pass(0.1);
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
-  refuse({{"code", "refused"}, {"refusal", {{"code", "R07"}}}});  // "nothing to stop" confirms the stop, too
+  refuse({{"code", "refused"}, {"refusal", {{"code", "R07"}}}});  // "nothing to stop" confirms the stop as
+                                                                  // well
   pass(1);
   EXPECT_TRUE(sent().empty());
   EXPECT_FALSE(gateway_.watch().owes());
@@ -268,7 +270,8 @@ TEST_F(GatewayTest, TheAnswerToAnEarlierReactionDoesNotConfirmALaterOne) {
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
   write(Name::master_heartbeat, 6);
   pass(settings_.silence_s + 0.1);
-  EXPECT_TRUE(sent().empty());  // the gateway sends no second stop while the first has no response
+  EXPECT_TRUE(sent().empty());  // the gateway sends no second stop while the response to the first one is
+                                // missing
   accept();
   EXPECT_TRUE(gateway_.watch().owes());
   pass(0.1);
@@ -346,8 +349,8 @@ TEST_F(GatewayTest, WhatWaitedForTheCommandBeforeItIsSentAfterIt) {
   EXPECT_EQ(sent(), std::vector<std::string>{"start"});
 }
 
-/// The control loop may still execute the command, so the gateway must report its outcome as unknown, not as
-/// refused.
+/// The control loop may still execute the command. The gateway must therefore report the outcome as unknown,
+/// not as refused.
 TEST_F(GatewayTest, ACommandThatTheLoopDidNotAnswerHasAnUnknownEnd) {
   daemon_comes();
   put(plc_, 0, CommandCode::none);

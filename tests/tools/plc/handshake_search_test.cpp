@@ -1,7 +1,7 @@
-// Searches breadth first through every order of the actions of two masters, the gateway and the daemon, until
+// Searches breadth first through all orders of the actions of two masters, the gateway and the daemon, until
 // no new state appears. Each participant can repeat or delay an action, send half a request, or die. The
-// gateway is the real one, from the bytes of a request to the lines for the daemon. Masters and daemon are
-// minimal programs that follow their protocols.
+// search runs the real gateway: it passes the bytes of requests to the gateway and reads the lines for the
+// daemon. The masters and the daemon are minimal programs that follow their protocols.
 
 #include <gtest/gtest.h>
 
@@ -25,15 +25,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Duration by which each step of the simulated time advances. A master counts as silent after two steps. A
-/// connection counts as idle, and the daemon as silent, after one step.
+/// Length of one step of the simulated time. A master counts as silent after two steps without a heartbeat.
+/// After one step, a connection counts as idle, and a daemon that sends nothing counts as silent.
 constexpr Nanoseconds step = ns_per_s * 3 / 2;
 constexpr int silent_steps = 2;
 constexpr std::size_t plcs = 2;
 constexpr std::uint16_t start = 1;
 constexpr std::uint16_t vent = 3;
 
-/// Number of actions of each kind that may occur, so that the search ends.
+/// Remaining number of actions of each kind. The numbers are limited, so that the search ends.
 struct Budget {
   std::array<int, plcs> commands{};
   std::array<int, plcs> connections{};
@@ -42,24 +42,24 @@ struct Budget {
   int daemon_deaths = 0;
   int pauses = 0;
   int busy = 0;
-  bool impatient = false;  // masters may request a start while another command is executing
-  bool time = false;       // the time may advance, and the heartbeat of the first master may change
+  bool impatient = false;  // true: masters may request a start while another command is executing
+  bool time = false;       // true: the time may advance, and the heartbeat of the first master may change
 };
 
 Settings settings_of_the_search() {
   document::Problems problems;
   Settings settings = *load_settings(SOFTGRIP_SOURCE_DIR "/config/plc.yaml", problems);
   settings.max_masters = plcs;
-  settings.idle_s = 1e6;  // so long that the gateway closes no connection because it is idle
+  settings.idle_s = 1e6;  // so long that the gateway never closes a connection for being idle
   settings.registers.most_fingers = 1;
   return settings;
 }
 
-/// A block of registers that a master has written and that the gateway has not received.
+/// A block of registers that a master has written and that the gateway has not received yet.
 struct Frame {
   std::array<std::uint16_t, 7> words{};
-  int command = -1;  // index of the command in World::commands; -1: no command
-  int halts = 0;     // number of stops and vents that had been executed when the block was written
+  int command = -1;  // index of the command in the list of all commands; -1: no command
+  int halts = 0;     // number of stops and vents that were executed before the block was written
 
   [[nodiscard]] modbus::Bytes bytes() const {
     modbus::Bytes pdu{16, 0, 0, 0, 7, 14};
@@ -68,13 +68,15 @@ struct Frame {
   }
 };
 
-/// A connection of a master. The master sends a request after the response to its previous request.
+/// A connection of a master. The master sends a request after it has received the response to its previous
+/// request.
 struct Wire {
   std::size_t plc = 0;
   Masters::Id id = 0;
   modbus::RequestStream stream;
   std::optional<Frame> flying;
-  bool half = false;                       // the gateway has received the first half of the pending block
+  bool half = false;                       // true: the gateway has received the first half of the pending
+                                           // block
   std::optional<std::uint16_t> heartbeat;  // the last heartbeat that the gateway received on this connection
 };
 
@@ -88,18 +90,18 @@ struct Plc {
   int command = -1;
   std::uint16_t heartbeat = 0;
   std::uint16_t heard = 0;  // the last heartbeat of this master that the gateway received
-  // The connection on which the gateway has responded to the present block. On this connection, the master
-  // reads the end of its command.
+  // The connection on which the gateway has responded to the present block of the master. On this connection,
+  // the master reads the outcome of its command.
   Masters::Id answered_on = 0;
 };
 
-/// A command that a master has requested, and its progress.
+/// A command that a master has requested, and the progress of this command.
 struct Command {
   std::uint16_t code = 0;
   std::uint16_t counter = 0;
   bool executed = false;
-  // True if a busy daemon has refused the command, if another command has come after it, or if the gateway
-  // that executed it has died.
+  // True in three cases: a busy daemon has refused the command, a later command has replaced it, or the
+  // gateway that executed it has died.
   bool over = false;
   bool reported_refused = false;
 };
@@ -107,7 +109,7 @@ struct Command {
 struct Line {
   std::uint64_t id = 0;
   std::string command;
-  int asked = -1;  // index of the command in World::commands; -1: the line belongs to no command
+  int asked = -1;  // index of the command in the list of all commands; -1: the line belongs to no command
 };
 
 struct World {
@@ -125,11 +127,11 @@ struct World {
   bool paused = false;
   std::deque<Line> lines;
   std::deque<Json> answers;
-  // Data that the world records for its checks.
+  // Data that the search records for its checks.
   int halts = 0;  // number of executed stops and vents, including stops because of a silent master
   std::optional<Frame> waiting;
   bool watched = false;
-  bool owed = false;  // a master has become silent, and no daemon has executed a stop since
+  bool owed = false;  // true: a master has become silent, and no daemon has executed a stop since then
   bool stopped_since_beat = false;
   int beat_steps = 0;
   Nanoseconds reacted_at = 0;
@@ -146,8 +148,8 @@ struct World {
     if (!holds && broken.empty()) broken = otherwise;
   }
 
-  /// Transfers the lines of the gateway to the daemon at once. `cause` is the block because of which the
-  /// gateway sends them.
+  /// Transfers the lines of the gateway to the daemon immediately. `cause` is the block of registers that
+  /// made the gateway send these lines.
   void carry(const std::optional<Frame>& cause) {
     for (const Json& line : gateway->lines_to_daemon()) {
       const std::string command = line["command"];
@@ -184,19 +186,20 @@ struct World {
     std::erase_if(wires, [&](const Wire& wire) { return !gateway->masters().has(wire.id); });
   }
 
-  // Actions of a master. Its earlier connections remain open, because the gateway cannot distinguish a dead
-  // from a slow connection.
+  // Actions of a master. The earlier connections of the master remain open, because the gateway cannot
+  // distinguish a dead connection from a slow one.
   bool connect(std::size_t plc) {
     const auto id = gateway->masters().admit(address_of(plc), now);
     drop_closed();
     if (id) wires.push_back({plc, *id, {}, {}, false, {}});
     return id.has_value();
   }
-  /// Sends the present block of a master. A master sends it in every cycle, even if its program has stopped.
+  /// Sends the present block of a master. A master sends this block in every cycle, even if its program has
+  /// stopped.
   void write(std::size_t plc) { write_on(*wire_of(plc)); }
   void write_on(Wire& wire) {
     Plc& master = masters[wire.plc];
-    // Only the heartbeat of the first master changes. The heartbeat of the second is constant.
+    // The heartbeat of the first master changes. The heartbeat of the second master is constant.
     if (left.time && wire.plc == 0 && master.alive) master.heartbeat = master.heartbeat == 1 ? 2 : 1;
     if (left.time && wire.plc == 1) master.heartbeat = 9;
     Frame frame;
@@ -246,7 +249,8 @@ struct World {
     const modbus::Bytes& frame = reply.pieces.at(0).bytes;
     return {modbus::word_at(frame, 9), modbus::word_at(frame, 11), modbus::word_at(frame, 13)};
   }
-  /// Reads the end of the master's command and continues with the next step of docs/reference/plc-map.md.
+  /// Reads the outcome of the master's command and continues with the next step of the protocol in
+  /// docs/reference/plc-map.md.
   void look(std::size_t plc) {
     Plc& master = masters[plc];
     const auto [done, outcome_word, reason_word] = read(wire_of(plc)->id);
@@ -271,8 +275,8 @@ struct World {
     check(!asked.executed || asked.over, "a command was executed, but is reported as refused");
     asked.reported_refused = true;
   }
-  /// Checks that a command that is reported as accepted has been executed. If two masters request the same
-  /// command with the same counter, both read the same outcome.
+  /// Checks that a command has been executed if the gateway reports it as accepted. If two masters request
+  /// the same command with the same counter, both read the same outcome.
   void judge_accepted(const Plc& master) {
     const bool executed = std::any_of(commands.begin(), commands.end(), [&](const Command& asked) {
       return asked.executed && asked.counter == master.counter && asked.code == master.code;
@@ -289,7 +293,7 @@ struct World {
     commands.push_back({code, master.counter, false, false, false});
   }
 
-  // The following functions are actions of the simulated daemon.
+  // The functions below are actions of the simulated daemon.
   void daemon_starts() {
     runs = true;
     gateway->daemon_came(now);
@@ -331,8 +335,8 @@ struct World {
     for (Command& command : commands) command.over = command.over || command.executed;
     wires.clear();
     waiting.reset();
-    // The lines of the dead gateway reach the daemon before the lines of the new gateway. The daemon's
-    // responses to the dead gateway are lost.
+    // The lines of the dead gateway reach the daemon before the lines of the new gateway. The responses of
+    // the daemon to the dead gateway are lost.
     answers.clear();
     for (Plc& master : masters) master.heard = 0;
     watched = owed = stopped_since_beat = false;
@@ -351,8 +355,9 @@ struct World {
   }
 
   [[nodiscard]] std::string key() const;
-  /// Returns a defect that remains even if no further failure occurs, or "" if there is none. Possible
-  /// defects: the stop for a silent master is lost, or the first master can never execute a command again.
+  /// Returns a defect that remains even if no later failure occurs, or "" if there is no defect. There are
+  /// two possible defects: the stop for a silent master is lost, or the first master can never execute a
+  /// command again.
   [[nodiscard]] std::string lost_for_good() const;
 };
 
@@ -374,8 +379,8 @@ class Key {
   std::string text_;
 };
 
-/// Returns as text the part of the state that determines the further actions. Times are given in steps before
-/// the present time. Ids are replaced by their rank.
+/// Returns a text that contains all parts of the state on which the later actions depend. The text contains
+/// times relative to the present time, in steps. It contains the rank of each id instead of the id.
 std::string World::key() const {
   Key key;
   const Handshake& handshake = gateway->handshake();
@@ -443,7 +448,7 @@ std::string World::lost_for_good() const {
   world.paused = false;
   settle();
   if (world.owed || world.gateway->watch().owes()) return "the reaction to a silent master is lost";
-  // The programs of all masters stop, and their connections repeat the last blocks.
+  // The programs of all masters stop, but their connections repeat the last blocks.
   for (Plc& master : world.masters) master.alive = false;
   for (int i = 0; i < 2 * silent_steps; ++i) {
     for (std::size_t wire = 0; wire < world.wires.size(); ++wire) {
@@ -483,7 +488,7 @@ struct Step {
   std::function<void(World&)> take;
 };
 
-/// Returns the actions that are possible in a state.
+/// Returns the actions that are possible in a given state.
 std::vector<Step> steps_from(World& world) {
   std::vector<Step> steps;
   const auto add = [&](bool possible, std::string name, std::function<void(World&)> take) {

@@ -58,11 +58,12 @@ TEST(Handshake, OnlyTheNextCounterIsExecuted) {
   for (const int wrong : {0, 1, 4, 5, 40000, 65535}) {
     EXPECT_FALSE(handshake.write(plc, {static_cast<std::uint16_t>(wrong), start})) << wrong;
     EXPECT_TRUE(plc.refused) << wrong;
-    // A wrong counter must also be refused if the block contains no command.
+    // The gateway must refuse a wrong counter even if the block contains no command.
     EXPECT_FALSE(handshake.write(plc, {static_cast<std::uint16_t>(wrong), none})) << wrong;
     EXPECT_TRUE(plc.refused) << wrong;
   }
-  // The refusals must not change the outcome of the last command. The next counter must execute its command.
+  // The refusals must not change the outcome of the last command. The command with the next counter must be
+  // executed.
   EXPECT_EQ(handshake.done_counter(), 2);
   EXPECT_EQ(handshake.outcome(), Outcome::accepted);
   EXPECT_TRUE(handshake.write(plc, {3, start}));
@@ -79,7 +80,7 @@ TEST(Handshake, ABlockThatArrivesLateOnAnotherConnectionIsRefused) {
   handshake.finish(1, Outcome::accepted);
   EXPECT_TRUE(handshake.write(second, {2, vent}));
   handshake.finish(2, Outcome::accepted);
-  // The blocks of the first connection arrive late, in the order in which they were sent.
+  // The blocks of the first connection arrive late, but in the order in which they were sent.
   EXPECT_FALSE(handshake.write(first, {1, start}));
   EXPECT_TRUE(first.refused);
   EXPECT_FALSE(handshake.write(first, {2, start}));
@@ -88,7 +89,7 @@ TEST(Handshake, ABlockThatArrivesLateOnAnotherConnectionIsRefused) {
   EXPECT_TRUE(first.refused);
   EXPECT_FALSE(second.refused);
   EXPECT_EQ(handshake.done_counter(), 2);
-  // When the connection has written the newest counter, it may send commands.
+  // After this connection has written the newest counter, it may send commands.
   EXPECT_FALSE(handshake.write(first, {2, none}));
   EXPECT_FALSE(first.refused);
   EXPECT_TRUE(handshake.write(first, {3, start}));
@@ -101,13 +102,13 @@ TEST(Handshake, OfTwoMastersThatCountToTheSameNumberTheSecondIsRefused) {
   EXPECT_FALSE(handshake.write(first, {0, none}));
   EXPECT_FALSE(handshake.write(second, {0, none}));
   EXPECT_TRUE(handshake.write(first, {1, start}));
-  EXPECT_FALSE(handshake.write(second, {1, vent}));  // the vent is refused, so that this connection cannot
-                                                     // read that it was accepted
+  EXPECT_FALSE(handshake.write(second, {1, vent}));  // refused; otherwise, this master would read that its
+                                                     // vent was accepted
   EXPECT_TRUE(second.refused);
   handshake.finish(1, Outcome::accepted);
   EXPECT_FALSE(handshake.write(second, {1, vent}));
   EXPECT_TRUE(second.refused);
-  // A master that connects again sends its last block again.
+  // When a master opens a new connection, it sends its last block a second time.
   Cursor again;
   EXPECT_FALSE(handshake.write(again, {1, start}));
   EXPECT_FALSE(again.refused);
@@ -119,7 +120,7 @@ TEST(Handshake, ANextCommandMayBePreparedBehindTheLastCounter) {
   EXPECT_FALSE(handshake.write(plc, {0, none}));
   EXPECT_TRUE(handshake.write(plc, {1, start}));
   handshake.finish(1, Outcome::accepted);
-  EXPECT_FALSE(handshake.write(plc, {1, vent}));  // no refusal, because the master increments the counter in
+  EXPECT_FALSE(handshake.write(plc, {1, vent}));  // not refused, because the master increments the counter in
                                                   // its next cycle
   EXPECT_FALSE(plc.refused);
   EXPECT_EQ(handshake.outcome(), Outcome::accepted);
@@ -134,13 +135,12 @@ TEST(Handshake, OnlyStopAndVentOvertake) {
   EXPECT_FALSE(handshake.write(plc, {2, release}));
   EXPECT_TRUE(handshake.waits());
   EXPECT_FALSE(handshake.take_waiting());
-  EXPECT_FALSE(handshake.write(plc, {3, release}));  // the release is refused, because another command
-                                                     // already waits
+  EXPECT_FALSE(handshake.write(plc, {3, release}));  // refused, because another command already waits
   EXPECT_TRUE(plc.refused);
   EXPECT_TRUE(handshake.write(plc, {3, vent}));
   EXPECT_FALSE(handshake.waits());
-  handshake.finish(1, Outcome::accepted);  // this end is not reported, because a later command has superseded
-                                           // the command
+  handshake.finish(1, Outcome::accepted);  // not reported, because a later command has superseded this
+                                           // command
   EXPECT_EQ(handshake.outcome(), Outcome::executing);
   handshake.finish(3, Outcome::accepted);
   EXPECT_EQ(handshake.done_counter(), 3);

@@ -22,7 +22,7 @@ TEST(MasterWatch, TheReactionIsOwedUntilItIsConfirmedAndOncePerSilence) {
   watch.beat(1000);
   EXPECT_TRUE(watch.look(1101));
   EXPECT_TRUE(watch.owes());
-  watch.beat(1200);  // the heartbeat has resumed, but the stop is still required
+  watch.beat(1200);  // the heartbeat has resumed, but the stop is still to be executed
   EXPECT_FALSE(watch.silent(1200));
   EXPECT_TRUE(watch.owes());
   watch.confirm();
@@ -32,7 +32,7 @@ TEST(MasterWatch, TheReactionIsOwedUntilItIsConfirmedAndOncePerSilence) {
   EXPECT_TRUE(watch.look(1301));
   EXPECT_TRUE(watch.owes());
   watch.confirm();
-  EXPECT_FALSE(watch.look(1400));  // the silence that was detected at 1301 continues
+  EXPECT_FALSE(watch.look(1400));  // no new silence: the silence that was detected at 1301 continues
   EXPECT_FALSE(watch.owes());
   EXPECT_TRUE(watch.silent(1400));
 }

@@ -106,7 +106,7 @@ TEST_F(Places, AnAddressWithoutAPlaceGetsOneOfTheAddressWithTheMost) {
   const Masters::Id plc = come();
   EXPECT_FALSE(masters_.has(first));
   EXPECT_TRUE(masters_.has(second) && masters_.has(other) && masters_.has(plc));
-  // Now the largest number of connections is reached.
+  // Each address has one connection at this point, and the largest number of connections is reached.
   EXPECT_FALSE(masters_.admit("10.0.0.4", now_));
 }
 
@@ -168,9 +168,9 @@ TEST_F(Places, AHeartbeatIsAChangeOnOneConnection) {
   const auto beats = [&](Masters::Id id, std::uint16_t value) {
     return masters_.take_heartbeat(*masters_.find(id), value);
   };
-  EXPECT_FALSE(beats(first, 0));  // no change, because the register contains 0 from the start
+  EXPECT_FALSE(beats(first, 0));  // no change: the register contains 0 from the start
   EXPECT_TRUE(beats(first, 5));
-  EXPECT_FALSE(beats(second, 5));  // no change, because the same master has opened a second connection
+  EXPECT_FALSE(beats(second, 5));  // no change: the two connections belong to the same master
   EXPECT_TRUE(beats(second, 6));
   EXPECT_FALSE(beats(first, 5));
   EXPECT_FALSE(beats(second, 6));

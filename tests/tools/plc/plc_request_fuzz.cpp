@@ -1,5 +1,5 @@
-// Fuzz target: takes the bytes as those that a master sends to softgrip-plc, in pieces of any size, without a
-// daemon.
+// Fuzz target: passes arbitrary bytes to softgrip-plc as a master would send them, in pieces of any size. No
+// daemon runs.
 //
 //   cmake --preset fuzz && cmake --build --preset fuzz --target plc_request_fuzz
 //   build/fuzz/tests/plc_request_fuzz -max_total_time=660 -max_len=1024 NEW_CORPUS
@@ -28,7 +28,7 @@ plc::Settings shipped() {
   return *settings;
 }
 
-/// Checks that the reply is one complete frame, and that it matches the request.
+/// Checks that the reply is exactly one complete frame. Also checks that the reply matches the request.
 void check(const modbus::Request& request, const modbus::Reply& reply) {
   require(reply.pieces.size() == 1 && !reply.disconnect);
   const std::span<const std::uint8_t> frame = reply.pieces.front().bytes;
@@ -39,7 +39,7 @@ void check(const modbus::Request& request, const modbus::Reply& reply) {
   require((frame[header] & 0x7fU) == (request.pdu[0] & 0x7fU));
 }
 
-/// Returns the value of a register that the gateway writes, read with a separate request.
+/// Returns the value of a register that the gateway writes. Reads this register with a separate request.
 std::uint16_t read(plc::Gateway& gateway, plc::Masters::Id id, std::uint16_t address, Nanoseconds now) {
   modbus::Request request{0, 1, {3}};
   modbus::append_word(request.pdu, address);
@@ -69,7 +69,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       now += 10'000'000;
       check(*request, gateway.serve(*master, *request, now));
       require(read(gateway, *other, settings.registers.at(Name::map_version), now) == plc::version_of_map);
-      // Without a daemon, no command can be executing or accepted.
+      // Without a daemon, the gateway must not report a command as executing or accepted.
       for (const auto reader : {*master, *other}) {
         const auto outcome =
             static_cast<plc::Outcome>(read(gateway, reader, settings.registers.at(Name::outcome), now));

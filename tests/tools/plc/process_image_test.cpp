@@ -71,7 +71,7 @@ TEST_F(ProcessImage, ACommandBecomesARequest) {
   Command command{1, 1};
   EXPECT_EQ(request_of(settings_, command)->dump(), R"({"command":"start","sequence":"pick_stone"})");
   command.squeeze = 425;
-  command.speed = 500;  // the speed must be ignored, because recipe 1 has no parameter for it
+  command.speed = 500;  // the gateway must ignore the speed, because recipe 1 has no parameter for it
   EXPECT_EQ((*request_of(settings_, command))["parameters"].dump(), R"({"squeeze_kpa":4.25})");
   command.recipe = 99;
   EXPECT_EQ(request_of(settings_, command).error(), Reason::no_such_recipe);

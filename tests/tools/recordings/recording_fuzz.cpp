@@ -1,5 +1,5 @@
-// Fuzz target of the readers of recordings and of the daemon's lines. The bytes are read as run.json of
-// a recording, as a status and as an event of the socket. All bytes must be read without a crash.
+// Fuzz target of the readers of recordings and of the daemon's lines. Reads the bytes as run.json of a
+// recording, and as a status line and an event line of the daemon. No bytes may cause a crash.
 //
 //   scripts/fuzz.sh recording_fuzz 30
 
@@ -20,7 +20,7 @@ namespace {
 
 using namespace softgrip;
 
-/// Folder of a recording in memory, whose run.json contains the bytes of the fuzzer.
+/// A folder in memory with a recording. The file run.json contains the bytes of the fuzzer.
 class Folder {
  public:
   Folder() : path_("/dev/shm/softgrip_recording_fuzz_" + std::to_string(getpid())) {
@@ -44,7 +44,7 @@ class Folder {
 
 void show(const nlohmann::ordered_json& json) {
   if (!json.is_object()) return;
-  // Invalid lines of a daemon may cause an error message. They must have no other effect.
+  // Invalid lines of a daemon may cause an exception of the JSON library. They must have no other effect.
   try {
     for (const std::string& line : tools::view_of(json, {80, true, true})) {
       if (line.find('\n') != std::string::npos) std::abort();
@@ -67,7 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::ofstream(folder.path() + "/run.json", std::ios::binary) << text;
   document::Problems problems;
   const auto recording = sysid::read_recording(folder.path(), problems);
-  // The rows are complete, so the recording must open for any run.json.
+  // The rows of run.csv are complete, so the recording must be readable with any run.json.
   if (!recording || recording->channels.size() != 1 || recording->channels.front().size() != 3) std::abort();
   show(nlohmann::ordered_json::parse(text, nullptr, false));
   return 0;

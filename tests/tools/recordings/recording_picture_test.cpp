@@ -70,8 +70,8 @@ TEST_F(RecordingPicture, SplitsChannelsAndKeepsWhatHappened) {
   EXPECT_EQ(picture.find("<b>"), std::string::npos) << "texts are escaped";
 }
 
-// During a grip, the reference is beyond the surface of the object. A displacement that is 4 mm short of the
-// reference is therefore not a tracking error.
+// During a grip, the reference is beyond the surface of the object. The finger stops 4 mm before the
+// reference, so these 4 mm are not a tracking error.
 TEST_F(RecordingPicture, WhatTheObjectTakesIsNoTrackingError) {
   write("run.csv",
         "time_s,pressure_command_kpa,displacement_mm,reference_mm,state,step,result\n"
@@ -99,7 +99,7 @@ TEST_F(RecordingPicture, WhatTheObjectTakesIsNoTrackingError) {
   EXPECT_NE(picture.find(">gripping<"), std::string::npos);
 }
 
-// A grip that finds no object is free motion until its end.
+// If a grip finds no object, the whole grip is a free motion.
 TEST_F(RecordingPicture, AGripThatFoundNothingIsFreeMotion) {
   write("run.csv",
         "time_s,pressure_command_kpa,displacement_mm,reference_mm,state,step,result\n"

@@ -1,4 +1,4 @@
-// Tests softgrip report --verify with the files that softgrip identify has written.
+// Tests softgrip report --verify with the result files of softgrip identify.
 
 #include "tools/verification/verification.h"
 
@@ -90,7 +90,7 @@ TEST_F(Verification, ACallThatWouldWriteElsewhereIsNotMade) {
   EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("key `call`"), std::string::npos);
 }
 
-/// A report may come from another program or from an attacker. For every malformed report, the command must
+/// Another program or an attacker may have written a report. For every malformed report, the command must
 /// print an error message and return exit code 3.
 TEST_F(Verification, AMalformedReportIsRefusedWithASentence) {
   const std::string good = read("report/identify.json");
@@ -133,7 +133,7 @@ TEST_F(Verification, AMalformedReportIsRefusedWithASentence) {
     run("report --verify report --json");
     EXPECT_TRUE(nlohmann::json::accept(read("out.txt"))) << read("out.txt").substr(0, 200);
   }
-  // The value of "software" has a wrong type, but the verification does not need this value.
+  // The value of "software" has a wrong type. The verification does not use this value, so it must succeed.
   write("report/identify.json", spoilt("/software", {1}));
   EXPECT_EQ(verified(0)["reported_by"], "");
 }

@@ -82,7 +82,7 @@ TEST(Commander, ADaemonThatHangsHoldsNoOne) {
   for (int i = 0; i < 5000 && !ended; ++i) {
     const auto sent = commander.send({{"command", "stop"}}, 0);
     commander.look_after(0);
-    // If the daemon does not accept the request, the commander itself must give an error response.
+    // If the daemon does not accept a request, the commander must produce an error response itself.
     const auto answer = sent ? commander.take_answer(*sent, 0) : std::nullopt;
     ended = answer && (*answer)["error"]["code"] == "no_answer";
     if (sent && !answer) commander.forget(*sent);
@@ -91,7 +91,7 @@ TEST(Commander, ADaemonThatHangsHoldsNoOne) {
   ::unlink(path.c_str());
 }
 
-/// Tests with a daemon whose lines the test reads and writes.
+/// Tests with a simulated daemon: the test reads and writes the lines of the daemon.
 class CommanderTest : public ::testing::Test {
  protected:
   CommanderTest() : listener_(std::move(*net::listen_unix(path_))) {}
@@ -106,7 +106,7 @@ class CommanderTest : public ::testing::Test {
     EXPECT_TRUE(sent);
     return sent.value_or(0);
   }
-  /// Returns the requests that have arrived since the last call, except hello requests.
+  /// Returns the requests that have arrived at the daemon since the last call. Omits hello requests.
   std::vector<Json> heard() {
     while (Descriptor next = net::accept_client(listener_)) client_ = std::move(next);
     std::string text;
@@ -133,7 +133,7 @@ class CommanderTest : public ::testing::Test {
     now_ += static_cast<Nanoseconds>(duration_s * static_cast<double>(ns_per_s));
     commander_.look_after(now_);
   }
-  /// Checks that the only new request stops this start. Returns this request.
+  /// Checks that exactly one new request has arrived and that it stops this start. Returns the new request.
   Json expect_stop_of(const Json& start) {
     const std::vector<Json> lines = heard();
     EXPECT_EQ(lines.size(), 1U);

@@ -38,11 +38,10 @@ TEST(Places, ANewcomerGetsThatOfTheSlowestQuestion) {
 }
 
 TEST(Places, AViewerMakesNoOneLeaveWhoTakesWhatHeIsSent) {
-  const std::vector<Guest> guests{{Stay::lingering, Role::look, long_ago, 0},  // the connection of an open
-                                                                               // page that has made no
+  const std::vector<Guest> guests{{Stay::lingering, Role::look, long_ago, 0},  // an open page, without
                                                                                // progress for a long time
-                                  {Stay::lingering, Role::look, just, 100},    // the connection of a download
-                                                                               // that makes progress
+                                  {Stay::lingering, Role::look, just, 100},    // a download that makes
+                                                                               // progress
                                   {Stay::lingering, Role::operate, long_ago, 100},
                                   {Stay::brief, Role::look, long_ago, 0},
                                   {Stay::asking, Role::none, long_ago, 0}};

@@ -31,8 +31,8 @@ class RecordingsTest : public ::testing::Test {
     fs::create_directories(folder_ / recording);
     std::ofstream(folder_ / recording / file) << file;
   }
-  /// Returns the list of recordings as of one minute later. At that time, every time stamp is so old that
-  /// later changes would be visible.
+  /// Returns the list of recordings for a time one minute from now. At that time, the time stamps of the
+  /// files are so old that a later change of a file would be visible.
   std::string list() { return recordings_.list(wall_time_now() + 60 * ns_per_s).dump(); }
 
   fs::path folder_ = fs::temp_directory_path() / ("recordings_" + std::to_string(::getpid()));

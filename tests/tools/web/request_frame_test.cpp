@@ -70,7 +70,7 @@ TEST(RequestFrame, HeadsHaveABound) {
       << "the request must be refused before the end of its header";
 }
 
-/// If a checked property does not hold, the fuzz target aborts and the test fails.
+/// The fuzz target aborts if a checked property does not hold, and the test then fails.
 TEST(RequestFrame, TheSeedsOfTheFuzzTargetAreServedWholeAndCutOff) {
   std::size_t seeds = 0;
   for (const auto& entry :

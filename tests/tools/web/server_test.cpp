@@ -1,4 +1,4 @@
-// Tests the server with clients on real sockets, without a daemon.
+// Tests the web server with clients on real sockets. No daemon runs.
 
 #include "tools/web/server.h"
 
@@ -59,7 +59,7 @@ class ServerTest : public ::testing::Test {
 
   Descriptor connect() const {
     Descriptor socket{::socket(AF_INET, SOCK_STREAM, 0)};
-    // A small receive buffer of the client, so that most of the response remains in the server.
+    // A small receive buffer of the client, so that most of a large response remains in the server.
     const int small = 4096;
     ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &small, sizeof small);
     sockaddr_in address{};
@@ -86,7 +86,7 @@ class ServerTest : public ::testing::Test {
     say(socket, request);
     return all_from(socket);
   }
-  /// Repeats the request until the server has a connection for it, at most 100 times. Returns the response.
+  /// Sends the request at most 100 times, until the server has a free connection. Returns the last response.
   std::string ask_patiently(const std::string& request) const {
     std::string answer;
     for (int attempt = 0; attempt < 100 && (answer.empty() || answer.starts_with(turned_away)); ++attempt) {
@@ -174,11 +174,11 @@ TEST_F(ServerTest, AFileThatBecomesShorterEndsItsAnswer) {
   EXPECT_TRUE(ask(get_page).starts_with("HTTP/1.1 200"));
 }
 
-/// A daemon that responds to a command when the test calls a function.
+/// A simulated daemon. It responds to a command when the test calls a function.
 class ScriptedDaemon {
  public:
   explicit ScriptedDaemon(const std::string& path) : listener_(std::move(*net::listen_unix(path))) {}
-  /// Returns the next command of the server, or null if none arrives in time.
+  /// Returns the next command that the server sends. Returns null if no command arrives within 10 s.
   nlohmann::json next_command() {
     for (;;) {
       const std::size_t end = text_.find('\n');

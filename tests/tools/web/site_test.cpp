@@ -1,4 +1,4 @@
-// Tests the class Site as a function from a request to a response.
+// Tests the class Site. For each request, checks the response that Site returns.
 
 #include "tools/web/site.h"
 

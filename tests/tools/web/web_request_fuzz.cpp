@@ -1,5 +1,5 @@
-// Fuzz target of the request parser of softgrip-web: for any bytes of a client it refuses, answers or waits
-// for more bytes.
+// Fuzz target of the request parser of softgrip-web: for any bytes of a client, the parser refuses the
+// request, answers it or waits for more bytes.
 //
 //   cmake --preset fuzz && cmake --build --preset fuzz --target web_request_fuzz
 //   build/fuzz/tests/web_request_fuzz -max_total_time=660 -max_len=12000 NEW_CORPUS
@@ -25,7 +25,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   const Frame frame = frame_of(bytes);
   if (frame.state == Frame::State::incomplete) {
-    // The server must not store more bytes than this for an incomplete request.
+    // For an incomplete request, the server must not store more bytes than the longest head plus the longest
+    // body.
     if (size >= longest_head + longest_body) std::abort();
     return 0;
   }
@@ -35,7 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   if (frame.size > size) std::abort();
   const Outcome outcome = site.serve(bytes.substr(0, frame.size), 0);
-  // Every request must be answered at once, except a command, which waits for the daemon.
+  // The server must answer every request immediately, except a command, whose answer comes from the daemon.
   if (!outcome.command && !outcome.bytes.starts_with("HTTP/1.1 ")) std::abort();
   if (outcome.command && !(*outcome.command)["command"].is_string()) std::abort();
   return 0;

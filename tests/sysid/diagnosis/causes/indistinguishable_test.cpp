@@ -1,5 +1,5 @@
-// Tests that two causes that no command can distinguish are listed together, even if the form of one of them
-// fits the data better.
+// Tests two causes that no command can distinguish. They must be listed together, even if the model form of
+// one of them fits the data better.
 
 #include "sysid/diagnosis/causes/indistinguishable.h"
 
@@ -43,8 +43,8 @@ TEST(Indistinguishable, AreNoneWhereMemoryStandsBetweenThem) {
     EXPECT_TRUE(indistinguishable_from(cause("stiffening"), with(loaded("bench_twin"), id))) << id;
 }
 
-/// A finger that stiffens more sharply than the stiffening model of the catalogue can describe. So the model
-/// of a nonlinear sensor fits the data better.
+/// A finger that stiffens more sharply than the stiffening model of the catalogue. The model of a nonlinear
+/// sensor therefore fits the data of this finger better.
 class BentRig : public ::testing::Test {
  protected:
   static Selection select() {
@@ -66,7 +66,7 @@ class BentRig : public ::testing::Test {
     return select_causes(data, std::move(base), 0.03, divide(data.records, 8), one);
   }
 
-  /// Returns the result of select(). The function is called once for all tests.
+  /// Returns the result of select(). The first call computes this result, and all tests share it.
   static const Selection& selected() {
     static const Selection selection = select();
     return selection;
@@ -84,7 +84,7 @@ TEST_F(BentRig, IsNotGivenOneNameOfTheTwo) {
                     [&](const Cause& alternative) { return alternative == indistinguishable; });
   EXPECT_EQ(listed, 1);
   // The model with the first cause fits the data better than the model with the second cause. Without the
-  // rule for indistinguishable causes, only the first cause would be named.
+  // rule for indistinguishable causes, the first cause alone would be named.
   const auto score = std::find_if(chosen.candidates.begin(), chosen.candidates.end(),
                                   [&](const CandidateScore& s) { return s.cause == indistinguishable; });
   ASSERT_NE(score, chosen.candidates.end());

@@ -29,7 +29,7 @@ TEST(Advice, IsGivenForEveryPairThatNoWaveformTellsApart) {
 
 TEST(Advice, IsNotNeededWhereAWaveformTells) {
   EXPECT_TRUE(advice_for("backlash", "contact", {.separable = true}).empty());
-  // If the pressure column is missing, the advice is to record the pressure, because this is simpler than an
+  // If the log has no pressure column, the advice must be to record the pressure. This is simpler than an
   // experiment.
   EXPECT_TRUE(says(advice_for("valve_lag", "sensor_lag", {.separable = true}), "record pressure_kpa"));
   EXPECT_TRUE(advice_for("valve_lag", "sensor_lag", {.pressure_recorded = true, .separable = true}).empty());

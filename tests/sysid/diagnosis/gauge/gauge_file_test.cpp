@@ -1,4 +1,4 @@
-// Tests that the reader checks gauge files strictly. An error message names the line, the column and a
+// Tests that the reader checks gauge files strictly. An error message must state the line, the column and a
 // correction.
 
 #include "sysid/diagnosis/gauge/gauge_file.h"

@@ -1,5 +1,5 @@
-// Tests a diagnosis from logs and a gauge check. The gauge check rules out alternatives. It can also replace
-// or withdraw the named cause.
+// Tests a diagnosis from logs together with a gauge check. The gauge check rules out alternatives. It can
+// also replace the named cause or withdraw it.
 
 #include "sysid/diagnosis/gauge/gauge_verdict.h"
 
@@ -31,7 +31,7 @@ std::vector<Log> logs_of(const model::Model& truth) {
           simulated(truth, model::SignalName::sp2, 25, noise_mm, 2)};
 }
 
-/// Returns the readings that the sensor of the model `truth` has during a gauge check.
+/// Returns the readings of a sensor during a gauge check. `truth` is the model of this sensor.
 GaugeFile gauge_of(const model::Model& truth, double noise = 0.01) {
   const SensorShape sensor{static_sensor_blocks(truth), 0};
   GaugeFile file{"gauge.csv", "", {}};
@@ -59,7 +59,8 @@ void expect_found(const Diagnosis& d, const std::string& id) {
   ASSERT_EQ(d.causes.size(), 1U);
   EXPECT_EQ(d.causes[0].cause.id, id);
   EXPECT_TRUE(d.causes[0].alternatives.empty());
-  // The extension, its parameters and the held-out errors in the result must all belong to the named cause.
+  // The result contains an extended model, its parameters and its held-out errors. All of them must belong to
+  // the named cause.
   EXPECT_TRUE(model::position_of(d.extended_model, id));
   ASSERT_EQ(d.extended.causes.size(), 1U);
   EXPECT_EQ(d.extended.causes[0].id, id);
@@ -75,7 +76,7 @@ double value_of(const NamedCause& named, const std::string& parameter) {
   return NAN;
 }
 
-/// Checks the section about the gauge check in the JSON of a diagnosis.
+/// Checks the part of the JSON of a diagnosis that describes the gauge check.
 void expect_gauge(const nlohmann::ordered_json& json, const GaugeFile& gauge) {
   EXPECT_EQ(json["file"], "gauge.csv");
   EXPECT_EQ(json["readings"].size(), gauge.readings.size());
@@ -84,7 +85,7 @@ void expect_gauge(const nlohmann::ordered_json& json, const GaugeFile& gauge) {
   EXPECT_EQ(json["hypotheses"].size(), 2U);
 }
 
-/// Expects that the diagnosis proposes a gauge check as the next experiment.
+/// Checks that the diagnosis proposes a gauge check as the next experiment.
 void expect_check_proposed(const Diagnosis& before) {
   const NextExperiment next = design_experiment(before, {});
   EXPECT_FALSE(next.best);
@@ -122,15 +123,16 @@ TEST(GaugeVerdict, AStraightSensorClearsItselfAndTheFingerIsNamed) {
   EXPECT_NE(verdict_sentence(d).find("not the sensor"), std::string::npos) << verdict_sentence(d);
 }
 
-/// The logs cannot distinguish the two causes, so the gauge check decides. The first case has logs of a
-/// nonlinear sensor and a gauge check of a linear sensor. The second case has the opposite.
+/// The logs cannot distinguish the two causes, so the gauge check decides. In the first case, the logs come
+/// from a nonlinear sensor, and the gauge check from a linear sensor. In the second case, it is the other way
+/// round.
 TEST(GaugeVerdict, TheNamedCauseGivesItsPlaceToTheOneThatIsLeft) {
   const model::Model alike = hiding("stiffening", {4 * 0.6 / (25 * 25)});
   expect_found(diagnosed(bent_scale, gauge_of(alike)), "stiffening");
   expect_found(diagnosed(alike, gauge_of(bent_scale)), "sensor_nonlinearity");
 
-  // This finger stiffens more sharply than the stiffening model of the catalogue can describe. So the model
-  // of a nonlinear sensor fits the logs better.
+  // This finger stiffens more sharply than the stiffening model of the catalogue. The model of a nonlinear
+  // sensor therefore fits the logs better.
   std::vector<Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
     Log& log = logs.emplace_back(simulated(loaded("bench_twin"), signal, 25, 0, 1));
@@ -155,8 +157,8 @@ TEST(GaugeVerdict, TheNamedCauseGivesItsPlaceToTheOneThatIsLeft) {
   EXPECT_TRUE(warned_of(after, "leaves an unexplained error of")) << after.unexplained_error.excess_mm;
 }
 
-/// The finger stiffens and the sensor is slightly nonlinear. The diagnosis must name the finger, and a
-/// warning must report the sensor.
+/// The finger stiffens, and the sensor is slightly nonlinear. The diagnosis must name the stiffening of the
+/// finger as the cause. A warning must report the nonlinear sensor.
 TEST(GaugeVerdict, AShareOfTheBendInTheSensorIsTold) {
   const model::Model a_little = hiding("sensor_nonlinearity", {0.3, 0, 25});
   const Diagnosis d = diagnosed(stiff_finger, gauge_of(a_little));
@@ -213,9 +215,9 @@ TEST(GaugeVerdict, ABendThatNoLogAsksForIsAWarningAndNoCause) {
   EXPECT_EQ(straight.verdict, d.verdict);
 }
 
-/// With backlash between finger and sensor, the logs alone show that the finger stiffens and the sensor is
-/// linear. If the gauge check shows a nonlinear sensor, it contradicts the logs. In this case no cause may be
-/// named.
+/// There is backlash between finger and sensor. In this case, the logs alone show that the finger stiffens
+/// and that the sensor is linear. A gauge check that shows a nonlinear sensor contradicts the logs, so the
+/// diagnosis must not name a cause.
 TEST(GaugeVerdict, AFingerThatWasNamedAloneDoesNotStandAgainstTheGauge) {
   const model::BlockSpec play{find_cause("backlash")->forms.front().type, {4}};
   const model::Model given = model::with_block(loaded("bench_twin"), play);

@@ -45,7 +45,8 @@ NamedCause named(const char* id, double gain_mm2) {
   return cause;
 }
 
-/// Returns a diagnosis that names a lag. @param given  model that, extended by the lag, is bench_twin.
+/// Returns a diagnosis that names a lag. @param given  model that gives bench_twin when it is extended by the
+/// lag.
 Diagnosis a_diagnosis(const model::Model& given) {
   Diagnosis d;
   d.verdict = Verdict::ambiguous;
@@ -78,7 +79,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-/// Returns the left-aligned texts that a line of the drawing crosses.
+/// Returns the texts that a line of the drawing crosses. Only left-aligned texts are checked.
 std::vector<std::string> crossed_words(const std::string& markup) {
   const std::regex words(R"re(<text x="([0-9.]+)" y="([0-9.]+)" text-anchor="start"[^>]*>([^<]+))re");
   const std::regex line(R"re(<path d="M(-?[0-9.]+) ?(-?[0-9.]+)l(-?[0-9.]+) ?(-?[0-9.]+)")re");
@@ -205,8 +206,7 @@ TEST_F(ReportTest, EveryFigureHasACaptionANumberAndData) {
   }
 }
 
-// Each model in the report must have a different name. Otherwise a reader could not see which results belong
-// to which model.
+// Each model in the report must have a different name, so that a reader can assign each result to its model.
 TEST_F(ReportTest, TheModelsHaveNamesOfTheirOwn) {
   const std::string html = page().to_html();
   for (const char* name : {">given model<", ">recalibrated model<", ">extended model<", "zhang2025_extended"})

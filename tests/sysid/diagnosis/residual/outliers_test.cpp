@@ -12,7 +12,7 @@ namespace {
 
 constexpr double noise_mm = 0.04;
 
-/// Returns records whose readings are the sum of the original readings and the residual `left`.
+/// Returns records whose readings are the original readings plus the residual `left`.
 std::vector<Record> with(std::vector<Record> records, const ByRecord& left) {
   for (std::size_t k = 0; k < records.size(); ++k) {
     for (std::size_t i = 0; i < records[k].size(); ++i) records[k].reading_mm[i] += left[k][i];
@@ -20,7 +20,7 @@ std::vector<Record> with(std::vector<Record> records, const ByRecord& left) {
   return records;
 }
 
-/// Returns the outliers that the search finds if the model has the residual `left`.
+/// Returns the outliers that the search finds when the residual of the model is `left`.
 OutlierEvidence found_in(const ByRecord& left) {
   std::vector<Record> records = with(known_campaign(2), left);
   OutlierEvidence evidence;
@@ -52,7 +52,7 @@ TEST(Outliers, AreFoundInTheMidstOfAMotion) {
     }
   }
   const std::size_t more = hide_outliers_beside(records, left, noise_mm, evidence);
-  EXPECT_LT(before, put);  // a comparison with neighbouring readings misses outliers during motion
+  EXPECT_LT(before, put);  // during motion, a comparison with neighbouring readings would miss outliers
   EXPECT_EQ(before + more, put);
   EXPECT_EQ(evidence.count, put);
   EXPECT_NEAR(evidence.size_mm, 0.8, 0.02);
@@ -65,8 +65,9 @@ TEST(Outliers, NoiseHasNone) {
     EXPECT_EQ(found_in(noise_for(known_campaign(2), noise_mm, 0, seed)).count, 0u) << "seed " << seed;
 }
 
-// A systematic residual is not an outlier, however large it is. Examples are an oscillation of any frequency,
-// impacts, and a sawtooth. By chance, one of a thousand corners of the sawtooth may look isolated.
+// A systematic residual must not be reported as an outlier, even if it is large. Examples are an oscillation
+// of any frequency, impacts, and a sawtooth. By chance, one of a thousand corners of the sawtooth may look
+// isolated.
 TEST(Outliers, StructureIsNone) {
   const ByRecord noise = noise_for(known_campaign(2), noise_mm, 0, 7);
   const std::vector<std::pair<const char*, double (*)(double)>> structures{
@@ -88,8 +89,8 @@ TEST(Outliers, StructureIsNone) {
   }
 }
 
-// The command jumps, and the model follows one sample late. A single large residual at each jump is not an
-// outlier.
+// The command jumps, and the model follows one sample late. The single large residual at each jump must not
+// be reported as an outlier.
 TEST(Outliers, LatenessIsNone) {
   std::vector<Record> records = known_campaign(1);
   ByRecord left = noise_for(records, noise_mm, 0, 9);

@@ -22,7 +22,7 @@ std::vector<Record> noisy_campaign() {
   return records;
 }
 
-/// Replaces the reading of each sample i by that of sample `sample(i)`.
+/// Replaces the reading of each sample i by the reading of sample `sample(i)`.
 std::vector<Record> read_at(std::vector<Record> records,
                             const std::function<std::size_t(std::size_t)>& sample) {
   for (Record& record : records) {
@@ -67,8 +67,8 @@ TEST(HideRepeated, KeepsTheFirstOfEachSlowReading) {
 }
 
 TEST(HideRepeated, TakesTheClockOfTheSensorAsItComes) {
-  // The clock of the sensor is independent of the log, so the sensor gives a new reading after every 11 to 13
-  // samples.
+  // The clock of the sensor is independent of the clock of the log. The sensor therefore gives a new reading
+  // after every 11 to 13 samples of the log.
   std::vector<Record> records = read_at(noisy_campaign(), [](std::size_t i) {
     return static_cast<std::size_t>(std::floor(std::floor(static_cast<double>(i) / 11.7) * 11.7));
   });
@@ -107,7 +107,7 @@ TEST(HideRepeated, LeavesACoarseSensorAndAFingerThatSticks) {
   for (Record& record : coarse) {
     double stuck_mm = 0;
     for (double& y : record.reading_mm) {
-      // The sensor has a resolution of 0.5 mm, and the finger moves in steps of 1.5 mm.
+      // The sensor has a resolution of 0.5 mm, and the displacement of the finger changes in steps of 1.5 mm.
       if (std::abs(y - stuck_mm) > 1.5) stuck_mm = y;
       y = 0.5 * std::round(stuck_mm / 0.5);
     }

@@ -11,8 +11,8 @@
 namespace softgrip::sysid::wrong_readings_test {
 namespace {
 
-/// Returns the log of a finger with a gain of 0.5 mm/kPa and noise of 0.02 mm. The command consists of
-/// triangles up to 40 kPa. Every `every`-th sample has a reading.
+/// Returns the log of a finger with a gain of 0.5 mm/kPa and with noise of 0.02 mm. The command consists of
+/// triangles up to 40 kPa. Only every `every`-th sample has a reading.
 Log moving(int every = 1) {
   Log log;
   log.name = "moving";
@@ -29,8 +29,8 @@ Log moving(int every = 1) {
   return log;
 }
 
-/// Inserts the wrong readings into a log. Expects that the function removes exactly these readings and
-/// returns one sentence that contains `number`.
+/// Inserts the wrong readings into a log. Checks that the function under test removes exactly these readings
+/// and returns one sentence that contains `number`.
 void expect_taken_out(Log log, const std::map<std::size_t, double>& wrong, const std::string& number) {
   for (const auto& [sample, value] : wrong) log.displacement_mm[sample] = value;
   std::vector<Log> logs{moving(), log};

@@ -26,7 +26,7 @@ TEST(HeldOutLosses, AreAtMostTheSpansSquare) {
     EXPECT_DOUBLE_EQ(cut[b], std::min(losses[b], 0.25 * most)) << b;
 }
 
-/// A zero that has changed and a start in motion must not increase the error of a log that is held out.
+/// A log is held out. A changed zero offset or a start in motion must not increase the error of this log.
 TEST(LeftOutLosses, AreThoseOfAStartThatTheFirstReadingsTell) {
   const model::Model twin = loaded("bench_twin");
   std::vector<Log> logs{simulated(twin, model::SignalName::tp1, 25, 0.05, 3),

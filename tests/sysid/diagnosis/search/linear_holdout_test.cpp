@@ -26,8 +26,8 @@ TEST(LinearHeldOutLosses, AreThoseOfRefitsWhereEveryPartShowsAllNumbers) {
   EXPECT_NEAR(rmse_mm(linear_held_out_losses(records, division, fit)), refitted_mm, 0.05 * refitted_mm);
 }
 
-/// The log contains one jump and a long hold. If the block with the jump is held out, the other blocks say
-/// almost nothing about the time of the jump.
+/// The log contains one jump and long holds. If the block with the jump is held out, the other blocks contain
+/// almost no information about the time of the jump.
 TEST(LinearHeldOutLosses, StayOfTheReadingsSizeWhereOneStretchAloneShowsANumber) {
   const model::Model model = loaded("bench_twin");
   Log log;

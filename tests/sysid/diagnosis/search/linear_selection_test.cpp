@@ -44,7 +44,8 @@ model::Model softening() {
   return model::with_block(finger(), model::block_of<model::StressSoftening>({{"softening_per_kpa", 0.001}}));
 }
 
-/// Compares the linearised held-out losses with the losses of a new fit for every held-out block.
+/// Compares the held-out losses of the linearised model with the losses of refitted models. For each held-out
+/// block, one model is fitted without this block.
 TEST(LinearHoldout, SaysWhatRefittingSays) {
   const Campaign c = campaign_of(softening());
   const BlockLosses refitted = held_out_losses(c.data.records, c.division, c.base);
@@ -54,7 +55,8 @@ TEST(LinearHoldout, SaysWhatRefittingSays) {
     EXPECT_NEAR(linear[b], refitted[b], 0.1 * refitted[b]) << "block " << b;
 }
 
-/// Compares the linear search with the full search, which varies all parameters of the model structure.
+/// Compares the linear search with the full search. The full search varies all parameters of the model
+/// structure.
 TEST(LinearSelection, FindsWhatTheFullSearchFinds) {
   const std::vector<model::BlockSpec> effects{
       model::block_of<model::Backlash>({{"gap_mm", 0.4}}),
@@ -94,7 +96,7 @@ TEST(LinearSelection, FindsBothOfTwo) {
   EXPECT_TRUE(position_of(found.extended.point.model, *find_cause("sensor_lag")));
 }
 
-/// The shape of the loop differs from the shape that the model structure can describe. If this difference is
+/// The loop differs slightly from every loop that the model structure can describe. If this difference is
 /// smaller than the noise, it must not be named as a cause.
 TEST(LinearSelection, ARestOfTheLoopsFormIsNoCause) {
   for (const bool clear : {false, true}) {
@@ -121,9 +123,9 @@ TEST(Weigh, IsTheGainOverTheStructureWithoutTheCause) {
   EXPECT_NEAR(alone.gain_mm2.value, 1, 1e-12);
 }
 
-/// With the measured pressure as the input, the residual contains no error of the valve. So the search may
-/// name a cause that explains a small error in most blocks. With the command as the input, the limits of the
-/// search reject this cause.
+/// With the measured pressure as the input, the residual contains no error of the valve. The search may then
+/// name a cause even if it explains only a small error in most blocks. With the command as the input, the
+/// stricter limits of the search reject this cause.
 TEST(LinearSelection, FromTheMeasuredPressureLessIsEnough) {
   const Campaign c =
       campaign_of(model::with_block(finger(), model::block_of<model::Backlash>({{"gap_mm", 0.1}})));

@@ -1,5 +1,5 @@
-// Tests the search on data without a cause. False alarms must be rare, and the error reductions must be
-// smaller than that of a true cause.
+// Tests the search on data without a cause. False alarms must be rare. The error reductions must be smaller
+// than the error reduction of a true cause.
 
 #include "sysid/diagnosis/search/null_calibration.h"
 
@@ -21,7 +21,7 @@ struct Searched {
   Division division;
 };
 
-/// Simulates two logs of zhang2025 with a backlash of `backlash_mm`. Returns them with the data that the
+/// Simulates two logs of zhang2025 with a backlash of `backlash_mm`. Returns the logs and the data that the
 /// search needs.
 Searched searched(double backlash_mm) {
   const model::Model given = loaded("zhang2025");

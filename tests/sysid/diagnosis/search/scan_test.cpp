@@ -1,6 +1,6 @@
-// Tests the scan of start values, which evaluates each start value with one linearised step. For a model
-// structure with a linear response, the result must be exact. For data with a hidden cause, the start value
-// near the truth must come first.
+// Tests the scan of start values, which evaluates each start value with one linearised step. If the response
+// of the model structure is linear, the result must be exact. For data with a hidden cause, the start value
+// near the truth must be ranked first.
 
 #include "sysid/diagnosis/search/scan.h"
 
@@ -59,7 +59,8 @@ TEST_F(Scanned, ASizeThatIsALittleOffIsMadeUpFor) {
 }
 
 TEST_F(Scanned, WhatTheBaseAbsorbsLinearlyCountsForNothing) {
-  // A refit of the model structure absorbs a larger alpha. So the remaining error must not depend on alpha.
+  // A refit of the model structure compensates a larger alpha. The remaining error must therefore not depend
+  // on alpha.
   const model::Model base = loaded("zhang2025");
   model::Model moved = base;
   moved.blocks[0].values[0] *= 1.001;
@@ -87,8 +88,8 @@ TEST(BestStarts, TheLatencyNearTheHiddenOneComesFirst) {
   EXPECT_NEAR(points.front().model.blocks[*at].values[0], 0.1, 1e-12);
 }
 
-// One model of a cause has more parameters and therefore the lower predicted error at every start value. Even
-// so, the search must try every model of the cause and every start value.
+// One model form of the cause has more parameters than the other, so it has the lower predicted error at
+// every start value. The search must try every model form and every start value nevertheless.
 TEST(BestStarts, ShowEveryFormOfACauseAndEveryPlace) {
   const model::Model given = loaded("zhang2025");
   const SearchData data = make_search_data(records_of(model::with_block(given, block("ageing", {4}))), given);

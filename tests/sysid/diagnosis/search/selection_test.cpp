@@ -1,5 +1,5 @@
-// Tests how many causes are named. The fit of the first cause leaves a small error, which must not be named
-// as a further cause. A small effect of a different kind must be named.
+// Tests the number of named causes. The fit of the first cause leaves a small error, which must not be named
+// as a second cause. However, a small effect of a different kind must be named.
 
 #include "sysid/diagnosis/search/selection.h"
 
@@ -22,8 +22,8 @@ namespace {
 
 constexpr double noise_mm = 0.03;
 
-/// Distorts the readings of bench_twin with `bend(y, t)`, where t is the campaign time. Returns the causes
-/// that the search selects for these readings.
+/// Distorts the readings of bench_twin with `bend(y, t)`. Here y is the reading and t the campaign time.
+/// Returns the causes that the search selects for the distorted readings.
 Selection select(const std::function<double(double y_mm, double t_s)>& bend,
                  const SelectionOptions& options = {}) {
   const model::Model given = loaded("bench_twin");
@@ -49,8 +49,8 @@ std::vector<std::string> names(const Selection& selection) {
   return ids;
 }
 
-/// Returns a reading with a nonlinearity that is not a polynomial. The model of a nonlinear sensor leaves a
-/// few percent of this nonlinearity unexplained.
+/// Returns the reading of a nonlinear sensor. The nonlinearity is not a polynomial, so the sensor model of
+/// the catalogue leaves a few percent of it unexplained.
 double bent(double y_mm) {
   return y_mm + 1.2 * std::sin(1.3 * std::numbers::pi * y_mm / 20);
 }
@@ -68,13 +68,14 @@ TEST(Selection, ASmallEffectThatExplainsTheRestIsNamed) {
     return y_mm * (1 + 0.15 * t_s / 120) + 0.09 * std::sin(2 * std::numbers::pi * 3.1 * t_s);
   });
   EXPECT_EQ(names(selection), (std::vector<std::string>{"ageing", "periodic_disturbance"}));
-  // The disturbance explains a small part of the error. This part is smaller than the error that the inexact
-  // form of a large cause may leave.
+  // The disturbance explains less than 5 % of the error. The inexact model form of a large cause may leave a
+  // larger error than that.
   const double excess = selection.base_unexplained.excess_mm;
   EXPECT_LT(0.09 * 0.09 / 2, 0.05 * excess * excess);
 }
 
-/// A fit to all blocks gives a size of the disturbance that neither of the two runs has.
+/// The disturbance has a different size in each run. A fit to all blocks therefore gives a size that neither
+/// run has.
 TEST(Selection, WhatEachRunShowsInAnotherSizeIsNotNamed) {
   SelectionOptions one;
   one.most_causes = 1;

@@ -20,7 +20,8 @@ namespace {
 constexpr double noise_mm = 0.03;
 constexpr int substeps = 50;
 
-// Returns a gain with one Kelvin-Voigt branch. This model is sufficient for the finger behind the valve.
+// Returns a model with a gain and one Kelvin-Voigt branch. This model is sufficient for the finger that the
+// valve drives.
 model::Model plain_model() {
   model::Model model;
   model.name = "plain";
@@ -30,8 +31,8 @@ model::Model plain_model() {
   return model::with_block(model, branch);
 }
 
-// Integrates the equations of this finger with Euler's method in steps of 1/50 of the sample time. Shares no
-// code with the function under test.
+// Integrates the equations of this finger with Euler's method. Each sample has 50 steps. Shares no code with
+// the function under test.
 template <class Valve>
 std::vector<Record> answered(std::vector<Record> records, Valve&& valve, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -77,11 +78,11 @@ TEST(StickSlip, FindsTheBandOfAValveThatSticksAndJumps) {
   }
 }
 
-// The readings show a jump of the valve only after the delay, 17.5 samples after the jump.
+// A jump of the valve becomes visible in the readings after the delay, which is 17.5 samples.
 TEST(StickSlip, IsFoundBehindALongDelay) {
   constexpr double band_kpa = 3.1, delay_s = 0.35;
   std::vector<Record> early = known_campaign(2);
-  for (Record& r : early) {  // delays the command by `delay_s`; the valve receives the delayed command
+  for (Record& r : early) {  // delays the command by `delay_s`; the delayed command drives the valve
     const std::vector<double> sent = r.drive_kpa;
     const auto samples = static_cast<std::size_t>(std::floor(delay_s / r.sample_time_s));
     const double rest = delay_s / r.sample_time_s - static_cast<double>(samples);
@@ -137,7 +138,7 @@ TEST(StickSlip, SeesThatJumpsComeOverAnyDistance) {
 }
 
 // Returns the distances of 80 jumps of a valve with a stick band of 1 kPa. The distances have an error of 1
-// %. Every fifth jump is detected as too short.
+// %. Every fifth distance is too short.
 std::vector<double> partly_short(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> read(1.0, 0.01);
@@ -152,8 +153,8 @@ TEST(StickSlip, JumpsThatWereTakenForShortOnesDoNotMoveTheBand) {
   double sum_kpa = 0;
   constexpr int seeds = 200;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) sum_kpa += band_of_jumps(partly_short(seed)).value_kpa;
-  // The 20 % of the jumps that are too short must not shift the estimate. The mean of the central 90 % of the
-  // jumps would be 2.3 % too low.
+  // The 20 % of distances that are too short must not shift the estimate. The mean of the central 90 % of the
+  // distances would be 2.3 % too low.
   EXPECT_NEAR(sum_kpa / seeds, 1.0, 0.006);
 }
 

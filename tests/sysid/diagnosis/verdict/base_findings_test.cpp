@@ -33,7 +33,7 @@ model::Model published() {
                      [](const model::BlockInfo& info) { return info.station != model::Station::valve; });
 }
 
-/// Returns a finger of play operators. No Bouc-Wen element can fit its loops.
+/// Returns a finger of play operators. No Bouc-Wen element can fit the hysteresis loops of this finger.
 model::Model plays() {
   model::Model m = model::without_block(published(), model::block_type<model::BoucWen>());
   return model::with_block(std::move(m), {model::block_type<model::PrandtlIshlinskii>(),
@@ -80,8 +80,8 @@ TEST(BaseFindings, LoopsOfAnotherFormAreNamed) {
   EXPECT_TRUE(has_lower_loss(*found.base, found.plain, noise_mm, true));
 }
 
-/// After a reversal, play operators without an elastic operator do not move at first, like a backlash. With
-/// an elastic operator, they move immediately.
+/// After a reversal, play operators without an elastic operator at first do not move, which looks like a
+/// backlash. With an elastic operator, they move immediately.
 TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
   const auto has_backlash = [](const Found& found) {
     const auto shape = std::find_if(found.base->named.begin(), found.base->named.end(),
@@ -99,8 +99,8 @@ TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
                                    << elastic_share(slack.base->fit.point.model);
 }
 
-/// With the given structure, a large part of the error remains unexplained, and no cause is named. In this
-/// case, it suffices if the alternative structure reduces the loss slightly.
+/// With the given structure, a large part of the error remains unexplained and no cause is named. In this
+/// case, a small reduction of the loss suffices to prefer the alternative structure.
 TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
   Found found = found_in(plays());
   ASSERT_TRUE(found.base);
@@ -114,8 +114,9 @@ TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
   EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, false));
 }
 
-/// The given structure needs two causes to explain the data. The alternative structure needs only one of
-/// these causes, because its hysteresis loops explain the rest of the error.
+/// With the given structure, two causes are necessary to explain the data. With the alternative structure,
+/// one of these causes suffices, because the hysteresis loops of the alternative structure explain the rest
+/// of the error.
 TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore) {
   Found found = found_in(plays());
   ASSERT_TRUE(found.base);
@@ -137,8 +138,8 @@ TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore)
       << "the unexplained error of the alternative structure is much larger than that of the given structure";
 }
 
-/// For slow commands, a delay and a lag are equivalent. If the model lacks one of the two, the other replaces
-/// it. If the model lacks both, it responds too early.
+/// For slow commands, a delay and a lag have the same effect. If the model contains one of them, it
+/// compensates for the missing one. If the model contains neither of them, it responds too early.
 TEST(BaseFindings, ALatencyIsNamedThoughNobodyCanSayOfWhichKind) {
   const model::Model late =
       model::with_block(plays(), model::block_of<model::ValveLag>({{"time_constant_s", 0.08}}));
@@ -159,7 +160,7 @@ TEST(BaseFindings, ALatencyIsNamedThoughNobodyCanSayOfWhichKind) {
   EXPECT_GE(latency->inclusion, 0.95);
 }
 
-/// A cause must also be found if the alternative structure is selected.
+/// The search must find a cause even if it selects the alternative structure.
 TEST(BaseFindings, ACauseUponAnotherBaseIsNamed) {
   model::Model finger = plays();
   finger =

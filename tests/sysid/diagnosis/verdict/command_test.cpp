@@ -1,5 +1,6 @@
-// Runs softgrip diagnose as a user does. One test has a published model that lacks a lag. Another test has
-// logs without enough information for a diagnosis; the test computes these logs with its own formulas.
+// Runs softgrip diagnose as a user runs it. One test has a published model that lacks a lag. Another test has
+// logs that do not contain enough information for a diagnosis; the test computes these logs with formulas of
+// its own.
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +22,7 @@ using Json = nlohmann::json;
 
 constexpr double rate_hz = 50;
 
-/// Returns triangles with a period of 10 s. Every second triangle has half the height.
+/// Returns triangles with a period of 10 s. Every second triangle has half the height of the others.
 double triangles_kpa(double t) {
   const double phase = std::fmod(t, 10) / 5;
   const double top = std::fmod(t, 20) < 10 ? 50 : 25;
@@ -82,12 +83,13 @@ TEST_F(DiagnoseCommand, TheLatencyBehindThePublishedModelIsNamedAndTheExtensionI
   ASSERT_FALSE(json["closed_loop"].is_null());
   const double recalibrated_mm = json["closed_loop"]["recalibrated_rmse_mm"];
   const double extended_mm = json["closed_loop"]["extended_rmse_mm"];
-  // The refitted model has no causal inverse, so its feedforward is planned in advance.
+  // The refitted model has no causal inverse, so its feedforward must be planned in advance.
   EXPECT_GT(recalibrated_mm, 2 * extended_mm);
   EXPECT_EQ(run("check result/model.yaml"), 0) << read("out.txt") << read("err.txt");
 }
 
-/// A technician runs a diagnosis, enters the gauge readings in the file, and runs the diagnosis again.
+/// Simulates a technician who runs a diagnosis, enters gauge readings in the file, and runs the diagnosis a
+/// second time.
 TEST_F(DiagnoseCommand, FilledInPositionsTellTheFingerFromTheSensor) {
   const std::string twin = SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml";
   write("finger.yaml", read_file(twin, 100'000).value() + "  - stiffening:\n      stiffening_per_mm: 0.01\n");

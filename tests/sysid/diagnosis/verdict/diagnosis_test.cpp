@@ -29,8 +29,8 @@ model::Model without_valve() {
                      [](const model::BlockInfo& info) { return info.station != model::Station::valve; });
 }
 
-// The first cause explains nearly all of the error. The small rest must not start the search for an
-// alternative structure.
+// The first cause explains nearly all of the error. The small remaining error must not start the search for
+// an alternative structure.
 TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   const model::Model given = without_valve();
   const model::Model truth =
@@ -61,8 +61,8 @@ TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   }
 }
 
-// A log that was generated with a model must be explained by this model, for every zero offset of the sensor
-// and every state of the model at the start of the log.
+// If a model has generated a log, this model must explain the log. This must hold for every zero offset of
+// the sensor and for every state of the model at the start of the log.
 TEST(Diagnosis, AsGivenEstimatesTheOffsetAndTheStart) {
   const model::Model truth = loaded("bench_twin");
   const Log log = simulated(truth, model::SignalName::tp1, 25, noise_mm, 5);
@@ -81,8 +81,8 @@ TEST(Diagnosis, AsGivenEstimatesTheOffsetAndTheStart) {
   EXPECT_LT(as_given_mm(in_motion, 5), of_30_mm);
 }
 
-// The diagnosis finds a cause before it fits an alternative structure. The result with the alternative
-// structure must still contain this cause.
+// The diagnosis finds a cause before it fits an alternative structure. The result for the alternative
+// structure must contain this cause as well.
 TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
   const model::Model given = without_valve();
   model::Model plays = model::without_block(given, model::block_type<model::BoucWen>());
@@ -107,7 +107,7 @@ TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
   EXPECT_NEAR(static_cast<double>(diagnosis->outliers.count), static_cast<double>(wrong), 2);
 }
 
-/// Returns two logs in which the reading of sample i is replaced by that of sample `sample(i)`.
+/// Returns two logs. In both logs, the reading of sample i is replaced by the reading of sample `sample(i)`.
 std::vector<Log> read_at(const model::Model& truth, const std::function<std::size_t(std::size_t)>& sample) {
   std::vector<Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
@@ -146,7 +146,7 @@ TEST(Diagnosis, AReadingThatLeadsItsCommandIsAClockOffset) {
   EXPECT_GT(diagnosis->recalibrated_rmse_mm, 1.2 * diagnosis->extended_rmse_mm);
 }
 
-/// Returns a log of a finger that was already under pressure before the recording began.
+/// Returns a log of a finger that was under pressure before the recording began.
 Log begun_unsettled(const model::Model& truth, model::SignalName signal, double pulse_kpa,
                     std::uint64_t seed) {
   constexpr double rate_hz = 25;
@@ -167,8 +167,8 @@ Log begun_unsettled(const model::Model& truth, model::SignalName signal, double 
   return slice(log, pressed + rested, log.size());
 }
 
-/// At the start of a log, the finger may still creep without pressure. This creep must not be named as a
-/// cause.
+/// At the start of a log, the pressure may be 0 while the finger still creeps. This creep must not be named
+/// as a cause.
 TEST(Diagnosis, AStartBeforeTheFingerHasSettledIsNoCause) {
   const model::Model truth = without_valve();
   const std::vector<Log> logs{begun_unsettled(truth, model::SignalName::tp1, 45, 3),

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double sample_s = 0.01, noise_kpa = 0.05;
 
-/// Returns logs of a valve without dynamics. The pressure is a function of the command.
+/// Returns logs of a valve without dynamics: the pressure at each sample is a function of the command at this
+/// sample.
 std::vector<Log> logs_of(const std::function<double(double)>& pressure_kpa) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
@@ -52,8 +53,9 @@ TEST(FindLostPressure, IsNothingWhereAConstantIsMissing) {
   EXPECT_FALSE(lost_of(logs_of([](double u) { return u - 3; })));
 }
 
-// The pressure never exceeds 52 kPa, even if the command does. A scale error of the gauge explains half of
-// this difference. A leak explains less, because its curve bends in the opposite direction.
+// The pressure never exceeds 52 kPa, even if the command exceeds this value. A scale error of the gauge
+// explains half of the difference. A leak explains less, because the curve of a leak bends in the opposite
+// direction.
 TEST(FindLostPressure, IsNothingWhereTheHighestPressuresAloneAreMissing) {
   const std::vector<Log> logs = logs_of([](double u) { return std::min(u, 52.0); });
   const MeasuredValve valve(logs, false);

@@ -13,8 +13,7 @@ namespace {
 constexpr double sample_s = 0.01, gain = 1.05, zero_kpa = 2.0, noise_kpa = 0.2;
 constexpr std::size_t block_samples = 800;  // block length of 8 s
 
-// Returns the log of a valve without dynamics and its pressure gauge. The pressure is a linear function of
-// the command.
+// Returns the log of a valve without dynamics. The pressure reading is a linear function of the command.
 Log straight_log(std::size_t blocks, double offset_kpa, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
@@ -32,8 +31,8 @@ Log straight_log(std::size_t blocks, double offset_kpa, std::uint32_t seed) {
   return log;
 }
 
-/// Returns the index of the block that contains a sample. The rest of the log after the last whole block
-/// belongs to this block.
+/// Returns the index of the block that contains a sample. Samples after the end of the last whole block count
+/// as part of it.
 std::size_t block_of(const Log& log, std::size_t sample) {
   return std::min(sample / block_samples, log.size() / block_samples - 2);
 }
@@ -41,8 +40,7 @@ std::size_t block_of(const Log& log, std::size_t sample) {
 struct Line {
   double slope, zero;
 };
-/// Returns the regression line through the samples of every second block. The line is computed in closed
-/// form.
+/// Returns the regression line through the samples of every second block, computed in closed form.
 Line line_through(const Log& log, bool even) {
   double n = 0, su = 0, sp = 0, suu = 0, sup = 0;
   for (std::size_t i = 0; i < log.size(); ++i) {
@@ -59,8 +57,8 @@ TEST(MeasuredValve, WhatIsLeftOfABlockIsOfAFitToTheOthers) {
   const MeasuredValve valve(logs, false);
   const BlockLosses losses = valve.held_out_losses({}, valve.fit({}, {ValveStage{}}));
   ASSERT_EQ(losses.size(), 7U);
-  // The first block is not compared. Its first sample is a measured pressure, and the model applies the gauge
-  // error to it a second time.
+  // Skip the first block. Its first sample is a measured pressure, which already contains the gauge error,
+  // and the model adds the gauge error a second time.
   for (std::size_t block = 1; block < 6; ++block) {
     const Line line = line_through(logs[0], block % 2 == 1);
     double sum_kpa2 = 0;
@@ -85,8 +83,8 @@ TEST(MeasuredValve, StandardErrorsOfAGaugeAreThoseOfAStraightLine) {
   const double of_zero = noise_kpa * std::sqrt(suu / (n * about_mean));
   EXPECT_NEAR(stage.gauge_gain, gain, 4 * of_gain);
   EXPECT_NEAR(stage.gauge_zero_kpa, zero_kpa, 4 * of_zero);
-  // A standard error must not be smaller than the standard error for white noise. An estimate from 40 blocks
-  // is uncertain by about 10 %.
+  // The standard errors must not be smaller than those for white noise. Each standard error is estimated from
+  // 40 blocks, so it is uncertain by about 10 %.
   EXPECT_GT(errors[0], 0.97 * of_gain);
   EXPECT_LT(errors[0], 1.4 * of_gain);
   EXPECT_GT(errors[1], 0.97 * of_zero);
@@ -100,8 +98,8 @@ TEST(MeasuredValve, ALastingErrorCountsOncePerBlock) {
     return valve.standard_errors(valve.fit({}, {ValveStage{}}, 1e-12),
                                  {&ValveStage::gauge_gain, &ValveStage::gauge_zero_kpa})[1];
   };
-  // Each of the 40 blocks has its own offset, which is as large as the noise. So the log has the information
-  // of 40 readings, not of 32,000.
+  // Each of the 40 blocks has its own offset. The offsets are as large as the noise, so the log has the
+  // information of 40 readings, not of 32,000.
   EXPECT_GT(error_of(lasting), 10 * error_of(white));
   EXPECT_LT(error_of(lasting), 60 * error_of(white));
 }

@@ -16,12 +16,12 @@ constexpr double true_delay_s = 0.130;
 
 struct Named {
   std::vector<NamedCause> causes;
-  Interval alone;  ///< interval of the delay from a fit without the lag
+  Interval alone;  ///< interval of the delay from a fit of a model without the lag
   std::vector<std::string> sentences;
 };
 
-/// Returns a diagnosis that names only the delay, although the logs were simulated with the model bench_twin,
-/// a delay and a lag.
+/// Returns a diagnosis that names the delay but not the lag. The logs were simulated with the model
+/// bench_twin, the delay and the lag.
 Named delay_of(SignalName signal, const model::Model& twin) {
   const model::Model without_valve =
       model::only(twin, [](const model::BlockInfo& info) { return info.station != model::Station::valve; });

@@ -44,7 +44,7 @@ TEST(BlockNumbers, HaveNoIntervalsBelowWhatANumberMayBe) {
   model::Model truth = loaded("bench_twin");
   const std::size_t delay = model::block_type<model::TransportDelay>();
   truth.blocks[*model::position_of(truth, delay)].values[0] = 0.001;
-  // There are few readings and large noise. So the interval of the delay would extend below 0.
+  // With few readings and large noise, the symmetric interval of the delay would extend below 0.
   const std::vector<Record> records = make_records({simulated(truth, SignalName::tp1, 5, 1.0, 5)}, {});
   const FitPoint point{truth, rest_starts(truth, records)};
   const FitSpace space = structure_space(records, truth, {*find_cause(causes::TransportDelay::id)});

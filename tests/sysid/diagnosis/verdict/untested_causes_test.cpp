@@ -30,8 +30,7 @@ std::vector<std::string> ids(const std::vector<NamedCause>& causes) {
   return list;
 }
 
-/// Returns logs with a command that oscillates about 20 kPa. @param rest_s  time [s] without pressure at the
-/// start.
+/// Returns logs whose command oscillates about 20 kPa. @param rest_s  time [s] without pressure at the start.
 std::vector<Log> planned(double rest_s) {
   Log log;
   log.name = "planned";
@@ -44,7 +43,7 @@ std::vector<Log> planned(double rest_s) {
   return {log};
 }
 
-/// Returns logs of a control loop in which a valve holds a flow constant. @param band  change of the command
+/// Returns logs of a control loop in which a valve keeps a flow constant. @param band  change of the command
 /// that the valve ignores. @param wave  amplitude of a disturbance.
 std::vector<Log> loop(double band, double wave) {
   std::mt19937 random(4);

@@ -17,13 +17,13 @@ RIG = CONFIGURATION / "rig_service.yaml"
 UNIT = "softgripd.service"
 SOCKET = "/run/softgrip/softgripd.sock"
 RUNS = pathlib.Path("/var/lib/softgrip/runs")
-# Longest waiting time [s]. It is generous, because the processor of the guest is emulated. Some steps have
-# their own limits.
+# Longest waiting time [s]. It is long, because the processor of the guest is emulated. Some steps have limits of their
+# own.
 PATIENCE_S = 40
 
 
 class Failed(Exception):
-    """Raised if a step did not have the expected result."""
+    """Exception for a step that did not have the expected result."""
 
 
 def expect(condition, what):
@@ -68,8 +68,8 @@ def ask(path, line):
 
 
 class Emulator:
-    """A process of softgrip-rig as the board of the installed rig file. This board has no watchdog, so only softgrip
-    can vent its outputs."""
+    """A process of softgrip-rig as the board of the installed rig file. This board has no watchdog, so nothing but
+    softgrip can vent its outputs."""
 
     control = "/run/emulator.sock"
     process = None
@@ -78,8 +78,8 @@ class Emulator:
         self.start()
 
     def start(self):
-        """Starts the service with fingers that have never moved. A used finger would creep back for half a minute,
-        and the daemon would refuse a start during this time."""
+        """Starts the service with fingers that have never moved. A finger that has moved would creep back for half a
+        minute, and the daemon would refuse a start during this time."""
         if self.process:
             self.process.kill()
             self.process.wait()
@@ -104,8 +104,8 @@ class Emulator:
 
 
 class Lines:
-    """A chip of simulated GPIO lines. The rig file uses the lines and the test switches them. There is also a second
-    chip that the rig file does not use."""
+    """A chip of simulated GPIO lines. The rig file uses the lines and the test switches them. A second chip
+    exists that the rig file does not use."""
 
     label = "softgrip-panel"
     emergency_stop, enable = 0, 1
@@ -188,8 +188,8 @@ class Service:
         raise Failed(f"no thread {name}")
 
     def start_fresh(self, emulator):
-        """Restarts the service with new fingers and waits until it is idle with a restart count of 0, whatever the
-        previous step has done."""
+        """Restarts the service with new fingers. Waits until the service is idle and its restart count is 0,
+        regardless of the previous step."""
         sh(f"systemctl stop {UNIT}; systemctl reset-failed {UNIT}", check=False)
         emulator.start()
         sh(f"systemctl start {UNIT}", check=False)

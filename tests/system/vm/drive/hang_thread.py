@@ -1,4 +1,4 @@
-"""Stops one thread of another process until this process has ended, like a thread with a defect: hang_thread.py
+"""Stops one thread of another process until the script ends, as if the thread had a defect: hang_thread.py
 TID."""
 
 import ctypes

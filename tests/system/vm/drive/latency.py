@@ -1,6 +1,6 @@
 """Measures the wake-up latency of softgripd and of cyclictest in turns, with and without load, and prints a table.
-The clock of the guest counts instructions, so the host has no influence. The latency is therefore that of the kernel
-and the program."""
+The clock of the guest counts instructions, so the host does not influence the result. The measured latency is therefore
+that of the kernel and the program."""
 
 import itertools
 import pathlib
@@ -93,8 +93,7 @@ def with_load(function, *arguments):
 def main():
     main_guard()
     sh(f"dpkg -i {sorted(DRIVE.glob('softgrip_*.deb'))[0]}")
-    # If the load delays an exchange with the board, this counts as a missed bus cycle and does not end the
-    # run.
+    # If the load delays an exchange with the board, this must count as a missed bus cycle and must not end the run.
     edit(RIG, (r"host: .*", "host: 127.0.0.1"), (r"port: \d+", "port: 1502"), (r"cpus: \[1\]", "cpus: [0]"),
          (r"rate_hz: .*", f"rate_hz: {RATE_HZ}"), (r"priority: \d+", f"priority: {PRIORITY}"),
          (r"_cycles: [1-9]\d*", "_cycles: 100"), (r"max_missed_commands: \d+", "max_missed_commands: 100"))

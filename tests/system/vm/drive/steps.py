@@ -18,15 +18,15 @@ from guest import (CONFIGURATION, DRIVE, RIG, RUNS, UNIT, Emulator, Failed, Line
                    wait_for)
 
 service = Service()
-# WatchdogSec= of the service [s]. For each thread: the longest stall [s] during which softgripd still
-# notifies the service manager.
+# WatchdogSec= of the service [s]. For each thread, the longest stall [s] during which softgripd must still notify the
+# service manager.
 WATCHDOG_S = 2.0
 STANDSTILL_S = {"softgrip-loop": 0.55, "softgrip-bus": 1.05, "process": 0}
-# Time [s] that the emulated processor needs to start a program in the sandbox of the service. A real
-# processor needs hundredths of a second.
+# Time [s] that the emulated processor needs to start a program in the sandbox of the service. A real processor needs
+# less than 0.1 s.
 START_S = 3.0
 DROP_IN = pathlib.Path(f"/run/systemd/system/{UNIT}.d/system-test.conf")
-# Files that the system writes during the test, and copies that tools make of the user database.
+# Files that the system writes during the test, and copies of the user database that tools make.
 NOT_COMPARED = ("/proc", "/sys", "/dev", "/run", "/tmp", "/mnt", "/var/log", "/var/lib/dpkg", "/var/cache", "/var/tmp",
                 "/var/lib/systemd", "/var/lib/apt", "/root")
 USER_DATABASE = {"/etc/passwd", "/etc/group", "/etc/shadow", "/etc/gshadow"}
@@ -210,8 +210,8 @@ def stopped(state):
     wall = time.time()
     sh(f"systemctl stop {UNIT}")
     after = state["emulator"].commands_kpa()
-    # The controller acts until the last tick, so the outputs may change slightly. If the part had been
-    # released, the outputs would be 0.
+    # The controller acts until the last tick, so the outputs may change slightly. If the part had been released, the
+    # outputs would be 0.
     expect(all(abs(now - then) < 2 for now, then in zip(after, before)), f"held with {before}, left with {after} kPa")
     expect("ended normally" in service.journal(wall - 1), "ExecStopPost= did not say so")
     expect(service.show("Result") == "success", service.show("Result"))
