@@ -1,12 +1,14 @@
 #pragma once
 // Ends a long computation early. The request to end is stored in the thread budget of the computation. All
-// threads of the computation can read this request there, so no function needs an argument for it.
+// threads of the computation can read this request from the thread budget. Therefore, no function needs an
+// argument for the request.
 
 #include "base/thread_budget.h"
 
 namespace softgrip {
 
-/// Thrown by end_if_cancelled(). Only the function that created the budget catches it.
+/// Exception that end_if_cancelled() throws. Only the function that created the thread budget catches this
+/// exception.
 struct WorkCancelled {};
 
 /// Returns true if the computation of the calling thread must end early.
@@ -16,7 +18,7 @@ struct WorkCancelled {};
 }
 
 /// Throws WorkCancelled if the computation of the calling thread must end early. The loops of a fit call this
-/// function, so the fit ends within the time of one simulation of the model on its recordings.
+/// function. Therefore, the fit ends within the time that one simulation of the model takes.
 inline void end_if_cancelled() {
   if (is_cancelled()) throw WorkCancelled{};
 }

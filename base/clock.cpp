@@ -30,8 +30,9 @@ void MonotonicClock::sleep_until(Nanoseconds due) const noexcept {
 }
 
 Nanoseconds time_asleep() noexcept {
-  // The scheduler can interrupt this thread between two reads of the clocks, which makes the difference of
-  // the clocks wrong. Therefore, the function measures three times and uses the quickest measurement.
+  // The scheduler can interrupt this thread between two reads of the clocks. The difference of the clocks is
+  // then wrong. Therefore, the function measures three times and uses the measurement with the shortest
+  // duration.
   Nanoseconds quickest = std::numeric_limits<Nanoseconds>::max();
   Nanoseconds ahead = 0;
   for (int i = 0; i < 3; ++i) {

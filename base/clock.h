@@ -17,13 +17,13 @@ class Clock {
   Clock& operator=(Clock&&) = delete;
   virtual ~Clock() = default;
   [[nodiscard]] virtual Nanoseconds now() const noexcept = 0;
-  /// Waits until `due` and returns at that time or later, never earlier.
+  /// Waits until `due`. Returns at `due` or later, never earlier than `due`.
   virtual void sleep_until(Nanoseconds due) const noexcept = 0;
 };
 
-/// Returns the time of CLOCK_BOOTTIME. This clock cannot be set. It runs while the machine is suspended, as
-/// the board's watchdog does, so the daemon can detect a suspension. CLOCK_MONOTONIC stops during a
-/// suspension.
+/// Returns the time of CLOCK_BOOTTIME. This clock cannot be set. Like the watchdog of the board, the clock
+/// runs while the machine is suspended. Therefore, the daemon can detect a suspension. CLOCK_MONOTONIC stops
+/// during a suspension.
 [[nodiscard]] Nanoseconds monotonic_now() noexcept;
 
 /// A clock that returns the time of monotonic_now(), for functions with an argument of type Clock.
@@ -33,8 +33,8 @@ class MonotonicClock final : public Clock {
   void sleep_until(Nanoseconds due) const noexcept override;
 };
 
-/// A clock for tests, whose time changes only when a test sets it. sleep_until() sets it to the end of the
-/// sleep.
+/// A clock for tests, whose time changes only when a test sets the time. sleep_until() sets the time to the
+/// end of the sleep.
 class VirtualClock final : public Clock {
  public:
   [[nodiscard]] Nanoseconds now() const noexcept override { return now_; }
@@ -47,8 +47,8 @@ class VirtualClock final : public Clock {
 };
 
 /// Returns the total time for which the machine was suspended [ns], rounded to whole milliseconds. This time
-/// is the difference of CLOCK_BOOTTIME and CLOCK_MONOTONIC. It converts the kernel's times of GPIO edges,
-/// which are on CLOCK_MONOTONIC, to CLOCK_BOOTTIME.
+/// is the difference of CLOCK_BOOTTIME and CLOCK_MONOTONIC. The kernel gives the times of GPIO edges on
+/// CLOCK_MONOTONIC; adding this difference converts them to CLOCK_BOOTTIME.
 [[nodiscard]] Nanoseconds time_asleep() noexcept;
 
 }  // namespace softgrip

@@ -15,8 +15,8 @@ std::string in_backticks(const std::string& text) {
   return "`" + text + "`";
 }
 
-/// Returns the serial number of the USB device to which a folder in sysfs belongs. The search ends at this
-/// USB device, because a USB hub further up the path has a serial number of its own.
+/// Returns the serial number of the USB device to which a folder in sysfs belongs. The search upwards in the
+/// path ends at this USB device, because a USB hub higher in the path has a serial number of its own.
 std::string usb_serial_number(fs::path folder) {
   std::error_code error;
   for (; folder.has_relative_path(); folder = folder.parent_path()) {
@@ -46,7 +46,8 @@ std::vector<ComputerDevice> fitting(const std::vector<ComputerDevice>& devices, 
   return found;
 }
 
-/// Returns the first word of `device` that no other device has; empty if `device` has no such word.
+/// Returns the first word of `device` that no other device in `devices` has; empty if `device` has no word of
+/// its own.
 std::string own_word(const std::vector<ComputerDevice>& devices, const ComputerDevice& device) {
   for (const DeviceWord& word : device.words) {
     if (fitting(devices, word.text).size() == 1) return word.text;

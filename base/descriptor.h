@@ -1,5 +1,5 @@
 #pragma once
-// Owns a file descriptor and closes it.
+// Defines an object that owns a file descriptor and closes it on destruction.
 
 #include <unistd.h>
 
@@ -25,7 +25,7 @@ class Descriptor {
     if (number_ >= 0) ::close(number_);
     number_ = -1;
   }
-  /// Returns the descriptor and gives up its ownership: the caller must close it.
+  /// Returns the descriptor and gives up its ownership, so the caller must close the descriptor.
   [[nodiscard]] int release() noexcept { return std::exchange(number_, -1); }
   [[nodiscard]] explicit operator bool() const noexcept { return number_ >= 0; }
 

@@ -8,9 +8,9 @@
 namespace softgrip {
 
 enum class Waited : std::uint8_t {
-  ready,      ///< the descriptor is ready, or has an error or a hang-up; the next call on the descriptor
-              ///< reports the error
-  timed_out,  ///< the deadline has passed
+  ready,      ///< the descriptor is ready, or has an error or a hang-up, which the next call on the
+              ///< descriptor reports
+  timed_out,  ///< the deadline has passed before the descriptor was ready
   failed,     ///< waiting failed; errno contains the reason
 };
 

@@ -12,8 +12,7 @@ namespace {
 
 std::atomic<int> noted{0};
 
-/// Difference between the exit code that shells report for a process ended by a signal and the signal's
-/// number.
+/// Number that shells add to the number of a signal to report that this signal ended a process.
 constexpr int shell_offset = 128;
 
 }  // namespace

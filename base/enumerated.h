@@ -9,9 +9,9 @@
 
 namespace softgrip {
 
-/// Returns the texts of `items` in their order, for example "a, b and c" if `before_last` is " and "; an
-/// empty text if there are no items. `text_of` returns a std::string or std::string_view for an item, or is a
-/// pointer to the member that contains the text.
+/// Joins the texts of `items` in their order. If `before_last` is " and ", the result is, for example, "a, b
+/// and c". If `items` is empty, the result is empty. `text_of` returns a std::string or std::string_view for
+/// an item, or is a pointer to the member that contains the text.
 template <typename Items, typename TextOf = std::identity>
 [[nodiscard]] std::string enumerated(const Items& items, std::string_view before_last, TextOf text_of = {}) {
   std::string text;
@@ -24,7 +24,7 @@ template <typename Items, typename TextOf = std::identity>
   return text;
 }
 
-/// Returns the texts of `items`, separated by commas: "a, b, c".
+/// Joins the texts of `items` with commas, as in "a, b, c".
 template <typename Items, typename TextOf = std::identity>
 [[nodiscard]] std::string with_commas(const Items& items, TextOf text_of = {}) {
   return enumerated(items, ", ", text_of);

@@ -10,7 +10,7 @@ enum class ExitCode : int {
   input_refused = 3,   ///< a configuration, model, log or sequence was refused
   io = 4,              ///< a file, the socket of the daemon or a network address caused an error
   state_refused = 5,   ///< the state of the daemon does not permit the command
-  not_acceptable = 6,  ///< finished, but the result does not meet the requirement of the user
+  not_acceptable = 6,  ///< the command finished, but the result does not meet the requirement of the user
 };
 
 }  // namespace softgrip

@@ -1,4 +1,5 @@
-// Implements the functions of base/files.h that create files. No other code of the project creates files.
+// Implements the functions of base/files.h that create files. All files of the project are created by this
+// code.
 
 #include <fcntl.h>
 #include <sys/random.h>
@@ -31,10 +32,11 @@ Error error_of(int result) {
   return result == 0 ? 0 : errno;
 }
 
-/// Returns a name in the folder of `target` that no other process uses and that cannot be guessed.
+/// Returns a random name in the folder of `target`. No other process uses this name or can guess it.
 std::string temporary_name(const fs::path& target) {
   std::uint64_t number = 0;
-  // If getrandom() fails, O_EXCL in open() still prevents two processes from writing the same file.
+  // If getrandom() fails, the name can be guessed. O_EXCL in open() then prevents that two processes write to
+  // one file.
   if (::getrandom(&number, sizeof number, GRND_NONBLOCK) < 0) number = static_cast<std::uint64_t>(::getpid());
   char name[48];
   (void)std::snprintf(name, sizeof name, ".softgrip-%016llx.part", static_cast<unsigned long long>(number));
@@ -48,15 +50,15 @@ struct Rights {
   mode_t mode = 0;
 };
 
-/// Sets owner, group and permissions of a file. A failure to change the owner is ignored: if the process may
-/// not change the owner, the file keeps the user of the process as its owner.
+/// Sets owner, group and permissions of a file. If the process may not change the owner, this is no error:
+/// the user of the process remains the owner of the file.
 Error give_rights(int file, const Rights& rights) {
   [[maybe_unused]] const int given = ::fchown(file, rights.owner, rights.group);
   return error_of(::fchmod(file, rights.mode));
 }
 
-/// Creates a file with `contents`. If `rights` is empty, the file gets the default permissions of this
-/// process.
+/// Creates a file with the contents `contents` and the owner and permissions `rights`. If `rights` is empty,
+/// the file gets the default permissions of this process.
 Error write_new(int folder, const std::string& name, std::string_view contents,
                 const std::optional<Rights>& rights, Sync sync) {
   Descriptor file(::openat(folder, name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
@@ -70,7 +72,7 @@ Error write_new(int folder, const std::string& name, std::string_view contents,
   return error != 0 ? error : closed;
 }
 
-/// Renames a file. If the new name exists already, the error is EEXIST.
+/// Renames a file. Returns EEXIST if a file with the new name already exists.
 Error rename_to_new(int folder, const char* from, const char* to) {
   const Error error = error_of(::renameat2(folder, from, folder, to, RENAME_NOREPLACE));
   if (error != EINVAL) return error;
@@ -79,7 +81,7 @@ Error rename_to_new(int folder, const char* from, const char* to) {
   return linked != 0 ? linked : error_of(::unlinkat(folder, from, 0));
 }
 
-/// Writes the folder entry to the disk, so that the name survives a power failure.
+/// Writes the entries of a folder to the disk, so that the names of its files survive a power failure.
 void sync_folder(const fs::path& folder) {
   const Descriptor opened(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (opened) ::fsync(opened.get());
@@ -87,8 +89,8 @@ void sync_folder(const fs::path& folder) {
 
 enum class Existing { replaced, refused };
 
-/// Creates or replaces a file. No other function creates files under their final names. `target` is relative
-/// to the descriptor `folder`, or to the working directory if `folder` is AT_FDCWD.
+/// Creates or replaces a file. This is the only function that creates files under their final names. `target`
+/// is relative to the descriptor `folder`, or to the working directory if `folder` is AT_FDCWD.
 Error put(int folder, const fs::path& target, std::string_view contents, Existing existing,
           const std::optional<Rights>& rights, Sync sync) {
   const std::string temporary = temporary_name(target);
@@ -102,7 +104,8 @@ Error put(int folder, const fs::path& target, std::string_view contents, Existin
   return error;
 }
 
-/// Writes a file at a path with put(). A replaced file keeps its owner and permissions.
+/// Writes a file at a path with put(). If the new file replaces an existing file, the new file gets the owner
+/// and the permissions of the existing file.
 Error put_at_path(const fs::path& target, std::string_view contents, Existing existing, Sync sync) {
   struct ::stat old {};
   std::optional<Rights> rights;

@@ -36,7 +36,8 @@ Failure not_regular(mode_t mode) {
 /// directory if `folder` is AT_FDCWD.
 tl::expected<RegularFile, std::string> open_at(int folder, const std::string& name, bool through_links) {
   struct ::stat about {};
-  // Check the type before opening, because opening alone starts some devices, such as a watchdog timer.
+  // The type of the file is checked before the file is opened, because opening alone starts some devices,
+  // such as a watchdog timer.
   if (::fstatat(folder, name.c_str(), &about, through_links ? 0 : AT_SYMLINK_NOFOLLOW) != 0)
     return reason(errno);
   if (!S_ISREG(about.st_mode)) return not_regular(about.st_mode);
@@ -44,14 +45,15 @@ tl::expected<RegularFile, std::string> open_at(int folder, const std::string& na
   RegularFile file{
       Descriptor(::openat(folder, name.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC | links)), 0};
   if (!file.descriptor || ::fstat(file.descriptor.get(), &about) != 0) return reason(errno);
-  // Another process may have replaced the file after the first check.
+  // The type is checked a second time, because another process may have replaced the file after the first
+  // check.
   if (!S_ISREG(about.st_mode)) return not_regular(about.st_mode);
   file.size = static_cast<std::size_t>(about.st_size);
   return file;
 }
 
-/// Returns the number of bytes that were read, or 0 at the end of the file. Returns -1 after an error and
-/// sets errno.
+/// Reads at most `size` bytes from a descriptor. Returns the number of bytes that were read, or 0 at the end
+/// of the file. Returns -1 after an error and sets errno.
 ssize_t read_some(int descriptor, char* bytes, std::size_t size) {
   ssize_t count = 0;
   do {
@@ -71,8 +73,8 @@ tl::expected<RegularFile, std::string> open_regular_in(const Descriptor& folder,
 }
 
 tl::expected<std::string, std::string> read_start(const RegularFile& file, std::size_t most) {
-  // `file.size` is only a hint for the buffer: a file can grow during the read, and files in /proc have size
-  // 0.
+  // `file.size` is only used to reserve memory, because a file can grow during the read, and files in /proc
+  // have the size 0.
   std::string contents;
   contents.reserve(std::min(file.size, most));
   std::string chunk(std::size_t{1} << 16, '\0');

@@ -10,7 +10,8 @@ namespace {
 
 template <class... Format>
 std::string formatted(double value, Format... format) {
-  std::array<char, 512> buffer;  // the longest double in fixed notation has 309 digits before the point
+  std::array<char, 512> buffer;  // in fixed notation, the longest double has 309 digits before the decimal
+                                 // point
   const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format...);
   return error == std::errc{} ? std::string(buffer.data(), end) : std::string("?");
 }

@@ -7,11 +7,11 @@
 
 namespace softgrip {
 
-/// Returns the shortest text that gives the same double when it is converted back; NaN and infinity give
-/// "nan" and "inf".
+/// Returns the shortest text from which `value` can be read exactly. Returns "nan" for NaN and "inf" for
+/// infinity.
 [[nodiscard]] std::string shortest(double value);
-/// Returns the text of shortest(), but without an exponent if the text remains short. Messages show values of
-/// files in this form.
+/// Returns the text of shortest(), but without an exponent if the text without exponent is short. Messages
+/// show the numbers that are written in files in this form.
 [[nodiscard]] std::string written(double value);
 /// Returns the number with `digits` significant digits and without trailing zeros. Numbers from 1e-4 to 1e7
 /// have no exponent. Returns "-" for NaN or infinity.

@@ -17,10 +17,10 @@
 namespace softgrip {
 
 /// Calls work(i) for each i in [0, count), in any order. The calls run on the calling thread and on idle
-/// threads of the thread budget, but on at most `threads` threads (0: one per core). If a call throws, its
-/// exception is thrown after all threads have ended; if several calls throw, this is the first exception.
-/// After a request to end early, no further call begins, and WorkCancelled is thrown. work(i) should write
-/// its result into slot i of a prepared array.
+/// threads of the thread budget, but on at most `threads` threads (0: one per core). If a call throws an
+/// exception, the first exception is thrown again after all threads have ended. After a request to end early,
+/// no further call begins, and parallel_for() throws WorkCancelled. work(i) should write its result into
+/// element i of a prepared array.
 template <class Work>
 void parallel_for(std::size_t count, unsigned threads, Work&& work) {
   ThreadBudget own(threads);
@@ -54,7 +54,8 @@ void parallel_for(std::size_t count, unsigned threads, Work&& work) {
       });
     }
     run();
-    // The calling thread waits from here on, so another thread of the budget may compute in its place.
+    // From now on, the calling thread waits. Therefore, another thread of the budget may compute in its
+    // place.
     budget.give_back(1);
     others.clear();
     budget.go_on();

@@ -9,8 +9,9 @@
 
 namespace softgrip {
 
-/// Ticks are due at start + k * period. After an overrun, the schedule continues with the next regular tick.
-/// Missed ticks are not repeated, and the later deadlines remain at start + k * period.
+/// A schedule whose ticks are due at start + k * period, k = 0, 1, 2, ... After an overrun, the schedule
+/// continues with the next regular tick. Missed ticks are not repeated, and the deadlines after the overrun
+/// remain at start + k * period.
 class PeriodicSchedule {
  public:
   PeriodicSchedule(Nanoseconds start, Nanoseconds period) noexcept : period_(period), due_(start) {}
@@ -19,8 +20,8 @@ class PeriodicSchedule {
   /// Returns the time at which the current tick is due.
   [[nodiscard]] Nanoseconds due() const noexcept { return due_; }
 
-  /// Advances to the next tick. If this tick was due before `now`, advances to the first tick that is due at
-  /// or after `now`. Returns the number of skipped ticks.
+  /// Advances to the next tick. If the next tick was due before `now`, advances to the first tick that is due
+  /// at or after `now`. Returns the number of skipped ticks.
   std::uint64_t advance(Nanoseconds now) noexcept {
     due_ += period_;
     if (now <= due_) return 0;
@@ -34,10 +35,10 @@ class PeriodicSchedule {
   Nanoseconds due_;
 };
 
-/// Waits until `due` on CLOCK_BOOTTIME and returns at that time or later, never earlier.
+/// Waits until `due` on CLOCK_BOOTTIME. Returns at `due` or later, never earlier than `due`.
 inline void sleep_until(Nanoseconds due) noexcept {
-  // std::this_thread::sleep_until() of libstdc++ 12 sleeps for a relative time, so its errors add up to a
-  // drift.
+  // std::this_thread::sleep_until() is not used, because in libstdc++ 12 this function sleeps for a relative
+  // time. The errors of relative times add up to a drift.
   const timespec time{due / ns_per_s, due % ns_per_s};
   while (clock_nanosleep(CLOCK_BOOTTIME, TIMER_ABSTIME, &time, nullptr) == EINTR) {
   }

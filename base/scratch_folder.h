@@ -5,8 +5,8 @@
 
 namespace softgrip {
 
-/// A new folder for temporary files. The destructor removes the folder. The path is empty if the folder could
-/// not be created.
+/// A new folder for temporary files. The destructor removes the folder. path() returns an empty text if the
+/// folder could not be created.
 class ScratchFolder {
  public:
   ScratchFolder();

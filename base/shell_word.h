@@ -6,8 +6,8 @@
 
 namespace softgrip {
 
-/// Returns `text` in a form that a POSIX shell reads as one word. If no character is special, this is the
-/// unchanged text, otherwise the text in single quotes.
+/// Returns `text` in a form that a POSIX shell reads as one word. If no character of `text` is special in a
+/// shell, the result is the unchanged text. Otherwise, the result is the text in single quotes.
 [[nodiscard]] std::string shell_word(std::string_view text);
 
 }  // namespace softgrip

@@ -10,7 +10,7 @@ namespace softgrip {
 ExitCode with_output_checked(ExitCode code, const char* program) noexcept {
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-  // stdout stores that an earlier write failed, but not the reason.
+  // stdout stores that an earlier write failed, but not the reason of the failure.
   const char* const reason =
       errno != 0 ? text_of_errno(errno) : "an earlier write failed, so a part of the output is lost";
   std::fprintf(stderr, "%s: cannot write to the standard output: %s\n", program, reason);

@@ -6,8 +6,8 @@
 namespace softgrip {
 
 /// Flushes the standard output at the end of a program. Returns `code` if all output was written. If output
-/// was lost (a full disk, a closed pipe), prints a message to the standard error. In this case returns `io`
-/// if `code` is `done`.
+/// was lost (a full disk, a closed pipe), prints a message to the standard error, and returns `io` if `code`
+/// is `done`.
 [[nodiscard]] ExitCode with_output_checked(ExitCode code, const char* program) noexcept;
 
 }  // namespace softgrip

@@ -13,7 +13,7 @@ namespace softgrip {
 }
 
 /// Returns the median of the values. For an even number of values, this is the larger of the two middle
-/// values. If there are no values, returns 0. The function changes the order of `values`.
+/// values. Returns 0 if `values` is empty. The function changes the order of `values`.
 template <class T>
 [[nodiscard]] T median_of(std::span<T> values) {
   if (values.empty()) return T{};
@@ -22,14 +22,14 @@ template <class T>
   return *middle;
 }
 
-/// Returns the standard deviation of the white noise of samples. It is estimated from the median magnitude of
-/// the third differences, on which smooth signals and single steps have almost no effect. Returns 0 for fewer
-/// than 4 values.
+/// Returns an estimate of the standard deviation of the white noise in samples. The estimate uses the median
+/// magnitude of the third differences, on which smooth signals and single steps have almost no effect.
+/// Returns 0 for fewer than 4 values.
 [[nodiscard]] double third_difference_noise(std::span<const double> values);
 
-/// Sums for the regression line through pairs (x, y). Pairs with a value that is not finite are skipped.
-/// variance_x() and covariance() return the variance and the covariance multiplied by the square of the
-/// number of pairs.
+/// Sums from which the regression line through pairs (x, y) is computed. Pairs with a value that is not
+/// finite are skipped. variance_x() returns the variance of x, and covariance() the covariance of x and y,
+/// both multiplied by the square of the number of pairs.
 struct PairSums {
   double count = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
 
@@ -44,7 +44,8 @@ struct PairSums {
   }
   [[nodiscard]] double variance_x() const { return count * xx - x * x; }
   [[nodiscard]] double covariance() const { return count * xy - x * y; }
-  /// Returns the slope of the least-squares line of y over x. The result is meaningless if all x are equal.
+  /// Returns the slope of the least-squares line of y over x. If all x are equal, the result is not a valid
+  /// slope.
   [[nodiscard]] double slope() const { return covariance() / variance_x(); }
   /// Returns the correlation coefficient of x and y; 0 if all x or all y are equal.
   [[nodiscard]] double correlation() const {
@@ -53,9 +54,9 @@ struct PairSums {
   }
 };
 
-/// Returns the factor of the standard error for a two-sided 95 % interval: the 97.5 % quantile of Student's t
-/// distribution. Uses the Cornish-Fisher expansion (Abramowitz and Stegun 26.7.5), whose error at 3 degrees
-/// of freedom is below 1 %.
+/// Returns the 97.5 % quantile of Student's t distribution. The standard error times this quantile is half of
+/// the width of a 95 % interval. The function uses the Cornish-Fisher expansion (Abramowitz and Stegun
+/// 26.7.5), whose error at 3 degrees of freedom is below 1 %.
 [[nodiscard]] double t_quantile(double degrees_of_freedom);
 
 }  // namespace softgrip

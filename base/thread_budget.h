@@ -11,13 +11,14 @@
 namespace softgrip {
 
 /// The number of threads that a task may use. All calls of parallel_for() in the task and in its threads
-/// share this budget. If an outer loop leaves threads idle at its end, the inner loops use these threads. If
-/// each item writes to its own slot, the result does not depend on the number of threads.
+/// share this budget. Threads that an outer loop no longer needs at its end are available to the inner loops.
+/// If each call writes its result to an array element of its own, the result does not depend on the number of
+/// threads.
 class ThreadBudget {
  public:
   /// Sets the budget of the calling thread, and of the threads started from it, until the destructor runs. At
-  /// most `threads` threads (0: one per core) compute at a time, including the calling thread. Has no effect
-  /// if the thread already has a budget.
+  /// most `threads` threads (0: one per core) compute at a time, including the calling thread. If the calling
+  /// thread already has a budget, the new budget has no effect.
   /// @param stop  requests an early end of the task (base/cancellation.h).
   explicit ThreadBudget(unsigned threads, std::stop_token stop = {}) noexcept : stop_(std::move(stop)) {
     if (current_ != nullptr) return;
@@ -31,13 +32,13 @@ class ThreadBudget {
   ThreadBudget(const ThreadBudget&) = delete;
   ThreadBudget& operator=(const ThreadBudget&) = delete;
 
-  /// Returns the budget of the calling thread; nullptr if it has none.
+  /// Returns the budget of the calling thread; nullptr if the thread has no budget.
   [[nodiscard]] static ThreadBudget* current() noexcept { return current_; }
 
   /// Returns true if the task must end early.
   [[nodiscard]] bool stop_requested() const noexcept { return stop_.stop_requested(); }
 
-  /// Reserves at most `wanted` further threads and returns the number of threads that it reserved.
+  /// Reserves at most `wanted` threads of the budget and returns the number of reserved threads.
   [[nodiscard]] std::size_t take(std::size_t wanted) noexcept {
     std::ptrdiff_t idle = idle_.load(std::memory_order_relaxed);
     while (idle > 0) {
@@ -47,12 +48,12 @@ class ThreadBudget {
     return 0;
   }
   void give_back(std::size_t threads) noexcept { idle_ += static_cast<std::ptrdiff_t>(threads); }
-  /// Counts the calling thread as computing after it has waited for other threads. Until another thread ends,
-  /// one thread more than the budget allows may compute.
+  /// Counts the calling thread as computing, after it has waited for other threads. Until one of the other
+  /// threads ends, the number of computing threads may exceed the budget by one.
   void go_on() noexcept { --idle_; }
 
-  /// Sets the budget of the calling thread until this thread ends. The calling thread was started to compute
-  /// for this budget.
+  /// Sets the budget of the calling thread until this thread ends. A thread that was started to compute for a
+  /// budget calls this function.
   static void share(ThreadBudget& budget) noexcept { current_ = &budget; }
 
  private:

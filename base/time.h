@@ -12,7 +12,7 @@ using Nanoseconds = std::int64_t;
 inline constexpr Nanoseconds ns_per_s = 1'000'000'000;
 
 /// Converts nanoseconds to seconds. The division gives the nearest double. A multiplication by 1e-9 can give
-/// another result, such as 13.120000000000001.
+/// a different double, such as 13.120000000000001 in place of 13.12.
 [[nodiscard]] constexpr double seconds(Nanoseconds duration) noexcept {
   return static_cast<double>(duration) / 1e9;
 }

@@ -25,7 +25,8 @@ std::string utc_text(Nanoseconds wall, int decimals) {
   strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &parts);
   std::string result(text.data());
   if (decimals > 0) {
-    // Adding ns_per_s gives a number of ten digits, so the leading zeros of the fraction appear in the text.
+    // ns_per_s is added to get a number of ten digits, so that the text contains the leading zeros of the
+    // fraction.
     const std::string digits = std::to_string(ns_per_s + wall % ns_per_s);
     result += "." + digits.substr(1, static_cast<std::size_t>(decimals));
   }

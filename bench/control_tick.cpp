@@ -1,5 +1,5 @@
 // Measures the CPU time of one channel per tick, for the whole controller and for its parts. A tick of two
-// fingers with all functions may take 1 us of CPU time. Therefore, each channel controller measured here may
+// fingers with all functions may take 1 us of CPU time. Therefore, the channel controller of one finger may
 // take about 350 ns.
 
 #include <benchmark/benchmark.h>
@@ -45,8 +45,8 @@ control::ChannelSettings settings_for(control::FeedforwardKind kind) {
   return settings;
 }
 
-/// A simulated recording of a finger that equals its model. The simulation is finished before the benchmark
-/// starts, so the benchmark measures only the controller.
+/// A simulated recording of a finger that behaves exactly as its model. The simulation is finished before the
+/// measurement starts, so the benchmark measures only the controller.
 struct Tape {
   explicit Tape(const control::ChannelSettings& settings) {
     reference.start(0, 0);
@@ -106,9 +106,9 @@ void channel(benchmark::State& state) {
 }
 BENCHMARK(channel)->ArgName("feedforward")->Arg(0)->Arg(1)->Arg(2);
 
-// Measures a channel whose valve model consists of a dead band and a pressure regulator, in place of the
-// usual first-order lag. Such a model results if the valve is identified from the command without a pressure
-// sensor.
+// Measures a channel whose valve model consists of a dead band and a pressure regulator, and not of the usual
+// first-order lag. Identification gives this valve model if the log contains the command but no measured
+// pressure.
 void channel_behind_a_regulator(benchmark::State& state) {
   control::ChannelSettings settings = settings_for(control::FeedforwardKind::full_model);
   model::Model& model = settings.model;
@@ -124,8 +124,7 @@ void channel_behind_a_regulator(benchmark::State& state) {
 }
 BENCHMARK(channel_behind_a_regulator);
 
-// Measures the time of each tick of two fingers separately, so that percentiles of the tick time can be
-// computed.
+// Measures ticks of two fingers one by one, so that percentiles of the duration of a tick can be computed.
 void two_channels_percentiles(benchmark::State& state) {
   const auto settings = settings_for(control::FeedforwardKind::full_model);
   Tape tape(settings);

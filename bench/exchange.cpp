@@ -1,12 +1,14 @@
-// Measures the duration of an exchange over loopback. libmodbus sends the same requests to the same server
-// for comparison. Blocks of exchanges of the two clients alternate within the same seconds, each client
-// begins equally many rounds, and the percentiles of both are compared.
+// Compares the durations of an exchange over loopback for two clients: the client of this project, and
+// libmodbus. Both clients send the same requests to the same server. Blocks of exchanges of the two clients
+// alternate, and each client begins equally many rounds. The program prints percentiles of the durations of
+// each client.
 //
-// An exchange takes longer if the server runs on another processor than the client. Each request and each
+// An exchange takes longer if server and client run on different processors, because each request and each
 // response must then wake a processor. Without the second argument, the kernel chooses the processor of each
-// thread. It often keeps this choice for many blocks, so a comparison of p50 may compare processors, not
-// clients. The columns "1 cpu" and "2 cpus" are the medians of the exchanges on one and on two processors.
-// "one" keeps all threads on one processor, "two" keeps the servers on another processor than the clients.
+// thread. The kernel often keeps this choice for many blocks. A comparison of p50 may then compare processors
+// and not clients. The columns "1 cpu" and "2 cpus" contain the medians of the exchanges on one and on two
+// processors. The argument "one" keeps all threads on one processor, and "two" keeps servers and clients on
+// different processors.
 //
 //   build/release/bench/exchange_bench [exchanges, default 20000] [any|one|two]
 
@@ -40,7 +42,7 @@ using drivers::ModbusBoard;
 
 constexpr std::size_t block = 100;
 
-/// Lets a thread run only on the allowed processor with number `place`, counted from 0.
+/// Lets a thread run only on the processor with the index `place` in the list of allowed processors.
 void keep_on(pthread_t thread, int place) {
   cpu_set_t allowed;
   cpu_set_t chosen;
@@ -78,7 +80,7 @@ class Server {
     ::modbus_free(context_);
   }
   [[nodiscard]] std::uint16_t port() const { return port_; }
-  /// Returns the processor on which the last request was answered.
+  /// Returns the processor on which the server answered the last request.
   [[nodiscard]] int processor() const { return processor_; }
   void keep_on(int place) { ::keep_on(thread_.native_handle(), place); }
 
@@ -137,8 +139,10 @@ struct Contender {
   std::string name;
   const Server& server;
   std::function<bool()> exchange;
-  std::vector<double> one_processor = {};   ///< durations [us]
-  std::vector<double> two_processors = {};  ///< the same, with the server on another processor
+  std::vector<double> one_processor = {};   ///< durations of exchanges with server and client on one
+                                            ///< processor [us]
+  std::vector<double> two_processors = {};  ///< durations of exchanges with server and client on different
+                                            ///< processors [us]
 };
 
 void run_block(Contender& contender) {

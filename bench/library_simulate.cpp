@@ -1,5 +1,5 @@
-// library_simulate MODEL.yaml SAMPLES CALLS prints the duration of each call of Model::simulate() [ns].
-// bench/python_library.py compares this duration with the duration of the same call from Python.
+// Measures Model::simulate(). `library_simulate MODEL.yaml SAMPLES CALLS` prints the duration of each call
+// [ns]. bench/python_library.py compares this duration with the duration of the same call from Python.
 
 #include <chrono>
 #include <cmath>

@@ -1,12 +1,12 @@
 // Measures the duration of a whole tick of the control loop's thread. The tick takes readings, controls two
 // fingers with full_model and PID, checks limits, runs the supervisor, publishes commands and snapshot, and
 // passes rows to the recorder. Only Loop::tick is timed; the simulated board and the recorder run between the
-// ticks. Each series of ticks runs twice. The first series measures the CPU time of the thread, which
-// excludes interruptions by other threads but needs a system call. The second series uses the monotonic
+// ticks. Each series of ticks is measured twice. The first measurement uses the CPU time of the thread, which
+// excludes interruptions by other threads but needs a system call. The second measurement uses the monotonic
 // clock, which is fast to read but includes these interruptions.
 //
-// Then the program runs the whole daemon (board, control loop, bus, recorder and disk) in virtual time. It
-// measures how many times faster than real time the daemon is.
+// After these measurements, the program runs the whole daemon (board, control loop, bus, recorder and disk)
+// in virtual time. It measures the ratio of simulated time to elapsed time.
 //
 //   loop_tick [TICKS]
 
@@ -65,8 +65,7 @@ struct Times {
   }
 };
 
-/// Measures the time between two successive readings of the clock, which is the time of the measurement
-/// itself.
+/// Measures the time between two successive readings of the clock: the time that a measurement itself takes.
 Times time_nothing(clockid_t clock) {
   Times times;
   for (int i = 0; i < 100'000; ++i) {
@@ -123,8 +122,8 @@ void print(double rate_hz, const char* name, clockid_t clock, std::uint64_t tick
               rate_hz, name, times.at(0.5), times.at(0.99), times.at(0.999), times.at(1), nothing.at(0.5));
 }
 
-/// Prints how many seconds of rig time the daemon simulates per second, while it records everything. Prints
-/// the median, smallest and largest result of several runs.
+/// Prints the number of seconds of rig time that the daemon simulates and records per second of elapsed time.
+/// The result is the median of several repetitions, with the smallest and the largest value.
 void print_speed(double rate_hz) {
   constexpr int runs = 7;
   std::vector<double> by_clock;

@@ -1,6 +1,6 @@
-// Measures the CPU time of one sample of a model: for a step that changes the model's state, and for a trial
-// step that does not change it, as the inverse of a model needs it. The trial step is measured with and
-// without the derivative.
+// Measures the CPU time of one sample of a model for two functions. step() changes the state of the model.
+// peek() computes a trial step that does not change the state; the inverse of a model needs such trial steps.
+// peek() is measured with and without the derivative.
 
 #include <benchmark/benchmark.h>
 

@@ -1,6 +1,6 @@
 #pragma once
-// A model of a finger with play operators. It has as many parameters as an identified model usually has. The
-// benchmarks compare its computing time with that of the Bouc-Wen model.
+// Defines a model of a finger with play operators. The model has as many parameters as an identified model
+// usually has. The benchmarks compare its computing time with that of a Bouc-Wen model.
 
 #include <cmath>
 #include <utility>
@@ -16,8 +16,9 @@
 namespace softgrip::bench {
 
 /// Returns a model with 12 play operators with thresholds up to 57 kPa, 7 creep branches and a nonlinear
-/// characteristic. Its dead time is that of bench_twin, and its valve fills faster than it vents. The values
-/// are examples, not measurements. The finger reaches 20 mm below 60 kPa.
+/// characteristic. Its dead time is that of the model bench_twin, and its valve fills faster than it vents.
+/// The parameter values are examples and not measurements. The finger reaches 20 mm at a pressure below 60
+/// kPa.
 inline model::Model play_model() {
   constexpr int plays = 12, branches = 7;
   std::vector<double> hysteresis{0, 0, 0, 0, 0, 0.15}, creep{1e9};

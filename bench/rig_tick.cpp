@@ -1,7 +1,7 @@
 // Measures the duration of a whole tick of a rig: two fingers with full_model and PID, sequence, supervisor
 // and fault monitor. Only RigController::tick is timed; the simulated fingers advance between the timed
-// calls. To compare models, measure them alternately: --benchmark_enable_random_interleaving=true
-// --benchmark_repetitions=9.
+// calls. To compare models, measure the models alternately, with the options
+// --benchmark_enable_random_interleaving=true --benchmark_repetitions=9.
 
 #include <benchmark/benchmark.h>
 

@@ -6,13 +6,13 @@
 // Each fit uses one log of the signal tp1. Each true parameter deviates from the start value by 5 % (standard
 // deviation).
 //
-// The RMSE of a fit is smaller than the added noise, because the fit follows a part of the noise. The
-// expected ratio of a correct fit can be computed with H = J (J'J)^-1 J' and the correlation matrix R of the
-// noise, where J is the Jacobian of the fit. The expected sum of squares is s^2 (n - tr(H R)) for n samples
-// and noise of standard deviation s. For white noise, tr(H R) is the number of parameters. Correlated noise
-// resembles the slow responses of the model, so the fit absorbs a larger part of it. Therefore, the program
-// prints two ratios: the RMSE divided by the added noise, and the RMSE divided by the RMSE that is expected
-// of a correct fit.
+// The RMSE of a fit is smaller than the standard deviation of the added noise, because the fit follows a part
+// of the noise. The expected RMSE of a correct fit follows from H = J (J'J)^-1 J' and the correlation matrix
+// R of the noise, where J is the Jacobian of the fit. The expected sum of squared residuals is s^2 (n - tr(H
+// R)) for n samples and noise of standard deviation s. For white noise, tr(H R) is the number of parameters.
+// Correlated noise resembles the slow responses of the model, so the fit absorbs a larger part of correlated
+// noise. Therefore, the program prints two ratios: the RMSE divided by the added noise, and the RMSE divided
+// by the RMSE that is expected of a correct fit.
 
 #include <algorithm>
 #include <cmath>
@@ -49,18 +49,21 @@ struct Count {
   [[nodiscard]] double percent() const { return trials > 0 ? 100.0 * inside / trials : 0; }
 };
 
-/// Result of one fit. `inside` contains, for each combination of parameters, true if the interval covers the
-/// true value. rmse_over_noise is the RMSE divided by the added noise.
+/// Result of one fit. For each combination of parameters, `inside` is true if the interval covers the true
+/// value. rmse_over_noise is the RMSE divided by the standard deviation of the added noise.
 struct Trial {
   std::map<std::string, bool> inside;
   double rmse_over_noise = 0;
-  double expected_over_noise = 0;   ///< expected RMSE of a correct fit divided by the added noise
-  double estimated_over_noise = 0;  ///< noise that the fit estimated, divided by the added noise
+  double expected_over_noise = 0;   ///< expected RMSE of a correct fit divided by the standard deviation of
+                                    ///< the added noise
+  double estimated_over_noise = 0;  ///< standard deviation of the noise that the fit estimated, divided by
+                                    ///< that of the added noise
   bool failed = true;
 };
 
-/// Returns the expected RMSE of a correct fit divided by the noise: sqrt(1 - tr(H R) / n) at the model
-/// `truth`. `correlation` is the lag-1 autocorrelation of the noise.
+/// Returns the expected RMSE of a correct fit divided by the standard deviation of the noise. This ratio is
+/// sqrt(1 - tr(H R) / n) at the model `truth` (see the first comment of this file). `correlation` is the
+/// lag-1 autocorrelation of the noise.
 double expected_ratio(const model::Model& truth, const Identification& fit, double correlation) {
   std::vector<std::size_t> free;
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
@@ -115,7 +118,7 @@ Trial fit_one(const std::string& name, double correlation, double rate_hz, std::
   return trial;
 }
 
-/// Prints the median, the 5 % and 95 % quantiles, and the share of values between 0.98 and 1.02.
+/// Prints the median of `values`, the 5 % and 95 % quantiles, and the share of values between 0.98 and 1.02.
 void print(const char* what, std::vector<double> values) {
   if (values.empty()) return;
   std::sort(values.begin(), values.end());

@@ -1,4 +1,5 @@
-/* y = simulate(t, p, x): the compiled simulator for Octave. x: alpha beta gamma eta k0 k1 c1 k2 c2 offset. */
+/* Makes the compiled simulator available in Octave as y = simulate(t, p, x). The parameters x are alpha,
+ * beta, gamma, eta, k0, k1, c1, k2, c2 and the offset of y. */
 #include "mex.h"
 
 void simulate(size_t n, const double* t, const double* p, int branches, const double* x, double* y);

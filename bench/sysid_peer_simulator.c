@@ -1,15 +1,16 @@
-/* Simulator of the default structure (Bouc-Wen with exponent 1 plus Kelvin-Voigt branches) for the optimisers of
- * other programs. Like softgrip's simulator, it is exact in pressure and in time if the command is linear
- * between samples. Plain C, so that ctypes and an Octave mex file can call it. */
+/* Simulates the default model structure (Bouc-Wen with exponent 1 plus Kelvin-Voigt branches) for the
+ * optimisers of other programs. Like softgrip's simulator, this simulator is exact if the command is linear
+ * between samples. The code is plain C, so that ctypes and an Octave mex file can call it. */
 #include <math.h>
 #include <stddef.h>
 
-/* (1 - exp(-z)) / z */
+/* Returns (1 - exp(-z)) / z. */
 static double phi1(double z) {
   return fabs(z) < 1e-5 ? 1 - z * (0.5 - z / 6) : -expm1(-z) / z;
 }
 
-/* Advances h over a monotone change dp of the pressure, in closed form between the sign changes of h. */
+/* Returns the state h after a monotone change dp of the pressure. Between the sign changes of h, the solution
+ * is in closed form. */
 static double bouc_wen(double h, double dp, double beta, double gamma, double eta) {
   for (int part = 0; part < 2 && dp != 0; ++part) {
     const double direction = dp > 0 ? 1 : -1;
@@ -25,8 +26,9 @@ static double bouc_wen(double h, double dp, double beta, double gamma, double et
   return h;
 }
 
-/* parameters: alpha, beta, gamma, eta, k0, then k_i, c_i for each branch, then the offset of y.
- * t and p have n samples; y is written. Starts at rest with p = 0 before the first sample. */
+/* Simulates n samples with the times t and the pressures p, and writes the readings to y. The parameters x
+ * are alpha, beta, gamma, eta, k0, then k_i and c_i for each branch, then the offset of y. The finger starts
+ * at rest with p = 0 before the first sample. */
 void simulate(size_t n, const double* t, const double* p, int branches, const double* x, double* y) {
   const double alpha = x[0], beta = x[1], gamma = x[2], eta = x[3], k0 = x[4];
   const double offset = x[5 + 2 * branches];

@@ -1,11 +1,11 @@
-// Runs softgrip for the comparison bench/sysid_peers.sh. Creates three logs and the start points, fits the
-// logs from each start point and prints the times.
+// Runs the fits of softgrip for the comparison in bench/sysid_peers.sh. Creates three logs and the start
+// points, fits the logs from each start point, and prints the durations of the fits.
 //
 //   sysid_starts FOLDER [STARTS [SAMPLES]]
 //
 // The program writes log1.csv to log3.csv, starts.txt and ours.txt into FOLDER. starts.txt has one start
-// point per line: alpha beta gamma eta k1 c1 k2 c2. ours.txt has the RMSE of each start point [mm], then the
-// CPU time of all fits on one thread [s].
+// point per line: alpha beta gamma eta k1 c1 k2 c2. ours.txt contains the RMSE of the fit from each start
+// point [mm], followed by the CPU time of all fits on one thread [s].
 
 #include <chrono>
 #include <cmath>
@@ -27,8 +27,8 @@ namespace {
 using namespace softgrip;
 using namespace softgrip::sysid;
 
-/// Returns start points for the fits. Every parameter except k0 and the exponent is multiplied by a random
-/// factor between 1/e and e.
+/// Returns start points for the fits. Each parameter except k0 and the exponent is multiplied by a random
+/// factor of its own between 1/e and e.
 std::vector<model::Model> start_points(std::size_t count) {
   std::mt19937_64 random(2025);
   std::uniform_real_distribution<double> logarithm(-1, 1);
@@ -46,7 +46,8 @@ std::vector<model::Model> start_points(std::size_t count) {
   return starts;
 }
 
-/// Duration of a fit: the elapsed time, and the CPU time. Other programs have less effect on the CPU time.
+/// Duration of a fit: the elapsed time and the CPU time. The CPU time depends less on other programs on the
+/// machine than the elapsed time does.
 struct Seconds {
   double wall;
   double processor;

@@ -1,7 +1,7 @@
 // Measures the tracking accuracy on the simulated finger bench_twin and prints a table. The references are
 // sines of 13 ± 7 mm at 0.05, 0.1 and 0.2 Hz, the control rate is 200 Hz, and the sensor noise is 0.03 mm.
-// The parameters of the controller's model deviate by up to ±5 %. The gains of all schemes are found by the
-// same search method.
+// The parameters of the controller's model deviate by up to ±5 %. One search method finds the gains of all
+// schemes.
 //
 //   tracking_study [--draws N] [--search-draws N] [--seed S] [--latency-ms L] [--quantised]
 //   [--max-sensitivity M]
@@ -28,8 +28,8 @@ using control::FeedforwardKind;
 using control::PidSettings;
 
 struct Options {
-  int draws = 40;        ///< random models for the results in the table
-  int search_draws = 6;  ///< further random models, for the search of the controller gains
+  int draws = 40;        ///< number of random models for the results in the table
+  int search_draws = 6;  ///< number of additional random models for the search of the controller gains
   std::uint64_t seed = 1;
   double latency_ms = 0;
   bool quantised = false;  ///< true: readings have 16 bits over 100 mm, and commands have 12 bits over 100
@@ -58,8 +58,8 @@ model::Model model_named(const std::string& name) {
   return *model;
 }
 
-/// Returns the published Bouc-Wen model with beta reduced to 0.9 of alpha. The published beta causes an
-/// inverse response; the model with the smaller beta can be inverted.
+/// Returns the published Bouc-Wen model with beta reduced to 0.9 of alpha. With the published beta, the model
+/// has an inverse response; with the reduced beta, the model can be inverted.
 model::Model regularised(const model::Model& published) {
   auto values = model::flat_values(published);
   values[model::find_path(published, "bouc_wen.beta_mm_per_kpa").value()] =
@@ -83,8 +83,9 @@ control::TrackingRun run_of(const Scheme& scheme, const Options& options, const 
   return run;
 }
 
-/// Returns random models. Their parameters deviate from the parameters of the scheme by up to `scatter`.
-/// Models without a feedforward are not returned, but counted in `refused`.
+/// Returns random models. Their parameters deviate from the parameters of the scheme's model by up to
+/// `scatter`. Models for which the feedforward of the scheme is impossible are not returned, but counted in
+/// `refused`.
 std::vector<model::Model> draws_of(const Scheme& scheme, int count, std::uint64_t seed, int& refused) {
   std::vector<model::Model> models;
   refused = 0;
@@ -100,8 +101,8 @@ std::vector<model::Model> draws_of(const Scheme& scheme, int count, std::uint64_
   return models;
 }
 
-/// Cost of a set of gains: root mean square of the RMSE over several random models, with one short run per
-/// model. The cost is large if the stability margin of the loop is too small.
+/// Cost of a set of gains: root mean square of the RMSE over several random models, with one short simulation
+/// per model. The cost is large if the stability margin of the control loop is too small.
 class Cost {
  public:
   Cost(const Scheme& scheme, const Options& options, const model::Model& finger, double frequency_hz)

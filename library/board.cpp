@@ -14,8 +14,8 @@ namespace softgrip {
 namespace {
 
 constexpr std::size_t most_fingers = 16;
-/// Initial time of the clock of a simulated board [ns]. It is not 0, because a reading with the time 0 counts
-/// as missing.
+/// Initial time of the clock of a simulated board [ns]. The initial time is not 0, because a reading with the
+/// time 0 counts as missing.
 constexpr Nanoseconds board_begins_at = 1'000'000'000;
 /// Measuring range of a simulated sensor, in the unit of the model.
 constexpr double sensor_range = 1e6;
@@ -29,8 +29,8 @@ bool is_valid(const SimulatedObject& object) noexcept {
   return std::isfinite(object.position) && object.yielding >= 0 && object.yielding <= 1;
 }
 
-/// The conversions below require that the enumerators of the public and the internal enumeration have the
-/// same order.
+/// The conversions between the public and the internal enumeration require that both have their enumerators
+/// in the same order.
 static_assert(static_cast<int>(BusStatus::closed_at_once) ==
               static_cast<int>(drivers::BusStatus::closed_at_once));
 static_assert(static_cast<int>(Validity::stale) == static_cast<int>(model::Validity::stale));

@@ -1,5 +1,5 @@
 #pragma once
-// Runs computations of the library that a std::stop_token can end early.
+// Runs computations of the library that a request through a std::stop_token can end early.
 
 #include <stop_token>
 #include <utility>
@@ -10,8 +10,8 @@
 
 namespace softgrip::library {
 
-/// Returns the result of work(), which may use `threads` threads (0: one per processor core). Throws
-/// Cancelled if a request of `stop` ended work() early.
+/// Calls work() and returns its result. work() may use `threads` threads (0: one per processor core). Throws
+/// Cancelled if a request through `stop` ended work() early.
 template <class Work>
 auto cancellable(unsigned threads, const std::stop_token& stop, Work&& work) {
   const ThreadBudget budget(threads, stop);

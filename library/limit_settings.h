@@ -1,5 +1,5 @@
 #pragma once
-// Converts the public limits to the limits of control/.
+// Converts the limits of the public interface to the limits of control/.
 
 #include "control/elements/limits.h"
 #include "library/include/softgrip/control.h"
@@ -7,7 +7,7 @@
 namespace softgrip::library {
 
 [[nodiscard]] control::LimitSettings settings_of(const Limits& limits) noexcept;
-/// Checks and converts limits. Throws InvalidArgument.
+/// Checks limits and converts them. Throws InvalidArgument if a limit is invalid.
 control::LimitSettings checked(const Limits& limits);
 
 }  // namespace softgrip::library

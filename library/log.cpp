@@ -79,7 +79,8 @@ std::string sentence_of(const document::Problems& problems) {
   return first.hint.empty() ? first.message : first.message + " (" + first.hint + ")";
 }
 
-/// Checks a log with the reader of log files. Therefore, arrays must satisfy the same conditions as files.
+/// Checks a log with the reader of log files, so that logs from arrays must satisfy the same conditions as
+/// log files.
 sysid::Log accepted(const std::string& argument, const Log& log, const sysid::LogOptions& options) {
   document::Problems problems;
   const std::string name = log.name.empty() ? "log" : log.name;
@@ -203,8 +204,8 @@ Log read_log(const std::string& path, const ReadOptions& options) {
   try {
     return imported(path, options);
   } catch (const FileError&) {
-    // A file that has the columns of a log was meant as a log. Therefore, report the problems that the log
-    // reader found.
+    // A file with the column pressure_command_kpa is meant to be a log. Therefore, the problems that the log
+    // reader found are reported.
     const auto text = read_file(path, sysid::LogOptions{}.bytes);
     if (text && text->substr(0, text->find('\n')).find("pressure_command_kpa") != std::string::npos)
       library::refuse(problems);

@@ -12,13 +12,14 @@
 
 namespace softgrip::library {
 
-/// The unit that all logs must have.
+/// The unit that all logs of a call must have.
 struct NeededUnit {
-  std::string of;  ///< name of the object that determines the unit, for messages: "the model NAME"
+  std::string of;  ///< name of the object that determines the unit, for messages, for example "the model
+                   ///< NAME"
   Unit unit = Unit::mm;
 };
 
-/// Returns the unit of a model, which logs for this model must have too.
+/// Returns the unit of a model. All logs for this model must have this unit.
 [[nodiscard]] NeededUnit needed_for(const Model& model);
 
 /// Converts public logs to logs of sysid/, after the checks that the `softgrip` commands make. Throws

@@ -171,8 +171,8 @@ Inverse Model::inverse(std::span<const double> time_s, std::span<const double> d
   library::require_between("start_kpa", options.start_kpa, options.pressure_min_kpa, options.pressure_max_kpa,
                            "kPa");
   Feedforward feedforward(*this, limits, tick_s);
-  // Value of the reference preview_s() after a sample. Between samples, the reference is linear, and after
-  // the last sample, it is constant.
+  // Computes the reference at the time preview_s() after a sample. The reference is linear between samples,
+  // and constant after the last sample.
   const double ahead = feedforward.preview_s() / tick_s;
   const auto whole = static_cast<std::size_t>(ahead);
   const double part = ahead - static_cast<double>(whole);

@@ -1,5 +1,5 @@
 #pragma once
-// The content of a public Model. Also checks arguments in the way that all public functions use.
+// Defines the internal data of a public Model, and the checks of arguments that all public functions share.
 
 #include <memory>
 #include <span>
@@ -23,7 +23,7 @@ namespace library {
 [[nodiscard]] model::OutputUnit unit_of(Unit unit) noexcept;
 [[nodiscard]] Unit unit_of(model::OutputUnit unit) noexcept;
 
-/// Throws FileError with all problems in its text.
+/// Throws FileError. The text of the exception contains all problems.
 [[noreturn]] void refuse(const document::Problems& problems);
 
 /// Returns the name of a unit for messages: "mm" or "deg".
@@ -34,7 +34,7 @@ namespace library {
 void require_size(const std::string& argument, std::size_t size, std::size_t count, const std::string& unit);
 /// Requires that all values are finite.
 void require_finite(const std::string& argument, std::span<const double> values, const std::string& unit);
-/// Requires finite and increasing times, at least `fewest` of them.
+/// Requires at least `fewest` times, which must be finite and increasing.
 void require_times(const std::string& argument, std::span<const double> time_s, std::size_t fewest);
 /// Requires a number from `lower` to `upper`.
 void require_between(const std::string& argument, double value, double lower, double upper,

@@ -1,5 +1,5 @@
 #pragma once
-// Converts the scores and intervals of sysid/ to the public structs.
+// Converts the scores and intervals of sysid/ to the structs of the public interface.
 
 #include <string>
 #include <vector>

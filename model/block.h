@@ -1,8 +1,8 @@
 #pragma once
-// Defines the interface of a block of the chain. Each effect is one block, with one file under model/blocks/
-// and one line in registry.h. docs/how-to/add-a-block.md describes the steps.
+// Defines the interface of a block of the chain. Each physical effect is one block, with one file under
+// model/blocks/ and one line in registry.h. docs/how-to/add-a-block.md describes the steps.
 //
-// A block is a class template over the number type T (double; an automatic differentiation type):
+// A block is a class template over the number type T, which is double or an automatic differentiation type:
 //
 //   template <class T> class ValveLag {
 //    public:
@@ -26,35 +26,37 @@
 //     pressure, displacement:  U peek(const T& duration_s, const U& end, const Surroundings&) const;
 //     (a template over U: double, or Dual<double> for the derivative with respect to the newest pressure)
 //
-// The concepts below state this contract for the compiler. registry.h checks them for every block.
+// The concepts in this file state these requirements for the compiler. registry.h checks every block against
+// the concepts.
 //
 // A step calls next(segment) one or more times to pass segments on. The sum of the durations of these
-// segments is the duration of the input segment (a delay may keep back a jump). The `begin` of the first
-// segment equals the `end` of the last segment of the previous step. If the output of a block reverses within
-// a sample, the block passes two segments on, so that the Bouc-Wen block receives the reversal. With its
-// neutral parameter values, a block passes its input on unchanged, and an element adds 0 mm.
+// segments is the duration of the input segment. A delay may pass on a jump in a later step. The `begin` of
+// the first segment equals the `end` of the last segment of the previous step. If the output of a block
+// reverses within a sample, the block passes two segments on, so that the Bouc-Wen block receives the
+// reversal. With its neutral parameter values, a block passes its input on unchanged, and an element adds 0
+// mm.
 //
 // Rest. reset(input) sets a state of rest: the input rose from 0 to `input` once and was then held for a long
 // time. In this state, lags and creep have settled, hysteresis is on its first loading curve, and the delay
 // line is filled.
 //
 // A block with a memory over the whole measurement campaign, such as the largest load so far, also has
-// rest(input). This function does the same as reset(input) but keeps that memory.
+// rest(input). rest(input) sets the same state as reset(input), but keeps the memory over the campaign.
 //
 // A block with repeated parts also declares `repeated` (the parameters of one part, in order) and
-// `max_parts`. If the smallest number of parts is not 1, it also declares `min_parts`. A block whose
-// parameters depend on each other declares
-// `static std::string_view objection(std::span<const double> values)`. This function returns an empty text
-// for valid values.
+// `max_parts`. If the smallest number of parts is not 1, the block also declares `min_parts`. A block whose
+// parameters depend on each other declares `static std::string_view objection(std::span<const double>
+// values)`. This function returns an empty text for valid values.
 //
 // For some displacement blocks, the output at the end of a sample depends only on the input and the
 // surroundings at that time. Such a block declares `static constexpr bool at_samples = true`. For reading
-// blocks, this is the default. Reading blocks with random numbers declare `at_samples = false`.
+// blocks, `at_samples` is true by default. Reading blocks with random numbers declare `at_samples = false`.
 //
 // A block that modifies the chain's Bouc-Wen element also declares `void shape(BoucWen<T>&) const`. The
 // constructor of the chain calls this function once.
 //
-// Blocks are copyable values. If a block was prepared for a sample time, its steps allocate no memory.
+// Blocks are copyable. The steps of a block allocate no memory if the block was constructed for a sample
+// time.
 
 #include <array>
 #include <concepts>
@@ -68,39 +70,40 @@
 
 namespace softgrip::model {
 
-/// The station of a block in the chain. The blocks of a chain are ordered by station. Within a station, they
-/// are ordered by kind: pressure blocks, elements, displacement blocks, reading blocks. Blocks of one kind
-/// are in the order of the model file.
+/// The station of a block in the chain. The blocks of a chain are ordered by station. Within a station, the
+/// order of the kinds is pressure blocks, elements, displacement blocks, reading blocks. Blocks of one
+/// station and kind are in the order of the model file.
 enum class Station : std::uint8_t { valve, actuator, load, sensor };
 
-/// The effect of a block on the signal in the chain.
+/// The kind of a block: its input and its output in the chain.
 enum class Kind : std::uint8_t {
   pressure,      ///< pressure in, pressure out [kPa]; the blocks are in series
   element,       ///< pressure in [kPa], displacement out [mm]; all elements of a chain have the same input,
                  ///< and their outputs are added
   displacement,  ///< displacement in, displacement out [mm]; the blocks are in series
-  reading,       ///< displacement in, reading out [mm]; an effect of the sensor that is computed once at the
-                 ///< end of a step
+  reading,       ///< displacement in, reading out [mm]; an effect of the sensor, computed once at the end of
+                 ///< each sample
 };
 
-/// The method by which the feedforward inverts a block.
+/// The method by which the feedforward compensates the effect of a block.
 enum class Inverse : std::uint8_t {
-  implicit,  ///< inverted together with the actuator; the output increases with the newest pressure
+  implicit,  ///< inverted together with the actuator; the output of the block increases with the newest
+             ///< pressure
   lead,      ///< inverted with the derivative of the planned signal
   preview,   ///< inverted with the future value of the reference
-  play,      ///< inverted by adding half the band in the direction of motion
+  play,      ///< inverted by adding half the width of the band in the direction of motion
   bound,     ///< not inverted; the block sets a limit for the reference
   ignored,   ///< not inverted, because the effect is random or small (noise, quantisation)
 };
 
 /// Description of a block type.
 struct BlockInfo {
-  std::string_view id;  ///< key in model files, and id of the cause
+  std::string_view id;  ///< key of the block in model files, and id of the corresponding cause
   Station station;
   Kind kind;
   Inverse inverse;
   std::string_view title;     ///< title of the block, such as "Transport delay"
-  std::string_view meaning;   ///< description in one line for the reference page
+  std::string_view meaning;   ///< description of the block in one line for the reference page
   std::string_view equation;  ///< equation of the block as plain text
   bool repeatable = false;    ///< true: a chain may contain the block more than once (two stops, two
                               ///< disturbances)
@@ -109,8 +112,8 @@ struct BlockInfo {
 /// Argument of block_info() for a block that a chain may contain more than once.
 struct Repeatable {};
 
-/// Returns the description of a block. The arguments are in the order of the members above. `meaning` is a
-/// sentence.
+/// Returns the description of a block. The arguments have the order of the members of BlockInfo. `meaning` is
+/// a sentence.
 consteval BlockInfo block_info(std::string_view id, Station station, Kind kind, Inverse inverse,
                                std::string_view title, std::string_view meaning, std::string_view equation) {
   if (id.empty() || title.empty() || !meaning.ends_with('.'))
@@ -125,11 +128,11 @@ consteval BlockInfo block_info(std::string_view id, Station station, Kind kind, 
   return info;
 }
 
-/// Data for the preparation of a block, in addition to its parameters.
+/// Data with which a block is constructed, in addition to its parameters.
 struct Preparation {
-  double sample_time_s = 0;  ///< nominal sample time [s]; 0: the sample time is irregular
-  std::uint64_t seed = 0;    ///< seed of this block's random numbers; each block of each channel has another
-                             ///< seed
+  double sample_time_s = 0;  ///< nominal sample time [s]; 0: the times between samples are irregular
+  std::uint64_t seed = 0;    ///< seed of the random numbers of this block; the seeds of any two blocks of any
+                             ///< channels differ
 };
 
 /// Requires that the block has a description and a list of parameters.
@@ -147,7 +150,7 @@ concept SaysItsParts = requires {
   std::size_t{Block::max_parts};
 };
 
-/// Requires that the block is a copyable value, is made from its parameters, has a state of rest, and returns
+/// Requires that a block is copyable, is constructed from its parameters, has a state of rest, and returns
 /// its output.
 template <class Block, class T>
 concept StandsSomewhere = std::copyable<Block> &&
@@ -158,33 +161,33 @@ concept StandsSomewhere = std::copyable<Block> &&
   { still.output() } -> std::convertible_to<T>;
 };
 
-/// Requires of pressure and displacement blocks that step() passes segments on.
+/// Requires that step() of a pressure block or displacement block passes segments on.
 template <class Block, class T>
 concept PassesOn = requires(Block block, const Segment<T>& in, const Surroundings& around,
                             void (&next)(const Segment<T>&)) {
   { block.step(in, around, next) } -> std::same_as<void>;
 };
 
-/// Requires of elements that step() converts a pressure to a displacement.
+/// Requires that step() of an element converts a pressure to a displacement.
 template <class Block, class T>
 concept TurnsIntoDisplacement = requires(Block block, const Segment<T>& in, const Surroundings& around) {
   { block.step(in, around) } -> std::same_as<Segment<T>>;
 };
 
-/// Requires of blocks of the sensor that sample() converts a displacement to a reading.
+/// Requires that sample() of a sensor block converts a displacement to a reading.
 template <class Block, class T>
 concept Samples = requires(Block block, const T& value, const Surroundings& around) {
   { block.sample(value, value, around) } -> std::same_as<T>;
 };
 
-/// Requires of blocks that are inverted implicitly that peek() predicts the output.
+/// Requires that peek() predicts the output of a block that is inverted implicitly.
 template <class Block, class T, class U>
 concept Foretells = requires(const Block block, const T& duration_s, const U& end,
                              const Surroundings& around) {
   { block.peek(duration_s, end, around) } -> std::same_as<U>;
 };
 
-/// All requirements for a block of each kind.
+/// All requirements of a block in series, of an element and of a reading block.
 template <class Block, class T>
 concept SeriesBlock = SaysWhatItIs<Block> && StandsSomewhere<Block, T> && PassesOn<Block, T>;
 template <class Block, class T>
@@ -192,8 +195,8 @@ concept ElementBlock = SaysWhatItIs<Block> && StandsSomewhere<Block, T> && Turns
 template <class Block, class T>
 concept ReadingBlock = SaysWhatItIs<Block> && StandsSomewhere<Block, T> && Samples<Block, T>;
 
-/// Compiles only for a block that meets all requirements of its kind. For any other block, the message of the
-/// compiler names the missing part.
+/// Compiles only for a block that meets all requirements of its kind. For any other block, the error message
+/// of the compiler names the requirement that is not met.
 template <template <class> class Block, class T>
 consteval bool keeps_contract() {
   using B = Block<T>;

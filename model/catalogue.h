@@ -1,6 +1,6 @@
 #pragma once
-// Describes all block types as plain data. Code that lists, reads, writes or fits blocks uses these
-// descriptions and not the classes of the blocks. registry.h contains the list of types.
+// Describes all block types as data. Code that lists, reads, writes or fits blocks uses these descriptions
+// and not the classes of the blocks. registry.h contains the list of block types.
 
 #include <cstddef>
 #include <optional>
@@ -17,30 +17,30 @@ struct BlockDescriptor {
   BlockInfo info;
   std::span<const ParameterSpec> parameters;  ///< parameters that do not belong to a repeated part
   std::span<const ParameterSpec> repeated;    ///< parameters of one repeated part; empty for most blocks
-  std::size_t min_parts = 0;  ///< smallest number of parts; 1 if the block declares no other number
+  std::size_t min_parts = 0;  ///< smallest number of repeated parts; 1 if the block declares no other number
   std::size_t max_parts = 0;  ///< largest number of repeated parts
-  /// Returns the reason why these values are not valid together; empty if they are valid. The pointer is
-  /// nullptr if all combinations of values are valid.
+  /// Function that returns the reason why the values of a block are not valid together, or an empty text if
+  /// they are valid. nullptr if all combinations of values are valid.
   std::string_view (*objection)(std::span<const double> values) = nullptr;
   /// True: the output at the end of a sample depends only on the input and the surroundings at that time (see
   /// block.h).
   bool at_samples = false;
 
-  /// Returns true if a block of this type may have this number of values. The permitted numbers are
+  /// Returns true if a block of this type may have `value_count` values. The permitted numbers are
   /// parameters.size() + n * repeated.size(), for n from min_parts to max_parts.
   [[nodiscard]] bool accepts(std::size_t value_count) const;
-  /// Returns the declaration of the value `index` of a block. Throws std::out_of_range if there is no such
-  /// value.
+  /// Returns the declaration of the value `index` of a block. Throws std::out_of_range if the block has no
+  /// value with this index.
   [[nodiscard]] const ParameterSpec& spec(std::size_t index) const;
   /// Returns the name of the value `index`. In a repeated part, the name contains the number of the part:
-  /// "k2_kpa_per_mm". Throws std::out_of_range if there is no such value.
+  /// "k2_kpa_per_mm". Throws std::out_of_range if the block has no value with this index.
   [[nodiscard]] std::string name(std::size_t index) const;
 };
 
 /// Returns all block types. The index of a type in the result is BlockSpec::type.
 [[nodiscard]] std::span<const BlockDescriptor> catalogue();
 
-/// Returns the index of the type with this id, or nullopt.
+/// Returns the index of the block type with this id; nullopt if no type has this id.
 [[nodiscard]] std::optional<std::size_t> find_block(std::string_view id);
 
 }  // namespace softgrip::model

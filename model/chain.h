@@ -19,16 +19,17 @@
 namespace softgrip::model {
 
 /// A chain of blocks over the number type T. The constructor allocates memory; reset(), step() and peek() do
-/// not. There are two exceptions, because their delay line may grow: a chain with sample_time_s = 0 (for
-/// irregular logs), and a chain whose steps are much shorter than sample_time_s.
+/// not. There are two exceptions: a chain with sample_time_s = 0 (for irregular logs), and a chain whose
+/// steps are much shorter than sample_time_s. In these chains, the delay line of a transport delay may grow.
 ///
 /// The command is piecewise linear: step(dt, u) moves the command linearly from its last value to `u` over
-/// `dt`. If a board holds its output, this is step(0, u) followed by step(dt, u). For such commands, Bouc-Wen
-/// (exponent 1), Kelvin-Voigt, delay and lag are exact for any dt. After a lag, Bouc-Wen receives the exact
-/// turning points, and Kelvin-Voigt receives a parabola with the exact mean. The error is below 1e-6 mm if dt
-/// is at most the time constant of the lag and the command does not jump. It is below 1e-8 mm for a tenth of
-/// that dt. After the elements, inertia and sensor lag receive parabolas, each for a pressure change of at
-/// most 5 kPa. The error of inertia and sensor lag is 1e-4 mm after a step of 44 kPa within a sample.
+/// `dt`. For a board that holds its output, call step(0, u) and then step(dt, u). For piecewise linear
+/// commands, Bouc-Wen (exponent 1), Kelvin-Voigt, delay and lag are exact for any dt. After a lag, Bouc-Wen
+/// receives the exact turning points, and Kelvin-Voigt receives a parabola with the exact mean. The error of
+/// the displacement is below 1e-6 mm if dt is at most the time constant of the lag and the command does not
+/// jump. The error is below 1e-8 mm if dt is at most a tenth of this time constant. After the elements,
+/// inertia and sensor lag receive parabolas, each for a pressure change of at most 5 kPa. The error of
+/// inertia and sensor lag is 1e-4 mm after a step of 44 kPa within a sample.
 template <class T>
 class Chain {
  public:
@@ -36,8 +37,8 @@ class Chain {
   /// @param values  all parameters of all blocks, in the order of flat_values(model). Empty: the values in
   /// `model` are used.
   /// @param sample_time_s  nominal sample time for precomputed coefficients [s]; 0 if the sample time is
-  /// irregular. If the relative difference between a duration and the sample time is 1e-9 or less, the sample
-  /// time is used.
+  /// irregular. A duration whose relative difference from the sample time is at most 1e-9 is replaced by the
+  /// sample time.
   /// @param seed  seed of the random numbers of the sensor blocks. Equal seeds give equal noise.
   explicit Chain(const Model& model, std::span<const T> values = {}, double sample_time_s = 0,
                  std::uint64_t seed = 0);
@@ -47,8 +48,8 @@ class Chain {
   void reset(const T& command);
 
   /// Sets the state of rest as reset() does. However, blocks with a memory over the measurement campaign,
-  /// such as the largest load so far, keep this memory. Use this function for a new log of the same rig after
-  /// a rest.
+  /// such as the largest load so far, keep this memory. Call rest() at the start of a log that was recorded
+  /// on the same rig after a pause.
   void rest(const T& command);
 
   /// Advances by `duration_s` >= 0, in which the command changes linearly to `command`. Returns the reading
@@ -57,16 +58,16 @@ class Chain {
 
   /// Predicts the displacement before the sensor, for a pressure that changes linearly to `end_kpa` over
   /// `duration_s`. The signal passes only through the blocks with Inverse::implicit, and the state does not
-  /// change. If the pressure has a corner within the sample (at a threshold), the result is approximate,
-  /// otherwise exact. To invert a model, create a chain that contains only the implicit blocks. Step this
-  /// chain with the pressure that solves peek() = reference. U is T, or Dual<T> for the derivative with
-  /// respect to the pressure.
+  /// change. The result is exact, except if the pressure has a corner within the sample, for example at a
+  /// threshold. In this case, it is approximate. To invert a model, create a chain that contains only the
+  /// blocks with Inverse::implicit. In each step, find the pressure for which peek() returns the reference,
+  /// and call step() with this pressure. U is T, or Dual<T> for the derivative with respect to the pressure.
   template <class U>
   [[nodiscard]] U peek(const T& duration_s, const U& end_kpa, Surroundings surroundings = {}) const;
 
-  /// Returns the output of a station at the end of the last step. For Station::valve, this is the pressure at
-  /// the actuator [kPa]; for the other stations, it is a displacement [mm]. If a station has no blocks, its
-  /// output is its input.
+  /// Returns the output of a station at the end of the last step. The output of Station::valve is the
+  /// pressure at the actuator [kPa]. The output of every other station is a displacement [mm]. If a station
+  /// has no blocks, its output is its input.
   [[nodiscard]] const T& after(Station station) const { return after_[static_cast<std::size_t>(station)]; }
   [[nodiscard]] const T& reading_mm() const { return after(Station::sensor); }
   [[nodiscard]] const T& pressure_kpa() const { return after(Station::valve); }
@@ -74,12 +75,14 @@ class Chain {
   [[nodiscard]] const T& command_kpa() const { return command_kpa_; }
 
   [[nodiscard]] std::size_t size() const noexcept { return blocks_.size(); }
-  /// Returns a block. The feedforward needs this function, because it inverts each block separately.
+  /// Returns the block with this index. The feedforward needs this function, because the feedforward inverts
+  /// each block separately.
   [[nodiscard]] const AnyBlock<T>& block(std::size_t index) const { return blocks_[index]; }
-  /// Returns a block that the caller may change, for a simulation in which a block changes, for example a
-  /// contact.
+  /// Returns the block with this index, which the caller may change. A simulation uses this function to
+  /// change a block over time, for example a contact.
   [[nodiscard]] AnyBlock<T>& block(std::size_t index) { return blocks_[index]; }
-  /// Returns the first block of the type Block (BoucWen<T>, ...); nullptr if there is none.
+  /// Returns the first block of the type Block (BoucWen<T>, ...); nullptr if the chain has no block of this
+  /// type.
   template <class Block>
   [[nodiscard]] const Block* find() const noexcept {
     for (const AnyBlock<T>& block : blocks_) {
@@ -98,7 +101,8 @@ class Chain {
   void add_elements(const Segment<T>& segment, const Surroundings& surroundings);
   void walk_displacement(Index i, const Segment<T>& segment, const Surroundings& surroundings);
   void walk_readings(const T& duration_s, const Surroundings& surroundings);
-  // Stores the signal before block i as the output of each station whose last block comes before block i.
+  // Stores `value`, the signal before block i, as the output of each station whose last block precedes block
+  // i.
   void note_displacement(Index i, const T& value) {
     if (i == end_[1]) after_[1] = value;
     if (i == end_[2]) after_[2] = value;
@@ -106,7 +110,7 @@ class Chain {
   }
 
   std::vector<AnyBlock<T>> blocks_;
-  std::array<Index, 4> end_{};  // for each station: index of the block after its last block
+  std::array<Index, 4> end_{};  // for each station: index of the first block behind the station
   Index first_element_ = 0, first_displacement_ = 0, first_reading_ = 0;
   bool leaps_in_parts_ = false;  // true: large pressure changes are divided, see longest_way_kpa
   double sample_time_s_;

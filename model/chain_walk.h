@@ -18,8 +18,9 @@ AnyBlock<T> make_block(std::size_t type, std::span<const T> values, const Prepar
   return AnyBlock<T>(std::in_place_index<I>, values, preparation);
 }
 
-// Returns the seed of a block. The seed depends on the id of the block, and on the number of blocks with this
-// id before it. Therefore, the seed does not change if blocks with other ids are added or removed.
+// Returns the seed of a block's random numbers. The seed depends on the id of the block, and on the number of
+// earlier blocks with this id. Therefore, the seed does not change if blocks with different ids are added or
+// removed.
 inline std::uint64_t seed_of(const Model& model, std::size_t index, std::uint64_t seed) {
   std::uint64_t part = 0;
   for (const char c : catalogue()[model.blocks[index].type].info.id) {
@@ -31,13 +32,14 @@ inline std::uint64_t seed_of(const Model& model, std::size_t index, std::uint64_
 
 template <class Block>
 inline constexpr Kind kind_of = std::remove_cvref_t<Block>::info.kind;
-/// Largest pressure change of one segment at the elements [kPa]. It applies to chains that have a
+/// Largest pressure change of one segment at the elements [kPa]. The limit applies to chains that have a
 /// displacement block without an inverse, such as inertia. Such a block approximates the sum of the elements
 /// by one parabola per segment. Therefore, a segment with a larger pressure change is divided into parts. For
-/// 44 kPa within 10 ms and an inertia of 45 ms, the error was 0.07 mm without this division, and is 1e-4 mm
-/// with it.
+/// a change of 44 kPa within 10 ms and an inertia with a period of 45 ms, the error is 1e-4 mm. Without the
+/// division, the error was 0.07 mm.
 inline constexpr double longest_way_kpa = 5;
-/// Largest number of parts into which a segment is divided, however large its pressure change is.
+/// Largest number of parts into which a segment is divided. If this number of parts is reached, a part may
+/// exceed longest_way_kpa.
 inline constexpr double most_parts = 100;
 
 template <class Block>
@@ -180,7 +182,7 @@ void Chain<T>::walk_elements(const Segment<T>& segment, const Surroundings& surr
 }
 
 // The code of each block is always inlined, in this function and in peek(). By default, GCC 12 does not
-// inline Kelvin-Voigt. A call of peek() with the derivative then takes 41 ns and not 17 ns.
+// inline the code of Kelvin-Voigt. A call of peek() with the derivative then takes 41 ns in place of 17 ns.
 template <class T>
 void Chain<T>::add_elements(const Segment<T>& segment, const Surroundings& surroundings) {
   Segment<T> sum{segment.duration_s, T(0.0), T(0.0), T(0.0)};

@@ -8,8 +8,8 @@
 
 namespace softgrip::model {
 
-/// g(z) = span expm1(a z/span) / expm1(a) on [0, span], where a is the curvature. Outside this range, the map
-/// continues as straight lines. The map is smooth in a at a = 0, where g(z) = z.
+/// Computes the map g(z) = span expm1(a z/span) / expm1(a) for z in [0, span], where a is the curvature.
+/// Outside this range, the map continues as straight lines. The map is smooth in a at a = 0, where g(z) = z.
 template <class T>
 class CharacteristicMap {
  public:
@@ -23,7 +23,8 @@ class CharacteristicMap {
         last_slope_(exponential(curvature) / phi1_) {}
 
   [[nodiscard]] const T& curvature() const { return curvature_; }
-  /// first_slope() returns g'(0), and last_slope() returns g'(span).
+  /// first_slope() returns g'(0), the slope at the start of the map. last_slope() returns g'(span), the slope
+  /// at the end of the map.
   [[nodiscard]] const T& first_slope() const { return first_slope_; }
   [[nodiscard]] const T& last_slope() const { return last_slope_; }
 
@@ -43,7 +44,8 @@ class CharacteristicMap {
     if (value_of(y) <= 0.0) return y * phi1_;
     if (value_of(y) >= value_of(span_mm_)) return span_mm_ + (y - span_mm_) / last_slope_;
     const T share = y / span_mm_;
-    // For |a| below this limit, the quotient below becomes 0/0. Apart from rounding, the map is linear there.
+    // If the curvature a is almost 0 (|a| < 1e-9), the quotient in the last statement approaches 0/0. The map
+    // is then linear apart from rounding.
     if (std::abs(value_of(curvature_)) < 1e-9) return y;
     return span_mm_ * (log1p(share * (curvature_ * phi1_)) / curvature_);
   }

@@ -1,17 +1,17 @@
 #pragma once
-// Limits a monotone segment to a level. If the segment crosses the level, it is divided at this point.
+// Limits a monotone segment to a level. A segment that crosses the level is divided at the crossing.
 
 #include "model/segment.h"
 
 namespace softgrip::model {
 
-/// Returns the number with the smaller value. Derivatives have no influence on the choice.
+/// Returns the number with the smaller value. The derivatives of the two numbers are not compared.
 template <class T>
 [[nodiscard]] T lesser(const T& x, const T& y) {
   return value_of(y) < value_of(x) ? y : x;
 }
 
-/// Returns the number with the larger value. Derivatives have no influence on the choice.
+/// Returns the number with the larger value. The derivatives of the two numbers are not compared.
 template <class T>
 [[nodiscard]] T greater(const T& x, const T& y) {
   return value_of(y) > value_of(x) ? y : x;

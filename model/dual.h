@@ -1,12 +1,13 @@
 #pragma once
-// A number with one derivative (forward-mode automatic differentiation). Newton steps of an implicit solution
-// use it.
+// Defines a number with one derivative (forward-mode automatic differentiation). The Newton steps of an
+// implicit solution use such numbers.
 
 #include <cmath>
 
 namespace softgrip::model {
 
-/// A value `a` and its derivative `v` with respect to one variable. For this variable itself, v is 1.
+/// A value `a` and its derivative `v` with respect to one variable. The derivative `v` of this variable
+/// itself is 1.
 template <class S>
 struct Dual {
   S a{};
@@ -38,7 +39,7 @@ struct Dual {
   friend constexpr Dual operator-(const S& x, const Dual& y) { return {x - y.a, -y.v}; }
   friend constexpr Dual operator/(const Dual& x, const S& y) { return {x.a / y, x.v / y}; }
 
-  // Comparisons use the value only. They ignore the derivative.
+  // Comparisons use only the value `a` and ignore the derivative `v`.
   friend constexpr bool operator<(const Dual& x, const Dual& y) { return x.a < y.a; }
   friend constexpr bool operator>(const Dual& x, const Dual& y) { return x.a > y.a; }
   friend constexpr bool operator<=(const Dual& x, const Dual& y) { return x.a <= y.a; }

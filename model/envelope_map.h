@@ -9,7 +9,7 @@ namespace softgrip::model {
 ///
 ///     b(p) = p (1 - (1 - x)(bend - skew (1 - 2 x))),   x = p/P
 ///
-/// Below 0 and above P, b is linear, with the slope of the cubic at this end. b rises everywhere if
+/// Below 0 and above P, b is linear, with the slope that the cubic has at 0 or at P. b rises everywhere if
 /// |bend| + |skew| < 1. A generalised play operator (Krasnosel'skii and Pokrovskii, Systems with Hysteresis,
 /// 1989, section 1.2) has two envelopes. If both envelopes are shifted copies of b, the operator equals a
 /// play operator with the input b(p).
@@ -21,11 +21,11 @@ class EnvelopeMap {
 
   /// @param bend  half of the difference between the slopes b'(P) and b'(0).
   /// @param skew  decreases the slope in the middle of the range: b'(P/2) = 1 - skew/2.
-  /// @param end_kpa  P, > 0 [kPa]; no effect if bend and skew are 0.
+  /// @param end_kpa  upper end P of the range [kPa], > 0; without effect if bend and skew are 0.
   EnvelopeMap(const T& bend, const T& skew, const T& end_kpa)
       : bend_(bend), skew_(skew), end_kpa_(end_kpa), bends_(!(is_zero(bend) && is_zero(skew))) {}
 
-  /// Returns false if the map is b(p) = p.
+  /// Returns true if the map b(p) differs from p.
   [[nodiscard]] bool bends() const { return bends_; }
 
   template <class U>

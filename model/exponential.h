@@ -1,6 +1,6 @@
 #pragma once
-// Computes first-order linear responses over one segment. The results are exact if the input is a parabola in
-// time.
+// Computes the response of a first-order linear system over one segment. The response is exact if the input
+// is a parabola in time.
 //
 // All blocks with a time constant use this file (valve lag, sensor lag, Kelvin-Voigt branches). With z =
 // dt/tau, the solution is a combination of the phi functions of exponential integrators (Hochbruck and
@@ -21,14 +21,15 @@ template <class T>
 [[nodiscard]] inline T phi1(const T& w) {
   using std::expm1;
   const double magnitude = std::abs(value_of(w));
-  if (magnitude < 0.004) {  // the first omitted term is 0.004^5 / 720 = 1.4e-15
+  if (magnitude < 0.004) {  // for |w| < 0.004, the first omitted term of the series is 0.004^5 / 720 =
+                            // 1.4e-15
     const T w2 = w * w;
     return 1.0 + w * 0.5 + w2 * (1.0 / 6.0 + w * (1.0 / 24.0) + w2 * (1.0 / 120.0));
   }
   return expm1(w) / w;
 }
 
-/// The values of the functions phi_1 to phi_4 at -z.
+/// Values of the functions phi_1 to phi_4 at the argument -z.
 template <class T>
 struct PhiFunctions {
   T phi1, phi2, phi3, phi4;
@@ -38,8 +39,8 @@ struct PhiFunctions {
 template <class T>
 [[nodiscard]] inline PhiFunctions<T> phi_functions(const T& z) {
   using std::expm1;
-  if (value_of(z) < 0.5) {  // uses 13 terms of phi_4; the first omitted term is 0.5^13 / 17! relative to 1/4!
-                            // : 8e-18
+  if (value_of(z) < 0.5) {  // uses 13 terms of the series of phi_4; relative to the first term 1/4!, the
+                            // first omitted term is 0.5^13 / 17!, which is 8e-18
     constexpr std::array<double, 13> inverse_factorials{
         1.0 / 24,          1.0 / 120,           1.0 / 720,           1.0 / 5040,      1.0 / 40320,
         1.0 / 362880,      1.0 / 3628800,       1.0 / 39916800,      1.0 / 479001600, 1.0 / 6227020800,
@@ -59,16 +60,17 @@ template <class T>
 
 /// Weights for the response of x' = gain_rate * u(t) - x / tau over one segment. The response is a weighted
 /// sum of the old state and of the coefficients of the parabola u(s) = begin + (end - begin) s + bend s (1 -
-/// s), s in [0, 1]. `gain_rate` is 1/tau for a lag, and 1/c for a Kelvin-Voigt branch with the damping c.
-/// With 1/c, the response is also defined for a branch with stiffness 0.
+/// s), s in [0, 1]. `gain_rate` is 1/tau for a lag, and 1/c for a Kelvin-Voigt branch with the damping c. For
+/// `gain_rate` = 1/c, the response is also defined for a branch with stiffness 0.
 template <class T>
 struct ExponentialWeights {
-  T loss;                              ///< weight of the old state x0 in the new state: x1 = x0 - loss x0 +
-                                       ///< ...
+  T loss;                              ///< share of the old state x0 that is lost in the new state: x1 = x0 -
+                                       ///< loss x0 + ...
   T end_begin, end_rise, end_bend;     ///< weights of begin, end - begin and bend in the new state x1
-  T mean_state;                        ///< weight of the old state x0 in the mean: mean(x) = mean_state x0 +
-                                       ///< ...
-  T mean_begin, mean_rise, mean_bend;  ///< weights of begin, end - begin and bend in mean(x)
+  T mean_state;                        ///< weight of the old state x0 in the mean of x over the segment:
+                                       ///< mean(x) = mean_state x0 + ...
+  T mean_begin, mean_rise, mean_bend;  ///< weights of begin, end - begin and bend in the mean of x over the
+                                       ///< segment
 
   /// @param duration_s  duration of the segment, >= 0.  @param rate  1/tau, >= 0.  @param gain_rate  as in
   /// the

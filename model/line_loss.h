@@ -5,20 +5,22 @@
 
 namespace softgrip::model {
 
-/// A steady flow passes through the line, and then through a leak to the atmosphere. Both restrictions follow
-/// ISO 6358-1 with a critical pressure ratio of 0.5. The flow through the line is approximately C sqrt(p dp).
-/// At small pressures, the pressure drop of the line is `share` times the pressure at the finger, where
-/// `share` is the squared ratio of the two conductances. The flow through the leak is choked above a gauge
-/// pressure of one atmosphere. All pressures are gauge pressures [kPa]. before() and behind() increase with
-/// their argument and are linear for negative arguments.
+/// Computes the pressures before and behind a line whose flow leaves through a leak. The steady flow passes
+/// through the line, and then through the leak to the atmosphere. Line and leak are restrictions according to
+/// ISO 6358-1 with a critical pressure ratio of 0.5. The flow through the line is approximately C sqrt(p dp),
+/// with the conductance C and the pressure drop dp. At small pressures, the pressure drop of the line is
+/// `share` times the pressure at the finger. `share` is the squared ratio of the two conductances. The flow
+/// through the leak is choked above a gauge pressure of one atmosphere. All pressures are gauge pressures
+/// [kPa]. before() and behind() increase with their argument and are linear for negative arguments.
 template <class T>
 struct LineLoss {
-  T share;  ///< pressure drop of the line divided by the pressure at the finger, at small pressures; >= 0
+  T share;  ///< ratio of the pressure drop of the line to the pressure at the finger, at small pressures; >=
+            ///< 0
 
   static constexpr double atmosphere_kpa = 101.325;
 
-  /// Returns the pressure before the line that belongs to the pressure p at the finger. For p up to the
-  /// atmospheric pressure a, it is p + share p a / (p + a).
+  /// Returns the pressure before the line for the pressure `p` at the finger. For p up to the atmospheric
+  /// pressure a, the result is p + share p a / (p + a).
   template <class U>
   [[nodiscard]] U before(const U& p) const {
     if (value_of(p) <= 0.0) return p * (1.0 + share);
@@ -26,8 +28,8 @@ struct LineLoss {
     return p + share * atmosphere_kpa * p / (p + atmosphere_kpa);
   }
 
-  /// Returns the pressure at the finger that belongs to the pressure before the line. It is the positive root
-  /// of the equation of before().
+  /// Returns the pressure at the finger for the pressure `u` before the line. The result is the positive root
+  /// of the equation before(p) = u.
   template <class U>
   [[nodiscard]] U behind(const U& u) const {
     using std::sqrt;

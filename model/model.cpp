@@ -9,7 +9,7 @@
 namespace softgrip::model {
 namespace {
 
-// Returns a number by which blocks are ordered: first by station and, within a station, by kind.
+// Returns a number that gives the order of the blocks: by station and, within a station, by kind.
 int rank(const BlockInfo& info) {
   return static_cast<int>(info.station) * 8 + static_cast<int>(info.kind);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Multiplies a signal by a gain that changes with the surroundings.
+// Multiplies a signal by a gain that depends on the surroundings, for example on the temperature.
 
 #include "model/gain.h"
 #include "model/segment.h"
@@ -7,8 +7,8 @@
 namespace softgrip::model {
 
 /// Multiplies segments by a gain that changes linearly over a sample. At the end of the sample, the gain has
-/// the value for the surroundings at this time. If a sample has several segments, the gain changes during the
-/// first segment.
+/// the value that corresponds to the surroundings at this time. If a sample has several segments, the
+/// complete change takes place during the first segment.
 template <class T>
 class MovingGain {
  public:
@@ -27,12 +27,12 @@ class MovingGain {
 };
 
 /// A displacement block whose gain depends only on the surroundings. `Block` declares `T law(const
-/// Surroundings&) const`. The displacement y is multiplied by positive_gain(law).
+/// Surroundings&) const`. The displacement is multiplied by positive_gain() of the result of law().
 template <class Block, class T>
 class SurroundingsGain {
  public:
   static constexpr bool at_samples = true;
-  /// Sets the gain to 1. The next step sets the gain to the value for the surroundings.
+  /// Sets the gain to 1. The next step sets the gain to the value that corresponds to the surroundings.
   void reset(const T& input) {
     gain_.reset(T(1.0));
     output_ = input;

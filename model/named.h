@@ -1,6 +1,7 @@
 #pragma once
-// Gives access to blocks of a model by their C++ type, and to their values by name. The compiler checks type
-// and name: a block that is not registered, or a name that the block does not have, is a compile error.
+// Gives access to blocks of a model by their C++ type, and to the values of blocks by name. The compiler
+// checks type and name. A block type that is not registered, and a name that the block does not have, are
+// compile errors.
 //
 //   model::BlockSpec lag = model::block_of<model::ValveLag>({{"time_constant_s", 0.1}});
 //   if (const auto* spring = model::find_block<model::KelvinVoigt>(model))
@@ -39,7 +40,7 @@ consteval std::size_t parameter_index(std::string_view name) {
   throw "the block has no parameter of this name";
 }
 
-/// The name of a value of a block. It is stored as the index of the value.
+/// The name of a value of a block, stored as the index of this value.
 template <template <class> class Block>
 struct ParameterName {
   std::size_t index;
@@ -47,14 +48,14 @@ struct ParameterName {
       : index(parameter_index<Block>(name)) {}
 };
 
-/// A value of a block, together with its name.
+/// A value of a block, together with the name of this value.
 template <template <class> class Block>
 struct NamedValue {
   ParameterName<Block> name;
   double value;
 };
 
-/// Returns a block with these values. All values that are not given have the values of neutral_block().
+/// Returns a block with the values in `values`. Every other value of the block is that of neutral_block().
 template <template <class> class Block>
 [[nodiscard]] BlockSpec block_of(std::initializer_list<NamedValue<Block>> values, std::size_t parts = 1) {
   BlockSpec block = neutral_block(block_type<Block>(), parts);
@@ -62,7 +63,8 @@ template <template <class> class Block>
   return block;
 }
 
-/// Returns true if the type of a block is one of these types: is<BoucWen, KelvinVoigt>(block).
+/// Returns true if a block has one of the types in the template arguments, as in is<BoucWen,
+/// KelvinVoigt>(block).
 template <template <class> class... Block>
 [[nodiscard]] constexpr bool is(const BlockSpec& block) {
   return ((block.type == block_type<Block>()) || ...);
@@ -72,8 +74,8 @@ template <template <class> class... Block>
   return ((info.id == Block<double>::info.id) || ...);
 }
 
-/// Returns a value of a block of this type. Throws std::out_of_range if the block does not have the repeated
-/// part.
+/// Returns the value with this name of a block. Throws std::out_of_range if the name belongs to a repeated
+/// part that the block does not have.
 template <template <class> class Block>
 [[nodiscard]] double value(const BlockSpec& block, ParameterName<Block> name) {
   return block.values.at(name.index);
@@ -83,13 +85,14 @@ template <template <class> class Block>
   return block.values.at(name.index);
 }
 
-/// Returns the index of the first block of this type in the model, or nullopt.
+/// Returns the index of the first block of this type in the model; nullopt if the model has no block of this
+/// type.
 template <template <class> class Block>
 [[nodiscard]] std::optional<std::size_t> position_of(const Model& model) {
   return position_of(model, block_type<Block>());
 }
 
-/// Returns the first block of this type; nullptr if the model has none.
+/// Returns the first block of this type; nullptr if the model has no block of this type.
 template <template <class> class Block>
 [[nodiscard]] const BlockSpec* find_block(const Model& model) {
   const auto position = position_of<Block>(model);
@@ -101,14 +104,14 @@ template <template <class> class Block>
   return position ? &model.blocks[*position] : nullptr;
 }
 
-/// Returns a value of the first block of this type; nullopt if the model has no such block.
+/// Returns a value of the first block of this type; nullopt if the model has no block of this type.
 template <template <class> class Block>
 [[nodiscard]] std::optional<double> value_in(const Model& model, ParameterName<Block> name) {
   const BlockSpec* const block = find_block<Block>(model);
   return block != nullptr ? std::optional(value<Block>(*block, name)) : std::nullopt;
 }
 
-/// Returns true if the model has a block of any of these types.
+/// Returns true if the model has a block of at least one of these types.
 template <template <class> class... Block>
 [[nodiscard]] bool has_any(const Model& model) {
   return (position_of<Block>(model).has_value() || ...);

@@ -1,13 +1,13 @@
 #pragma once
-// Functions of the number type that the blocks need. The number type is double, Dual, or an automatic
-// differentiation type with the members `a` (value) and `v` (derivatives). Functions of <cmath> are found by
-// argument-dependent lookup.
+// Defines the functions of the number type that the blocks need. The number type is double, Dual, or an
+// automatic differentiation type with the members `a` (value) and `v` (derivatives). Functions of <cmath> are
+// found by argument-dependent lookup.
 
 #include <type_traits>
 
 namespace softgrip::model {
 
-/// Returns the value of a number without its derivatives. The code uses this value for decisions.
+/// Returns the value of a number without its derivatives. Comparisons in the code use this value.
 template <class T>
 [[nodiscard]] constexpr double value_of(const T& x) noexcept {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -17,8 +17,8 @@ template <class T>
   }
 }
 
-/// Returns true if the value and all derivatives of the two numbers are equal. Such numbers give the same
-/// result in any formula.
+/// Returns true if two numbers have equal values and equal derivatives. Two such numbers give the same result
+/// in any formula.
 template <class T>
 [[nodiscard]] constexpr bool same(const T& x, const T& y) noexcept {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -28,8 +28,8 @@ template <class T>
   }
 }
 
-/// Returns true if the value and all derivatives are zero. A duration with the value 0 s can still have a
-/// derivative with respect to a fitted delay.
+/// Returns true if the value and all derivatives of a number are zero. The derivatives are checked, because a
+/// duration of 0 s can have a derivative with respect to a fitted delay.
 template <class T>
 [[nodiscard]] constexpr bool is_zero(const T& x) noexcept {
   return same(x, T(0.0));

@@ -1,6 +1,6 @@
 #pragma once
-// Declares a parameter of a block: its key in model files, its limits, its scale for a fit, and its text on
-// the reference page.
+// Defines the declaration of a block's parameter: its key in model files, its limits, its scale for a fit,
+// and its text on the reference page.
 
 #include <cstddef>
 #include <limits>
@@ -10,14 +10,14 @@ namespace softgrip::model {
 
 /// One parameter of a block. `name` is the YAML key, the JSON key and the name in reports. If the parameter
 /// has a unit, `name` ends with the unit. In a block with repeated parts (Kelvin-Voigt branches), `#` in the
-/// name stands for the number of the part, from 1.
+/// name stands for the number of the part. The first part has the number 1.
 struct ParameterSpec {
   std::string_view name;
   std::string_view unit;     ///< unit; "" for a number without a unit
   std::string_view meaning;  ///< description of the parameter in one line
   double default_value = 0;  ///< value for which the block has a typical effect
-  double lower = 0;          ///< smallest permitted value; the value itself is permitted
-  double upper = 0;          ///< largest permitted value; the value itself is permitted
+  double lower = 0;          ///< smallest permitted value, inclusive
+  double upper = 0;          ///< largest permitted value, inclusive
   double scale = 1;          ///< size of a typical change, by which a fit scales the parameter
   bool whole = false;        ///< true: only integers are permitted (an exponent)
   bool placed = false;       ///< true: the parameter stays fixed while a fit changes the values that depend
@@ -30,12 +30,12 @@ struct ParameterSpec {
   /// Neutral value: if all parameters that have a neutral value are set to it, the block has no effect. NaN:
   /// the parameter has no neutral value, because it has no influence while the others are neutral.
   double neutral = std::numeric_limits<double>::quiet_NaN();
-  /// Value of the parameter if a model file omits it; NaN: the file must contain the parameter. With this
-  /// value, files that are older than the parameter keep their meaning.
+  /// Value that is used if a model file omits the parameter. With this value, a file that is older than the
+  /// parameter keeps its meaning. NaN: the file must contain the parameter.
   double if_left_out = std::numeric_limits<double>::quiet_NaN();
 };
 
-// Named arguments of a declaration. Each of them sets one member of ParameterSpec.
+// Named arguments of parameter(). Each argument sets one member of ParameterSpec.
 struct Typical {
   double value;
 };
@@ -96,7 +96,7 @@ consteval ParameterSpec parameter(std::string_view name, std::string_view unit, 
   return spec;
 }
 
-/// Returns true if `name` is equal to `declared` with the number `part` in place of `#`.
+/// Returns true if `name` equals `declared` after `#` was replaced by the number `part`.
 constexpr bool is_name_of_part(std::string_view declared, std::size_t part, std::string_view name) {
   const std::size_t mark = declared.find('#');
   const std::string_view behind = declared.substr(mark + 1);

@@ -1,6 +1,6 @@
 #pragma once
-// The play operator. Its output follows the input, but moves only when the gap, half the play on either side,
-// is closed.
+// Implements the play operator. The output moves with the input only while the gap between input and output
+// is closed. In the middle position, the gap on each side is half of the play.
 
 #include <type_traits>
 
@@ -9,32 +9,33 @@
 
 namespace softgrip::model {
 
-/// The output o always satisfies |input - o| <= reach, and moves only if this requires it. The operator is
-/// rate independent.
+/// Keeps the output o within |input - o| <= reach. The output moves only as far as this condition requires.
+/// The operator is rate independent.
 template <class T>
 class Play {
  public:
   explicit Play(const T& reach) : reach_(reach) {}
 
-  /// Sets the state that results if the input changes from 0 to `input`.
+  /// Sets the state that results if the output is 0 and the input changes from 0 to `input`.
   void reset(const T& input) {
     output_ = T(0.0);
     settle(input);
   }
-  /// Moves the input directly to `input`. The result does not depend on the duration of this change.
+  /// Changes the input from its last value to `input` without reversals. The result does not depend on the
+  /// duration of this change.
   void settle(const T& input) {
     output_ = dragged(input, output_);
     dragging_ = false;
   }
   [[nodiscard]] const T& output() const { return output_; }
-  /// Returns the output that would result if the input changed directly to `input`.
+  /// Returns the output that would result if the input changed to `input` without reversals.
   template <class U>
   [[nodiscard]] U peek(const U& input) const {
     return dragged(input, U(output_));
   }
 
-  /// Passes the output on. If the output begins to move within the segment, the segment is divided at this
-  /// point.
+  /// Computes the output over a segment of the input and passes it on. If the output begins to move within
+  /// the segment, the segment is divided at this point.
   template <class Next>
   void step(const Segment<T>& in, Next&& next) {
     const T begin = output_;
@@ -52,8 +53,8 @@ class Play {
     const T side = upwards ? T(-reach_) : reach_;
     const T start = begin - side;  // input at which the output begins to move
     const double share = (value_of(start) - value_of(in.begin)) / (value_of(in.end) - value_of(in.begin));
-    // If the motion begins exactly at the start of the segment, the segment is divided only for number types
-    // with derivatives.
+    // If the motion of the output begins exactly at the start of the segment, the segment is divided only for
+    // number types with derivatives.
     const double least = std::is_arithmetic_v<T> ? 1e-12 : -1e-12;
     if (went_on || !(share > least && share < 1.0)) {
       next(Segment<T>{in.duration_s, begin, end, in.mean + side});

@@ -11,12 +11,12 @@ namespace softgrip::model {
 /// The validity of a reading: `valid`, or the reason why the reading cannot be used.
 enum class Validity : std::uint8_t {
   valid,
-  none_yet,      ///< the board has not replied yet
+  none_yet,      ///< the board has not sent a first reply yet
   out_of_range,  ///< the signal is outside the electrical range of the sensor
   sensor_error,  ///< the sensor or the board reported an error code
   jumped,        ///< the reading changed faster than a finger can move
-  frozen,        ///< the reading did not change while the command changed
-  stale,         ///< the reading is older than the allowed age
+  frozen,        ///< the reading stayed constant while the command changed
+  stale,         ///< the reading is older than max_age_s
 };
 
 /// The measured values of a channel.
@@ -26,10 +26,11 @@ struct Reading {
   double pressure_kpa = std::numeric_limits<double>::quiet_NaN();
   /// Ambient temperature of the finger [degC]; NaN if the channel has no temperature sensor.
   double temperature_c = std::numeric_limits<double>::quiet_NaN();
-  /// Output that the board reports [kPa]; NaN if the board does not report it.
+  /// Output pressure that the board reports [kPa]; NaN if the board does not report its outputs.
   double command_readback_kpa = std::numeric_limits<double>::quiet_NaN();
-  Nanoseconds sampled_at = 0;  ///< time of the request to the board; 0 before the first reply
-  std::uint32_t sequence = 0;  ///< number of replies of the board so far
+  Nanoseconds sampled_at = 0;  ///< time at which the request for this reading was sent to the board; 0 before
+                               ///< the first reply
+  std::uint32_t sequence = 0;  ///< number of replies that the board has sent so far
   Validity validity = Validity::none_yet;
 };
 

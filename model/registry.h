@@ -1,6 +1,6 @@
 #pragma once
-// The only list of blocks in the project. To add a block, write model/blocks/<id>.h and add the block to this
-// list. Model files, the reference page, the chain and the property tests use the list.
+// Contains the list of all blocks. To add a block, write model/blocks/<id>.h and add the block to this list.
+// Model files, the reference page, the chain and the property tests use the list.
 
 #include <cstddef>
 #include <type_traits>
@@ -58,7 +58,7 @@
 
 namespace softgrip::model {
 
-/// The registered blocks. Each block meets the requirements of block.h.
+/// A list of block types. Each block in the list meets the requirements of block.h.
 template <template <class> class... Block>
 struct BlockList {
   template <class T>
@@ -67,8 +67,8 @@ struct BlockList {
   static_assert((keeps_contract<Block, double>() && ...));
   static_assert((keeps_contract<Block, Dual<double>>() && ...));
 
-  /// Returns the index of B in the list, where B is a block over double. If B is not registered, returns the
-  /// length of the list.
+  /// Returns the index in the list of the block type B over double. If the list does not contain B, returns
+  /// the length of the list.
   template <class B>
   static consteval std::size_t index_of() {
     std::size_t index = 0;
@@ -77,7 +77,8 @@ struct BlockList {
   }
 };
 
-/// All blocks, in the order in which the signal passes through them. with_block() uses this order.
+/// All blocks, in the order in which the signal passes through the blocks. with_block() inserts a block in
+/// this order.
 using Blocks = BlockList<TransportDelay,          //
                          ValveDeadband,           //
                          ValveStiction,           //
@@ -127,13 +128,13 @@ using Blocks = BlockList<TransportDelay,          //
                          Sampling,                //
                          Quantisation>;
 
-/// One block of any registered type. The index of a type is equal to BlockSpec::type and to its index in
-/// catalogue().
+/// A variant that contains one block of any registered type. The index of a type in the variant equals
+/// BlockSpec::type and the index of the type in catalogue().
 template <class T>
 using AnyBlock = Blocks::Any<T>;
 
-/// Returns BlockSpec::type of a block. There are two forms: block_type<ValveLag>() and, with a number type,
-/// block_type<ValveLag<double>>().
+/// Returns the value of BlockSpec::type for a block type. The function has two forms: block_type<ValveLag>()
+/// and, with a number type, block_type<ValveLag<double>>().
 template <template <class> class Block>
 [[nodiscard]] consteval std::size_t block_type() {
   static_assert(Blocks::index_of<Block<double>>() < std::variant_size_v<AnyBlock<double>>, "not registered");

@@ -17,10 +17,10 @@ namespace softgrip::model {
 template <class T>
 struct RegulatorNumbers {
   T filling_s{0.0};      ///< time constant while the port to the supply is open
-  T venting_s{0.0};      ///< time constant while the port to the atmosphere is open, at a gauge pressure of
-                         ///< 50 kPa
+  T venting_s{0.0};      ///< time constant while the port to the atmosphere is open, for a pressure of 50 kPa
+                         ///< above atmospheric pressure
   T overlap_kpa{0.0};    ///< control error up to which both ports are closed
-  T integral_s{0.0};     ///< integral time: with a constant error, the spool position doubles in this time
+  T integral_s{0.0};     ///< integral time: a constant error doubles the spool position within this time
   T full_open_kpa{0.0};  ///< control error at which a port is fully open
 };
 
@@ -30,9 +30,10 @@ struct RegulatorNumbers {
 ///   venting_s p' / outflow(p) = v + overlap if v < -overlap;
 ///   otherwise p' = 0.
 /// The integral stops if v is at its limit and would grow further. If only the time constants are above 0,
-/// the regulator is a TwoWayLag whose venting depends on outflow(p). A segment is divided into steps of at
-/// most `longest_step_s`. In each step, the integral is assumed to be linear in time, and the outflow is that
-/// at the middle of the step. Apart from these two approximations, the solution is exact for straight input.
+/// the regulator acts as a TwoWayLag whose venting time constant depends on outflow(p). A segment is divided
+/// into steps of at most `longest_step_s`. In each step, the integral is assumed to be linear in time, and
+/// outflow(p) is assumed to have its value at the middle of the step. Apart from these two approximations,
+/// the solution is exact for straight input.
 template <class T>
 class RegulatedPressure {
  public:
@@ -43,11 +44,12 @@ class RegulatedPressure {
     integral_kpa_ = T(0.0);
   }
   [[nodiscard]] const T& output() const { return pressure_kpa_; }
-  /// Returns the part of v that comes from the integral [kPa].
+  /// Returns the contribution of the integral to the spool position v [kPa].
   [[nodiscard]] const T& integral_kpa() const { return integral_kpa_; }
   [[nodiscard]] const RegulatorNumbers<T>& numbers() const { return n_; }
 
-  /// Passes on one segment for each direction in which the pressure changes.
+  /// Computes the pressure over a segment of the command. Passes on one segment for each part of the motion
+  /// in which the pressure has one direction.
   template <class Next>
   void step(const Segment<T>& in, Next&& next) {
     if (value_of(n_.filling_s) <= 0 && value_of(n_.venting_s) <= 0) {
@@ -55,7 +57,7 @@ class RegulatedPressure {
       next(in);
       return;
     }
-    if (is_zero(in.duration_s)) return;  // in a segment without duration, the pressure cannot change
+    if (is_zero(in.duration_s)) return;  // a segment without duration does not change the pressure
     const double wanted = std::ceil(value_of(in.duration_s) / longest_step_s - 1e-9);
     const int steps = static_cast<int>(std::clamp(wanted, 1.0, most_steps));
     const T step_s = in.duration_s / static_cast<double>(steps);
@@ -65,7 +67,7 @@ class RegulatedPressure {
       const T from = in.at(T(static_cast<double>(i) / steps)), to = in.at(T((i + 1.0) / steps));
       const T before = pressure_kpa_;
       if (rests(from, to)) {
-        // For the remaining steps, the regulator is at rest.
+        // In the remaining steps of the segment, the regulator is at rest.
         const T rest_s = step_s * static_cast<double>(steps - i);
         out.duration_s += rest_s;
         area += before * rest_s;
@@ -89,19 +91,19 @@ class RegulatedPressure {
 
  private:
   static constexpr double longest_step_s = 0.005;
-  /// Largest number of steps of a segment. With the longest step, this number covers more than an hour, in
-  /// which the pressure comes to rest.
+  /// Largest number of steps of a segment. With steps of longest_step_s, this number covers more than an
+  /// hour, in which the pressure comes to rest.
   static constexpr double most_steps = 1e6;
   static constexpr double atmosphere_kpa = 101.325;
-  /// Values of ISO 6358-1: critical pressure ratio of a common port, and the pressure ratio above which its
-  /// flow is linear.
+  /// Values of ISO 6358-1: critical pressure ratio of a common port, and the pressure ratio above which the
+  /// flow of a port is linear.
   static constexpr double critical_ratio = 0.3, linear_above = 0.995;
   /// Gauge pressure for which venting_s is defined [kPa].
   static constexpr double usual_kpa = 50;
   static constexpr double shortest_s = 1e-4;
 
-  /// Returns the flow to the atmosphere at a gauge pressure [kPa]. The result is the flow divided by the
-  /// sonic conductance of the port [kPa].
+  /// Returns the flow to the atmosphere at the gauge pressure `gauge_kpa`, divided by the sonic conductance
+  /// of the port [kPa].
   static T outflow(const T& gauge_kpa) {
     using std::sqrt;
     if (value_of(gauge_kpa) <= 0) return T(0.0);
@@ -132,8 +134,8 @@ class RegulatedPressure {
     const T mean = follow(step_s, from + integral_kpa_, to + integral_kpa_ + drift);
     const T ends = to - pressure_kpa_;
     const double stopped_after = stops_by(ends);
-    // Adds the error to the integral. The error is computed from the new pressure. Only the part of the step
-    // in which the integral changes is used.
+    // Adds the mean error of the step to the integral. The error is computed from the new pressure. If the
+    // integral is stopped in a part of the step, only the error in the rest of the step is added.
     if (stopped_before > 0 && stopped_after > 0) return mean;
     T error = (from + to) * 0.5 - mean;
     double share = 1;
@@ -148,17 +150,17 @@ class RegulatedPressure {
     return mean;
   }
 
-  /// Returns how far v is beyond the limit at which the integral stops [kPa]. If the result is 0 or less, the
-  /// integral changes.
+  /// Returns by how much the spool position v exceeds the limit at which the integral stops [kPa]. The
+  /// integral changes only if the result is 0 or less.
   [[nodiscard]] double stops_by(const T& error) const {
     const double full = value_of(n_.full_open_kpa), asked = value_of(error) + value_of(integral_kpa_);
     if (!(full > 0)) return -1;
     return asked * value_of(error) > 0 ? std::abs(asked) - full : -1;
   }
 
-  /// Moves the target linearly from `wanted` to `wanted_after`, together with the band of the overlap around
-  /// it. If the pressure is outside the band, it moves towards the nearer edge of the band. Returns the mean
-  /// of the pressure over the step.
+  /// Advances the pressure by a step in which its target changes linearly from `wanted` to `wanted_after`.
+  /// The overlap is a band around the target. A pressure outside this band moves towards the nearer edge of
+  /// the band. Returns the mean of the pressure over the step.
   T follow(const T& step_s, const T& wanted, const T& wanted_after) {
     const double p = value_of(pressure_kpa_), band = value_of(n_.overlap_kpa);
     const bool fills = p < value_of(wanted) - band;
@@ -174,8 +176,9 @@ class RegulatedPressure {
     return (mean * lasts_s + wait(rest_s, met, wanted_after) * rest_s) / step_s;
   }
 
-  /// Keeps the pressure constant while it is within the band. When an edge of the band reaches the pressure,
-  /// the pressure moves towards this edge. Returns the mean of the pressure.
+  /// Advances a pressure that is within the band of the overlap. The pressure is constant until an edge of
+  /// the band reaches it. After that, the pressure moves towards this edge. Returns the mean of the pressure
+  /// over the step.
   T wait(const T& step_s, const T& wanted, const T& wanted_after) {
     const double p = value_of(pressure_kpa_), band = value_of(n_.overlap_kpa);
     const bool fills = p < value_of(wanted_after) - band;
@@ -190,8 +193,8 @@ class RegulatedPressure {
     return before * waits + mean * (1.0 - waits);
   }
 
-  /// Returns the time constant of venting for the middle of the step. It is computed at the pressure that
-  /// venting towards `target_kpa` has reached at this time.
+  /// Returns the time constant of venting at the middle of the step. The time constant is computed for the
+  /// pressure that venting towards `target_kpa` has reached at this time.
   T venting_s(const T& target_kpa, const T& step_s) const {
     static const double usual = value_of(outflow(T(usual_kpa)));
     const T begins = outflow(pressure_kpa_);
@@ -212,7 +215,7 @@ class RegulatedPressure {
     const double way = value_of(gap) != 0 ? value_of(gap) : value_of(slope);
     const double sign = way > 0 ? 1 : -1;
     if (value_of(n_.full_open_kpa) > 0 && std::abs(value_of(gap)) > value_of(most)) {
-      // The gap is so large that the port is fully open.
+      // The difference between target and pressure is so large that the port is fully open.
       const T rate = sign * most / tau;
       open_s = step_s;
       if (sign * (value_of(rate) - value_of(slope)) > 0) {

@@ -1,5 +1,5 @@
 #pragma once
-// The signal between two blocks in a time interval in which the signal is monotone.
+// Defines the signal between two blocks during a time interval in which the signal is monotone.
 
 #include <cmath>
 #include <limits>
@@ -9,10 +9,10 @@
 namespace softgrip::model {
 
 /// One interval of a signal. If `duration_s` is zero, the segment is a jump from `begin` to `end`. `mean` is
-/// the average of the signal over the interval. The next blocks treat the signal as the parabola that is
-/// given by begin, end and mean. In this way, they reproduce its curvature (the exponential of a lag) to
-/// second order. If the signal is straight, `mean` is the average of `begin` and `end`. Pressures are
-/// monotone within a segment. T is double or an automatic differentiation type.
+/// the average of the signal over the interval. The blocks that receive a segment treat the signal as the
+/// parabola with this begin, end and mean. The parabola represents the curvature of the signal (the
+/// exponential of a lag) to second order. If the signal is straight, `mean` is the average of `begin` and
+/// `end`. Pressures are monotone within a segment. T is double or an automatic differentiation type.
 template <class T>
 struct Segment {
   T duration_s;
@@ -24,23 +24,25 @@ struct Segment {
     return {duration_s, begin, end, (begin + end) * 0.5};
   }
 
-  /// Returns the coefficient `bend` of the parabola begin + (end - begin) s + bend s (1 - s), s in [0, 1]. It
-  /// is exactly 0 for a straight signal.
+  /// Returns the coefficient `bend` of the parabola begin + (end - begin) s + bend s (1 - s), with s in [0,
+  /// 1]. The coefficient is exactly 0 for a straight signal.
   [[nodiscard]] T bend() const { return (mean - (begin + end) * 0.5) * 6.0; }
 
-  /// Returns the value after a fraction of the duration.
+  /// Returns the value of the signal after a fraction of the duration.
   [[nodiscard]] T at(const T& fraction) const {
     return begin + (end - begin) * fraction + bend() * (fraction * (1.0 - fraction));
   }
 
-  /// Returns the part of the segment from `begin` to a fraction in (0, 1).
+  /// Returns the part of the segment from its start to a fraction of its duration. The fraction must be in
+  /// (0, 1).
   [[nodiscard]] Segment before(const T& fraction) const {
     const T value = at(fraction);
     const T middle = at(fraction * 0.5);
     return {duration_s * fraction, begin, value, (begin + value + middle * 4.0) * (1.0 / 6.0)};
   }
 
-  /// Returns the part of the segment from a fraction in (0, 1) to `end`.
+  /// Returns the part of the segment from a fraction of its duration to its end. The fraction must be in (0,
+  /// 1).
   [[nodiscard]] Segment beyond(const T& fraction) const {
     const T value = at(fraction);
     const T middle = at((fraction + 1.0) * 0.5);
@@ -51,8 +53,8 @@ struct Segment {
   /// between begin and end (both excluded).
   [[nodiscard]] T fraction_at(const T& level) const {
     using std::sqrt;
-    // Computes the root of bend s^2 - (rise + bend) s + (level - begin) = 0 without cancellation, also for
-    // straight segments.
+    // Computes the root s of bend s^2 - (rise + bend) s + (level - begin) = 0, where rise = end - begin. The
+    // formula has no cancellation, also for straight segments.
     const T sum = (end - begin) + bend();
     const T discriminant = sum * sum - 4.0 * bend() * (level - begin);
     if (value_of(discriminant) <= 0.0) return (level - begin) / (end - begin);
@@ -78,7 +80,7 @@ struct Surroundings {
   /// Time from the start of the measurement campaign to the end of the sample [s]. NaN: the chain uses the
   /// sum of its step durations since reset().
   double time_s = std::numeric_limits<double>::quiet_NaN();
-  double supply_kpa = 1e9;    ///< supply pressure; the default is so high that it has no effect
+  double supply_kpa = 1e9;    ///< supply pressure; the default is so high that no block reacts to it
   double temperature_c = 20;  ///< temperature of the actuator
 };
 

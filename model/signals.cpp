@@ -19,13 +19,15 @@ struct Corner {
   double kpa;
 };
 
-// Amplitudes and rates vary independently: 10 to 30 kPa/s in the first cycle, 9 to 28 kPa/s in the second.
-// Therefore, the data separate hysteresis, which depends on the amplitude, from creep, which depends on time.
+// Amplitudes and rates of the pulses vary independently. The rates are 10 to 30 kPa/s in the first cycle and
+// 9 to 28 kPa/s in the second cycle. Therefore, the data can separate hysteresis, which depends on the
+// amplitude, from creep, which depends on time.
 constexpr std::array first_cycle{Pulse{60, 10}, Pulse{40, 5}, Pulse{50, 4}, Pulse{20, 4}, Pulse{30, 2}};
 constexpr std::array second_cycle{Pulse{50, 8}, Pulse{25, 4}, Pulse{60, 6}, Pulse{35, 2.5}, Pulse{15, 3.5}};
 constexpr int cycles = 2;
 
-// Ramps of 0.2 s replace the steps. With jumps, the simulated pressure would depend on the sampling rate.
+// Each change of the pressure is a ramp of 0.2 s. If it were a jump, the simulated pressure would depend on
+// the sampling rate.
 constexpr double ramp_s = 0.2;
 constexpr std::array steps_corners{Corner{0, 0},
                                    Corner{1, 0},  //

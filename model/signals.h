@@ -1,5 +1,6 @@
 #pragma once
-// Provides the test signals. They are pressure commands that start and end at 0 kPa and do not exceed 60 kPa.
+// Provides the test signals. The test signals are pressure commands that start and end at 0 kPa and do not
+// exceed 60 kPa.
 
 #include <optional>
 #include <string_view>
@@ -9,7 +10,7 @@ namespace softgrip::model {
 
 enum class SignalName { tp1, tp2, sp1, sp2, steps, hold };
 
-/// Returns the test signal with this name; nullopt if there is none.
+/// Returns the test signal with this name; nullopt if no test signal has this name.
 [[nodiscard]] std::optional<SignalName> signal_named(std::string_view name);
 [[nodiscard]] std::string_view name_of(SignalName signal);
 /// Returns all test signals.

@@ -5,9 +5,9 @@
 
 namespace softgrip::model {
 
-/// Maps both ends of a segment. Computes the mean of the result by Simpson's rule over the parabola through
-/// the segment.
-/// @param begin  last output, which is the map of in.begin if the map does not change with time.
+/// Returns the segment that results if a function is applied to a segment. The function is applied to both
+/// ends. The mean of the result is computed by Simpson's rule over the parabola of the segment.
+/// @param begin  last output; equal to map(in.begin) if the function does not change with time.
 template <class T, class Map>
 [[nodiscard]] Segment<T> mapped(const Segment<T>& in, Map&& map, const T& begin) {
   const T end = map(in.end);

@@ -1,6 +1,6 @@
 #pragma once
-// A first-order lag with different time constants for rising and falling input. It models air that fills a
-// volume through a port from a high pressure, and vents from it into a low pressure.
+// Implements a first-order lag with different time constants for filling and venting. It models a volume that
+// air fills through a port from a high pressure, and from which air vents into a low pressure.
 
 #include <cmath>
 
@@ -11,10 +11,11 @@
 
 namespace softgrip::model {
 
-/// tau p' = u - p. tau is the filling time constant if u > p, and the venting time constant if u < p. The
-/// solution is exact for straight input. If the output becomes equal to the input within a segment, two
-/// segments are passed on. If a time constant is 0, the output follows the input immediately in that
-/// direction.
+/// Computes the output p from the input u: tau p' = u - p. tau is the filling time constant if u > p, and the
+/// venting time constant if u < p. The solution is exact for straight input. If the output becomes equal to
+/// the input within a segment, two segments are passed on. If the filling time constant is 0, a rising output
+/// follows the input immediately. If the venting time constant is 0, a falling output follows the input
+/// immediately.
 template <class T>
 class TwoWayLag {
  public:
@@ -46,8 +47,8 @@ class TwoWayLag {
     const T rest_s = in.duration_s - turn_s;
     const double least_s = 1e-6 * value_of(in.duration_s);
     if (!(value_of(turn_s) > least_s && value_of(rest_s) > least_s)) {
-      // If output and input become equal within a millionth of the duration from either end of the segment,
-      // one segment is passed on.
+      // If output and input become equal at a distance from an end of the segment that is below a millionth
+      // of the duration, the segment is not divided.
       go(value_of(turn_s) <= least_s ? then : now, in, next);
       return;
     }

@@ -1,7 +1,8 @@
 #pragma once
-// Calls a function with the block in a variant. The type is found by comparisons. For more than eleven
-// alternatives, std::visit uses a table of function pointers, which prevents inlining. A call of
-// Chain::peek() with the derivative then takes 33 ns and not 14 ns.
+// Calls a function with the block that a variant contains. Comparisons find the type of the block. std::visit
+// is not used, because, for more than eleven alternatives, std::visit uses a table of function pointers,
+// which prevents inlining. With std::visit, a call of Chain::peek() with the derivative takes 33 ns in place
+// of 14 ns.
 
 #include <cstddef>
 #include <type_traits>

@@ -1,6 +1,6 @@
 #pragma once
 // Stores response weights for durations that occur repeatedly: the nominal sample time, and the pieces into
-// which a delay divides it.
+// which a delay divides the sample time.
 
 #include <array>
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace softgrip::model {
 
-/// Stores the weights of `branches` responses for each of the most recent durations. A new duration replaces
-/// the oldest one.
+/// Stores the weights of `branches` responses for each of the most recent durations. The weights for a new
+/// duration replace those for the oldest stored duration.
 template <class T>
 class WeightCache {
  public:

@@ -23,7 +23,7 @@ tl::unexpected<std::string> failure(const std::string& what) {
 
 using AddressList = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
-/// Converts a numeric address and a port. Returns null if the address is not numeric.
+/// Converts a numeric address and a port to a socket address. Returns null if the address is not numeric.
 AddressList numeric(const std::string& address, const std::string& port) {
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
@@ -103,7 +103,7 @@ tl::expected<Descriptor, std::string> listen_unix(const std::string& path) {
 Descriptor accept_client(const Descriptor& listener) {
   Descriptor client{::accept4(listener.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
   if (client) {
-    // Sends small replies without delay. On a Unix socket, this option has no effect.
+    // The option TCP_NODELAY sends small replies without delay. On a Unix socket, this option has no effect.
     const int on = 1;
     ::setsockopt(client.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   }

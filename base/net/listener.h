@@ -1,5 +1,6 @@
 #pragma once
-// Creates listening sockets and accepts clients, even if the process has no free descriptor.
+// Creates listening sockets and accepts clients. A client can be accepted even if the process has no free
+// descriptor.
 
 #include <sys/un.h>
 
@@ -32,7 +33,8 @@ struct Listener {
 /// Returns the address of a socket file, or nothing if the path is too long for a socket.
 [[nodiscard]] std::optional<sockaddr_un> unix_address(const std::string& path);
 
-/// These functions set errno if they return false. Only this user may open the file that bind_unix() creates.
+/// connect_unix() connects a socket to a socket file, and bind_unix() creates a socket file. Both return
+/// false after an error and set errno. Only the present user may open the file that bind_unix() creates.
 [[nodiscard]] bool connect_unix(const Descriptor& socket, const sockaddr_un& address) noexcept;
 [[nodiscard]] bool bind_unix(const Descriptor& socket, const sockaddr_un& address) noexcept;
 
@@ -40,24 +42,24 @@ struct Listener {
 /// first packet of a client. The client then waits 1 s before it tries again.
 inline constexpr int backlog = 128;
 
-/// Listens on a Unix domain socket that only this user may open. If a socket already exists at the path, it
-/// is replaced.
+/// Listens on a Unix domain socket that only the present user may open. If a socket already exists at the
+/// path, the new socket replaces it.
 [[nodiscard]] tl::expected<Descriptor, std::string> listen_unix(const std::string& path);
 
 /// Returns the descriptor of the next client; empty if no client waits. The descriptor does not block and is
 /// closed on exec.
 [[nodiscard]] Descriptor accept_client(const Descriptor& listener);
 
-/// Returns true if accept_client() failed with this error because no descriptor is free.
+/// Returns true if `error` is an error of accept_client() that means that no descriptor is free.
 [[nodiscard]] bool is_shortage(int error) noexcept;
 
 /// Accepts clients. If no descriptor is free, a waiting client cannot be accepted, and each poll() returns at
-/// once. The server would then use a complete processor core. Therefore, the listener pauses. Before the
-/// pause, it closes its spare descriptors and accepts one more client, because this client may be the one
-/// that stops the rig.
+/// once. A server that polled continuously would use a complete processor core. Therefore, the listener
+/// pauses. Before the pause, it closes its spare descriptors and accepts one client, because this client may
+/// want to stop the rig.
 class Entrance {
  public:
-  /// Duration of the pause until the listener tries again [ns].
+  /// Duration of a pause, after which the listener tries to accept clients again [ns].
   static constexpr Nanoseconds rest = ns_per_s / 10;
 
   Entrance() = default;
@@ -69,7 +71,7 @@ class Entrance {
     return now < rests_until_ ? -1 : listener_.get();
   }
   /// Returns the next client, as accept_client() does. Returns an empty descriptor if no client waits, or if
-  /// no client can be accepted.
+  /// no descriptor is free for a client.
   [[nodiscard]] Descriptor accept(Nanoseconds now);
   /// Returns true if the last accept() found no free descriptor. In this case, the caller should close
   /// descriptors that it does not need.
@@ -79,7 +81,8 @@ class Entrance {
   void take_spares() noexcept;
 
   Descriptor listener_;
-  /// Reserved descriptors: one for a client, and one that the request of this client may need.
+  /// Spare descriptors that are closed to accept a client: one for the client, and one that the request of
+  /// this client may need.
   std::array<Descriptor, 2> spares_;
   Nanoseconds rests_until_ = 0;
   bool short_ = false;

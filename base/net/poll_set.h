@@ -1,5 +1,5 @@
 #pragma once
-// Waits for events of several descriptors.
+// Waits until one of several descriptors has an event.
 
 #include <poll.h>
 
@@ -13,18 +13,20 @@
 
 namespace softgrip::net {
 
-/// The descriptors for whose events a loop waits. Before each wait, clear the set and add all descriptors.
+/// The set of descriptors for whose events a loop waits. Before each wait, clear the set and add all
+/// descriptors.
 class PollSet {
  public:
-  /// The place of a descriptor in the set. The default place has no descriptor and no events.
+  /// The position of a descriptor in the set. A default-constructed position belongs to no descriptor and has
+  /// no events.
   class Place {
     friend PollSet;
     std::size_t index_ = SIZE_MAX;
   };
   enum class Outcome : std::uint8_t {
-    over,      ///< the wait is over: because of an event, a signal or its longest time
+    over,      ///< the wait has ended, because of an event, a signal or the end of its longest time
     too_many,  ///< the set has more descriptors than the process may have
-    failed     ///< errno contains the reason
+    failed     ///< the wait failed; errno contains the reason
   };
   class Events {
    public:
@@ -32,7 +34,8 @@ class PollSet {
     [[nodiscard]] explicit operator bool() const noexcept { return bits_ != 0; }
     [[nodiscard]] bool input() const noexcept { return (bits_ & POLLIN) != 0; }
     [[nodiscard]] bool output() const noexcept { return (bits_ & POLLOUT) != 0; }
-    /// Returns true after an error or a hang-up, which the next read reports.
+    /// Returns true after an error or a hang-up of the descriptor. The next read reports the error or the
+    /// hang-up.
     [[nodiscard]] bool ended() const noexcept { return (bits_ & (POLLERR | POLLHUP)) != 0; }
     [[nodiscard]] bool invalid() const noexcept { return (bits_ & POLLNVAL) != 0; }
 
@@ -41,7 +44,8 @@ class PollSet {
   };
 
   void clear() noexcept { polled_.clear(); }
-  /// Adds a descriptor; -1 never has events. Without input and output, only its end is an event.
+  /// Adds a descriptor to the set. The descriptor -1 never has events. If `input` and `output` are false,
+  /// only an error or a hang-up of the descriptor is an event.
   Place add(int descriptor, bool input = true, bool output = false) {
     polled_.push_back({descriptor, static_cast<short>((input ? POLLIN : 0) | (output ? POLLOUT : 0)), 0});
     Place place;
@@ -53,7 +57,7 @@ class PollSet {
     if (::ppoll(polled_.data(), polled_.size(), &limit, nullptr) >= 0 || errno == EINTR) return Outcome::over;
     return errno == EINVAL ? Outcome::too_many : Outcome::failed;
   }
-  /// Returns the events of the last wait.
+  /// Returns the events that the last wait found for a descriptor.
   [[nodiscard]] Events operator[](Place place) const noexcept {
     return Events(place.index_ < polled_.size() ? polled_[place.index_].revents : short{0});
   }

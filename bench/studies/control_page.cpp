@@ -14,7 +14,8 @@ namespace {
 
 using sysid::Colour;
 
-/// Returns the RMSE of `worse` divided by the RMSE of `better`, or NaN if one is missing.
+/// Returns the RMSE of the scheme `worse` divided by the RMSE of the scheme `better`; NaN if the study has no
+/// result of one of them.
 double gain_of(const ControlStudy& study, const std::string& worse, const std::string& better,
                double frequency_hz, double mismatch) {
   const ControlFigure* const a = study.find(worse, frequency_hz, mismatch);

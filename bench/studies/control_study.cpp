@@ -21,10 +21,11 @@ namespace {
 
 using control::FeedforwardKind;
 
-/// Sampling rate of the logs from which models are identified.
+/// Sampling rate of the simulated logs from which models are identified.
 constexpr double log_rate_hz = 100;
 constexpr double log_noise_mm = 0.05;
-// Numbers of the random parts of the study. Each part derives its own independent seeds from its number.
+// Ids of those parts of the study that use random numbers. Each part derives its seeds from its id, so the
+// seeds of the parts are independent.
 constexpr std::uint64_t fingers_part = 1;
 constexpr std::uint64_t tuning_part = 2;
 constexpr std::uint64_t noise_part = 3;
@@ -63,8 +64,8 @@ Identified identify_twin(const model::Model& start, const ControlStudyOptions& o
   return {result->fitted, result->rmse_mm};
 }
 
-/// Returns the published Bouc-Wen element with beta reduced to 0.9 alpha. With this value, it has no inverse
-/// response and can be inverted.
+/// Returns the published Bouc-Wen element with beta reduced to 0.9 alpha. With the reduced beta, the element
+/// has no inverse response and can be inverted.
 model::Model cut_down(const model::Model& published) {
   std::vector<double> values = model::flat_values(published);
   values[model::find_path(published, "bouc_wen.beta_mm_per_kpa").value()] =
@@ -149,8 +150,8 @@ Spread spread_of(std::vector<double> values) {
   return {at(0.5), at(0.05), at(0.95)};
 }
 
-/// Returns the largest amplitude that bench_twin can track at a frequency, at most the amplitude of the
-/// study. The amplitude is limited by the lowest pressure of 0 kPa and by creep.
+/// Returns the largest amplitude that bench_twin can track at a frequency, but not more than the amplitude of
+/// the study. The lowest pressure of 0 kPa and the creep limit the amplitude.
 double reachable_amplitude_mm(double frequency_hz, const ControlStudyOptions& options) {
   constexpr double within_reach_mm = 0.005;
   control::TrackingRun run;

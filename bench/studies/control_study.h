@@ -1,6 +1,6 @@
 #pragma once
-// Compares the tracking errors of several control schemes on the simulated finger bench_twin, as in the
-// paper. The study also covers model errors, noise and stability margins, which the paper does not.
+// Compares the tracking errors of several control schemes on the simulated finger bench_twin, as Zhang et al.
+// 2025 do. The study also covers model errors, noise and stability margins, which the paper does not cover.
 
 #include <cstdint>
 #include <functional>
@@ -18,7 +18,7 @@ struct ControlStudyOptions {
   std::uint64_t seed = 1;
   int draws = 100;       ///< number of simulated fingers with random parameters per scheme, frequency and
                          ///< mismatch
-  int search_draws = 3;  ///< number of further simulated fingers with which the gains are searched
+  int search_draws = 3;  ///< number of additional simulated fingers for the search of the gains
   std::vector<double> frequencies_hz{0.05, 0.1, 0.2, 0.5};
   std::vector<double> mismatches{0.05, 0.10};
   double most_sensitivity = 2;
@@ -32,22 +32,22 @@ struct ControlStudyOptions {
   std::function<void(const std::string&)> progress;
 };
 
-/// A median over the simulated fingers, with the range that contains 90 % of them.
+/// Median of a result over the simulated fingers, with the range that contains 90 % of the fingers.
 struct Spread {
   double median = 0;
   double low = 0;   ///< 5 % quantile over the simulated fingers
   double high = 0;  ///< 95 % quantile over the simulated fingers
 };
 
-/// The result of one scheme at one frequency and one model mismatch.
+/// The result of one control scheme at one frequency and one model mismatch.
 struct ControlFigure {
   double frequency_hz = 0;
   double mismatch = 0;
-  double amplitude_mm = 0;  ///< largest amplitude that bench_twin can track at this frequency, at most that
-                            ///< of the study
+  double amplitude_mm = 0;  ///< amplitude of the reference: the largest amplitude that bench_twin can track
+                            ///< at this frequency, but not more than the amplitude of the study
   control::PidSettings pid;
-  double sensitivity = 0;  ///< largest maximum sensitivity Ms over the simulated fingers with which the gains
-                           ///< are searched
+  double sensitivity = 0;  ///< largest sensitivity Ms of the loop, over the simulated fingers for the search
+                           ///< of the gains
   std::string limited_by;
   Spread rmse_mm;
   Spread most_mm;                ///< largest absolute error of each simulated finger
@@ -58,28 +58,29 @@ struct ControlFigure {
   std::vector<double> draws_mm;  ///< RMSE of each simulated finger [mm]
 };
 
-/// A control scheme that the study compares with the others.
+/// A control scheme, with its results in the study.
 struct ControlScheme {
   std::string id;
   std::string about;
   control::FeedforwardKind kind = control::FeedforwardKind::none;
-  model::Model finger;    ///< the simulated finger before its parameters are varied at random
+  model::Model finger;    ///< simulated finger before its parameters are varied at random
   model::Model believed;  ///< the model that the controller uses
-  std::string refusal;    ///< reason why this scheme has no results; empty: it has results
+  std::string refusal;    ///< reason why the scheme has no results; empty if the scheme has results
   std::vector<ControlFigure> figures;
 };
 
 struct ControlStudy {
   ControlStudyOptions options;
-  model::Model identified;  ///< the published structure, identified from logs of bench_twin
+  model::Model identified;  ///< model with the published structure, identified from logs of bench_twin
   double identified_rmse_mm = 0;
-  /// The published structure with additional blocks for the valve, identified from the same logs.
+  /// Model with the published structure and additional blocks for the valve, identified from the logs of
+  /// `identified`.
   model::Model extended;
   double extended_rmse_mm = 0;
   std::vector<ControlScheme> schemes;
   double wall_s = 0;
 
-  /// Returns the result of a scheme at a frequency and a mismatch, or nullptr if there is none.
+  /// Returns the result of a scheme at a frequency and a mismatch; nullptr if the study has no such result.
   [[nodiscard]] const ControlFigure* find(const std::string& id, double frequency_hz, double mismatch) const;
 };
 

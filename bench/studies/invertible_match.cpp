@@ -13,7 +13,8 @@
 namespace softgrip::studies {
 namespace {
 
-/// Weight of the constraint [kPa]: residual in mm for each mm/kPa by which the bound is exceeded.
+/// Weight of the constraint on beta [kPa]: the additional residual [mm] is this weight times the excess of
+/// beta over its bound [mm/kPa].
 constexpr double weight_kpa = 1e5;
 /// Ratio of the largest to the smallest random start value of a parameter.
 constexpr double spread = 3;
@@ -22,7 +23,8 @@ std::size_t index_of(const model::Model& model, const char* path) {
   return model::find_path(model, path).value();
 }
 
-/// Residuals of a model with one additional residual, which is 0 while beta <= most_ratio (alpha + 1/k0).
+/// Residuals of a model, with one additional residual for the constraint beta <= most_ratio (alpha + 1/k0).
+/// The additional residual is 0 while the constraint is met.
 class WithBoundOnRatio final : public sysid::Residuals {
  public:
   WithBoundOnRatio(const std::vector<sysid::Record>& records, const sysid::FitSpace& space,

@@ -20,7 +20,7 @@ model::BlockSpec block(std::vector<double> values) {
   return {model::block_type<Block>(), std::move(values)};
 }
 
-/// Returns the stiffness k and the viscosity c of a branch with this gain and this time constant.
+/// Returns the stiffness k and the viscosity c of a Kelvin-Voigt branch with a given gain and time constant.
 std::array<double, 2> branch(double gain_mm_per_bar, double time_constant_s) {
   const double k = kpa_per_bar / gain_mm_per_bar;
   return {k, k * time_constant_s};

@@ -17,7 +17,8 @@ using model::SignalName;
 constexpr std::array<std::pair<SignalName, double>, 4> printed{
     {{SignalName::tp1, 0.194}, {SignalName::tp2, 0.256}, {SignalName::sp1, 0.540}, {SignalName::sp2, 0.392}}};
 
-/// Returns one error per test signal, or an empty list if the identification fails.
+/// Returns the error of the identified model for each test signal. Returns an empty list if the
+/// identification fails.
 std::vector<PaperFigure> figures_of(const model::Model& finger, const PaperTableOptions& options) {
   std::vector<sysid::Log> logs;
   for (std::size_t i = 0; i < printed.size(); ++i) {

@@ -1,6 +1,6 @@
 #pragma once
-// Repeats section 4 of the paper with simulated logs: the model is identified on TP1, and predicts TP2, SP1
-// and SP2.
+// Repeats section 4 of Zhang et al. 2025 with simulated logs: a model is identified on the signal TP1, and
+// predicts TP2, SP1 and SP2.
 
 #include <cstdint>
 #include <string>
@@ -17,15 +17,15 @@ struct PaperFigure {
   double rmse_percent_of_span = 0;
 };
 
-/// One of the four RMSE values of the paper, and the corresponding values of two simulated fingers. For each
-/// finger, the published structure was identified on tp1 alone.
+/// One of the four RMSE values of the paper, with the corresponding values of two simulated fingers. For each
+/// simulated finger, a model with the published structure was identified from tp1 alone.
 struct PaperRow {
   model::SignalName signal = model::SignalName::tp1;
   double paper_mm = 0;    ///< RMSE that the paper states for this signal [mm]
-  PaperFigure published;  ///< error for a finger that follows the published model, so that the noise is the
-                          ///< only source of error
-  PaperFigure twin;       ///< error for bench_twin, which has a lag and a delay that the published structure
-                          ///< lacks
+  PaperFigure published;  ///< error for a finger that follows the published model, so that noise is the only
+                          ///< cause of the error
+  PaperFigure twin;       ///< error for bench_twin, whose lag and delay are missing in the published
+                          ///< structure
 };
 
 struct PaperTableOptions {
@@ -36,7 +36,8 @@ struct PaperTableOptions {
   unsigned threads = 0;
 };
 
-/// Returns four rows: tp1, tp2, sp1 and sp2. Returns an empty list if an identification fails.
+/// Returns four rows, one for each of the signals tp1, tp2, sp1 and sp2. Returns an empty list if an
+/// identification fails.
 [[nodiscard]] std::vector<PaperRow> paper_table(const PaperTableOptions& options);
 
 /// Returns sentences that explain why the computed values differ from the values of the paper.

@@ -31,11 +31,11 @@ struct Hidden {
 constexpr std::array<Hidden, 5> hidden{
     {{0, 0, 0.57}, {0.05, 0.02, 0.78}, {0.10, 0.05, 1.28}, {0.15, 0.05, 1.69}, {0.25, 0.10, 9.5}}};
 constexpr std::array<double, 4> etas_per_bar{0.5, 1, 2, 4};
-/// Ratios beta/alpha of the elements whose inverse is computed. The element with the first ratio is
-/// invertible. The last ratio is the ratio of the paper.
+/// Ratios beta/alpha of the Bouc-Wen elements whose inverse is computed. The element with the first ratio is
+/// invertible. The last ratio is that of the published element.
 constexpr std::array<double, 8> ratios{0.5, 0.8, 0.95, 1.0, 1.05, 1.25, 1.75, 17.207 / 7.079};
-/// The pressure that every inverse must compute from the response: one period of a sine from 0 to 60 kPa and
-/// back.
+/// Frequency and duration of the pressure that each inverse must compute from the response: a sine from 0 to
+/// 60 kPa and back.
 constexpr double inverse_hz = 0.1;
 constexpr double inverse_s = 20;
 
@@ -48,7 +48,7 @@ std::string refusal_of(const model::Model& model, control::FeedforwardKind kind,
   return accepted ? std::string() : accepted.error().with_advice();
 }
 
-/// Returns the index of the faster branch of an element with two branches, 1 or 2.
+/// Returns the number (1 or 2) of the Kelvin-Voigt branch with the smaller time constant.
 int faster_branch(const model::Model& model) {
   const double tau1 =
       value_of(model, "kelvin_voigt.c1_kpa_s_per_mm") / value_of(model, "kelvin_voigt.k1_kpa_per_mm");
@@ -98,7 +98,8 @@ HiddenLatency identify_behind(const Hidden& valve, const PublishedOptions& optio
   return row;
 }
 
-/// Returns an ordinary finger behind a valve, from which the fit to the published response starts.
+/// Returns the model of an ordinary finger behind a valve. The fit to the published response starts from this
+/// model.
 model::Model match_start() {
   model::Model start = ordinary_model(0.06, 0.06);
   std::vector<double> values = model::flat_values(start);
@@ -150,8 +151,8 @@ model::Model element(double ratio) {
   return model::with_values(published, values);
 }
 
-/// Computes the explicit ("multiplicative") inverse p(k) = (y(k) + h(k-1))/alpha. Sets `growth` to the factor
-/// by which an error grows per sample.
+/// Computes the explicit ("multiplicative") inverse of a Bouc-Wen element, p(k) = (y(k) + h(k-1))/alpha. Sets
+/// `growth` to the factor by which an error of p grows per sample.
 std::vector<double> explicit_inverse(const model::Model& element, const std::vector<double>& wanted_mm,
                                      double tick_s, double& growth) {
   const double alpha = model::flat_values(element)[0];
@@ -165,7 +166,8 @@ std::vector<double> explicit_inverse(const model::Model& element, const std::vec
     chain.step(tick_s, p);
     pressures.push_back(p);
   }
-  // Compute the factor by which a small error grows within one sample if the reference is constant.
+  // Computes the factor by which a small error of the pressure grows within one sample, for a constant
+  // reference.
   chain.reset(0);
   constexpr double small_kpa = 1e-6;
   chain.step(tick_s, small_kpa);
@@ -214,7 +216,8 @@ InverseTrial try_inverse(double ratio, const std::vector<double>& true_kpa, doub
   return trial;
 }
 
-/// Computes the response of the published element to its first loading: where it falls and where it recovers.
+/// Computes the response of the published element to its first loading. Stores the pressures at which the
+/// response stops falling and returns to 0.
 void first_loading(PublishedStudy& study) {
   model::Chain<double> chain(element(ratios.back()));
   chain.reset(0);

@@ -57,7 +57,7 @@ Chart ratio_chart(const PublishedStudy& study) {
   return chart;
 }
 
-/// Returns two charts, one below the other: the fitted log and the residual.
+/// Returns two charts in one column: the log with the fitted response, and the residual.
 sysid::ChartRows fit_charts(const sysid::Log& log, const std::vector<double>& answer_mm,
                             const std::string& given, const std::string& answering) {
   Chart overlay;

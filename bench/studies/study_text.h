@@ -1,5 +1,5 @@
 #pragma once
-// Functions that the texts of all studies use.
+// Provides the functions that the texts of all studies use.
 
 #include <cstddef>
 #include <string>

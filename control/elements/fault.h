@@ -1,6 +1,6 @@
 #pragma once
-// Defines the faults. A fault stays latched until it is reset. The codes of the faults never change; they
-// appear in events, recordings, metrics and the manual.
+// Defines the fault codes and their descriptions. A fault stays latched until an operator resets it. The code
+// of a fault never changes, because the code appears in events, recordings, metrics and the manual.
 
 #include <cstdint>
 #include <span>
@@ -8,30 +8,33 @@
 
 namespace softgrip::control {
 
-/// The codes of the faults. The number of a fault never changes and is shown after an F: 101 is "F101". The
-/// hundreds digit is the group of the fault: 1 bus, 2 readings, 3 board and outputs, 4 model, 5 safety, 9
-/// internal.
+/// The fault codes. A code is shown after an F: 101 is "F101". The hundreds digit is the group of the fault:
+/// 1 bus, 2 readings, 3 board and outputs, 4 model, 5 safety, 9 internal.
 enum class FaultCode : std::uint16_t {
   none = 0,
-  bus_down = 101,              ///< no connection, or no valid exchange for too many cycles
+  bus_down = 101,              ///< no connection to the board, or no valid exchange for bus_down_cycles
+                               ///< consecutive cycles
   bus_timed_out = 102,         ///< the board does not respond in time
   bus_bad_reply = 103,         ///< the response does not match the request
   bus_exception = 104,         ///< the board rejects the Modbus function or the register address
-  reading_stale = 201,         ///< no new reading of a channel arrives
+  reading_stale = 201,         ///< no new reading of a channel has arrived within max_age_s
   reading_out_of_range = 202,  ///< the reading is outside the sensor's electrical range
-  sensor_error = 203,          ///< the sensor or the board reports an error code
+  sensor_error = 203,          ///< the sensor or the board reports an error code in place of a reading
   reading_jumped = 204,        ///< the reading changed faster than a finger can move
   reading_frozen = 205,        ///< the reading stayed constant while the command changed
   displacement_beyond_limits = 206,
-  pressure_not_followed = 207,  ///< the measured pressure differs from the command
-  readback_mismatch = 301,      ///< the board's output differs from the written value
-  write_refused = 302,          ///< the board rejected the write
+  pressure_not_followed = 207,  ///< the measured pressure has differed from the command for pressure_cycles
+                                ///< cycles
+  readback_mismatch = 301,      ///< the output that the board reports differs from the command that was
+                                ///< written
+  write_refused = 302,          ///< the board rejected the command that was written
   board_watchdog_tripped = 303,
   outputs_overwritten = 304,  ///< another Modbus client writes to the board
   model_unfit = 401,
   emergency_stop = 501,
   inputs_lost = 502,  ///< the digital inputs cannot be read
-  cycles_lost = 901,  ///< the loop missed more consecutive cycles than allowed
+  cycles_lost = 901,  ///< the control loop missed too many consecutive cycles (overrun_cycles or
+                      ///< max_missed_commands)
   not_finite = 902,   ///< a pressure command was NaN or infinite
 };
 
@@ -43,7 +46,8 @@ struct FaultInfo {
   std::string_view meaning;  ///< meaning of the fault in one sentence
   std::string_view cause;    ///< usual cause of the fault
   std::string_view remedy;   ///< action that the user must take before the reset (`acknowledge`)
-  std::string_view bound;    ///< keys of the rig file that give the number of cycles until the fault latches
+  std::string_view bound;    ///< number of cycles until the fault latches, in terms of the keys of the rig
+                             ///< file, such as "invalid_reading_cycles + 1"
 };
 
 /// Returns all faults in the order of their codes, without `none`.
@@ -52,7 +56,8 @@ struct FaultInfo {
 /// and the name "none".
 [[nodiscard]] const FaultInfo& info_of(FaultCode code) noexcept;
 
-/// Returns true if the outputs of the board can differ from the commands of the loop after this fault.
+/// Returns true if the pressures at the board's outputs can differ from the commands of the control loop
+/// after this fault.
 [[nodiscard]] constexpr bool inhibits(FaultCode code) noexcept {
   return code == FaultCode::cycles_lost || code == FaultCode::board_watchdog_tripped ||
          code == FaultCode::write_refused || code == FaultCode::outputs_overwritten;
@@ -61,8 +66,8 @@ struct FaultInfo {
 /// The reason why a request was refused.
 enum class RefusalCode : std::uint16_t {
   none = 0,
-  faulted = 1,   ///< refused, because a fault is latched
-  not_idle = 2,  ///< a sequence runs, starts or is being stopped
+  faulted = 1,   ///< the request was refused because a fault is latched
+  not_idle = 2,  ///< a sequence runs, is starting or is being stopped
   interlock_open = 3,
   emergency_stop = 4,
   sequence_unfit = 5,    ///< no sequence was given, or the sequence was prepared for another rig

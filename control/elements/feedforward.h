@@ -1,5 +1,6 @@
 #pragma once
-// Settings of the feedforward. The feedforward is the pressure that the model needs to follow the reference.
+// Defines the settings of the feedforward. The feedforward is the part of the pressure command that the model
+// computes from the reference.
 
 #include <array>
 #include <cstdint>
@@ -12,7 +13,8 @@ namespace softgrip::control {
 enum class FeedforwardKind : std::uint8_t {
   none,        ///< no feedforward: only the PID controls the pressure
   bouc_wen,    ///< inverse of the Bouc-Wen element without the other elements (Zhang et al. 2025, section 5)
-  full_model,  ///< inverse of the complete chain, with a lead for each lag and a preview for the dead time
+  full_model,  ///< inverse of the complete chain of blocks, with a lead for each lag and a preview for the
+               ///< dead time
   planned,     ///< command computed by least squares over the reference before the sequence starts; needs no
                ///< inverse of the model
 };
@@ -29,7 +31,7 @@ struct FeedforwardSettings {
   FeedforwardKind kind = FeedforwardKind::none;
   /// Time from the computation of a command to the board's output [s]: the bus exchange and the board's
   /// conversion. The valve blocks of the model do not include this time. The kind `full_model` reads the
-  /// reference earlier by this time. Range: 0 to 1.
+  /// reference this much further ahead. Range: 0 to 1.
   double extra_latency_s = 0;
 };
 

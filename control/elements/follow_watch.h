@@ -6,21 +6,22 @@
 
 namespace softgrip::control {
 
-/// Detects that an object holds a finger. A held finger stays at its contact position while its model
-/// continues to move. A finger whose gain has changed moves together with its model, but over a shorter
-/// distance. Until the model has moved by tells_from_mm after the contact, the finger counts as held.
+/// Decides if an object holds a finger that lags its model. A held finger stays at its contact position while
+/// its model continues to move. A finger whose gain has changed moves together with its model, but over a
+/// shorter distance. Until the model has moved by tells_from_mm after the contact, the finger counts as held.
 class FollowWatch {
  public:
-  static constexpr double tells_from_mm = 1;  ///< motion of the model after contact that is needed for a
-                                              ///< decision
-  static constexpr double least_share = 0.5;  ///< if a finger moves by less than this share of its model's
-                                              ///< motion, an object holds it
+  static constexpr double tells_from_mm = 1;  ///< distance that the model must move after contact before this
+                                              ///< class decides if the finger is held
+  static constexpr double least_share = 0.5;  ///< smallest ratio of finger motion to model motion at which
+                                              ///< the finger counts as free; if the ratio is smaller, an
+                                              ///< object holds the finger
 
   void reset() noexcept { touching_ = held_ = false; }
 
   /// Processes one tick. `touching` is true if the finger lags its model by more than the margin of grip
-  /// detection. `displacement_mm` is the reading, and `expected_mm` the position of the model. Values that
-  /// are not finite are ignored.
+  /// detection. `displacement_mm` is the reading, and `expected_mm` is the displacement of the model. A tick
+  /// in which one of the two displacements is not finite is ignored.
   void observe(bool touching, double displacement_mm, double expected_mm) noexcept {
     if (!touching) return reset();
     if (!std::isfinite(displacement_mm) || !std::isfinite(expected_mm)) return;

@@ -1,16 +1,16 @@
 #pragma once
-// Detects an object between the fingers. The evidence is the displacement shortfall, for grips to a pressure
-// and for grips to a displacement. The shortfall is the displacement of the free-motion model minus the
-// reading. The model receives the commands that were written. It contains hysteresis and creep, so the
-// evidence is also valid while the pressure changes or the finger creeps.
+// Detects an object between the fingers from the displacement shortfall: the displacement of the free-motion
+// model minus the reading. The method is the same for grips to a pressure and for grips to a displacement.
+// The model receives the commands that were written to the board, and it contains hysteresis and creep.
+// Therefore, the shortfall is also valid while the pressure changes or the finger creeps.
 
 #include <cstdint>
 #include <limits>
 
 namespace softgrip::control {
 
-/// Detects contact with hysteresis. Contact begins when the displacement shortfall reaches `margin_mm`, and
-/// ends when the shortfall falls below half of `margin_mm`.
+/// Detects contact from the displacement shortfall. Contact begins when the shortfall reaches `margin_mm`,
+/// and ends when the shortfall falls below half of `margin_mm`.
 class Contact {
  public:
   explicit Contact(double margin_mm) noexcept : margin_mm_(margin_mm) {}
@@ -24,17 +24,17 @@ class Contact {
   bool touching_ = false;
 };
 
-/// Decides if the evidence of a grip is present during a complete time window. If a reading is unusable, the
-/// window restarts.
+/// Decides if the evidence of a grip is present during a complete time window. A sample without a usable
+/// reading restarts the window.
 class EvidenceWindow {
  public:
   enum class Verdict : std::uint8_t { pending, verified, refuted };
   void start(double time_s, double window_s) noexcept;
-  /// Returns `verified` if the evidence was present during the complete window, and `refuted` if it was
-  /// absent during the complete window. Otherwise returns `pending`.
+  /// Returns `verified` if the evidence was present during the complete window. Returns `refuted` if the
+  /// evidence was absent during the complete window. Returns `pending` in all other cases.
   Verdict observe(double time_s, bool usable, bool evidence) noexcept;
-  /// Returns true if a sample in the last window was unusable. In this case, missing readings are the reason
-  /// for the result `pending`.
+  /// Returns true if a sample in the last window was unusable. In this case, unusable samples may be the
+  /// reason for the result `pending`.
   [[nodiscard]] bool blinded(double time_s) const noexcept { return time_s - unusable_s_ < window_s_; }
 
  private:
@@ -45,12 +45,14 @@ class EvidenceWindow {
   bool evidence_ = false;
 };
 
-/// Monitors a held part. The mean evidence of each interval must be at least `least`. If a part is lost, this
-/// is reported after two intervals at the latest. Intervals without a usable sample are ignored.
+/// Monitors a held part in successive intervals. The part counts as lost if the mean evidence of an interval
+/// is below `least`. A lost part is reported after two intervals at the latest. Intervals without a usable
+/// sample are ignored.
 class HoldWatch {
  public:
   void start(double time_s, double interval_s, double least) noexcept;
-  /// Returns true if the interval that ends with this sample shows that the part is lost. This happens once.
+  /// Returns true if the interval that ends with this sample shows that the part is lost. Returns true only
+  /// for the first of these intervals.
   bool observe(double time_s, bool usable, double evidence) noexcept;
 
  private:

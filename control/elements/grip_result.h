@@ -6,26 +6,27 @@
 
 namespace softgrip::control {
 
-/// The grip result of one channel. It remains until a reset (`acknowledge`) or the next start.
+/// The grip result of one channel. The result remains until a reset (`acknowledge`) or the next start of a
+/// sequence.
 enum class GripResult : std::uint8_t {
   none,       ///< there has been no grip since the last start or reset
   holding,    ///< HOLDING: an object was detected and verified
-  no_part,    ///< NO PART: the finger moved as without an object
+  no_part,    ///< NO PART: the finger moved as its model moves without an object
   part_lost,  ///< PART LOST: an object was held before, but is not held any more
   released,   ///< RELEASED: a release step has released the object
-  error,      ///< ERROR: a timeout, a fault or a stop occurred before there was a result
+  error,      ///< ERROR: a timeout, a fault or a stop occurred before the grip had a result
 };
-/// Returns the name that the user sees: "HOLDING", "NO PART", "PART LOST", "RELEASED" or "ERROR"; "-" for
-/// none.
+/// Returns the name that the user sees: "HOLDING", "NO PART", "PART LOST", "RELEASED" or "ERROR". Returns "-"
+/// for none.
 [[nodiscard]] std::string_view title_of(GripResult result) noexcept;
-/// Returns the name in files and messages for programs: "holding", "no_part", ...
+/// Returns the name of a grip result in files and in messages for programs: "holding", "no_part", ...
 [[nodiscard]] std::string_view name_of(GripResult result) noexcept;
 
 /// The evidence on which the verification of a grip is based.
 enum class GripEvidence : std::uint8_t {
   none,
   displacement,  ///< the finger moved less than its free-motion model
-  pressure,      ///< weaker evidence: the pressure alone, because the displacement is not available
+  pressure,      ///< weaker evidence: only the pressure, because no displacement is available
 };
 /// Returns the name of the evidence: "none", "displacement" or "pressure (weaker)".
 [[nodiscard]] std::string_view name_of(GripEvidence evidence) noexcept;

@@ -8,11 +8,12 @@
 namespace softgrip::control {
 namespace {
 
-/// A free finger moves at most this many times as far as its model.
+/// Largest ratio of the motion of a free finger to the motion of its model. The part of a motion beyond this
+/// ratio counts as unexplained.
 constexpr double more_than_model = 1.5;
 
-/// Returns the part of a motion that the model does not explain [mm]. The sign gives the direction of this
-/// part.
+/// Returns the part of a motion that the model does not explain [mm]. The sign of the result gives the
+/// direction of this part.
 double unexplained_mm(double moved_mm, double model_mm) noexcept {
   const double least = std::min(0.0, more_than_model * model_mm);
   const double most = std::max(0.0, more_than_model * model_mm);

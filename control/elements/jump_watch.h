@@ -1,7 +1,7 @@
 #pragma once
-// Detects a sensor whose reading jumps back and forth. plausibility.h rejects single jumps, but a single jump
-// may be too short to become a fault. A sensor that jumps repeatedly is not reliable enough for grip
-// detection.
+// Detects a sensor whose reading jumps back and forth. plausibility.h rejects single jumps, but a jump that
+// lasts only a few cycles does not become a fault. A sensor that jumps repeatedly is not reliable enough for
+// grip detection.
 
 #include <array>
 #include <cstddef>
@@ -11,13 +11,13 @@
 
 namespace softgrip::control {
 
-/// Counts jumps that are opposite in direction to the previous jump. A jump is the part of a change between
-/// two readings that the model does not explain. If a held part slides, is lost or is pushed in, the finger
-/// jumps too, but in one direction only.
+/// Counts jumps whose direction is opposite to that of the previous jump. A jump is the part of a change
+/// between two readings that the model does not explain. A held part that slides, is lost or is pushed in
+/// also causes jumps, but in one direction only.
 class JumpWatch {
  public:
   static constexpr double window_s = 1;  ///< time within which the reversing jumps are counted
-  static constexpr double calm_s = 2;    ///< the sensor counts as steady after this time without a jump
+  static constexpr double calm_s = 2;    ///< time without a jump after which the sensor counts as steady
 
   explicit JumpWatch(const PlausibilitySettings& settings) noexcept;
 
@@ -30,7 +30,7 @@ class JumpWatch {
   /// Returns true after `unsteady_jumps` reversing jumps within window_s. The result stays true until the
   /// sensor is steady for calm_s.
   [[nodiscard]] bool unsteady() const noexcept { return unsteady_; }
-  /// Returns the size of the last jump [mm]; the sign gives its direction.
+  /// Returns the size of the last jump [mm]; negative for a decrease of the reading.
   [[nodiscard]] double last_jump_mm() const noexcept { return last_jump_mm_; }
 
  private:
@@ -39,7 +39,7 @@ class JumpWatch {
   double jump_mm_;
   std::uint32_t unsteady_jumps_;
   Nanoseconds longest_gap_;
-  bool known_ = false;  ///< true: there is an earlier reading with which a new reading is compared
+  bool known_ = false;  ///< true: an earlier reading exists, with which the next reading is compared
   Nanoseconds last_at_ = 0;
   double last_mm_ = 0;
   double last_expected_mm_ = 0;

@@ -7,8 +7,8 @@
 
 namespace softgrip::control {
 
-/// The limit that restricts a command. The rest pressure is not one of these limits, because the command of
-/// every released finger is at the rest pressure.
+/// The limit that restricts a command. The rest pressure is not one of these limits, because every released
+/// finger has the rest pressure as command.
 enum class BindingLimit : std::uint8_t {
   none,
   rig_pressure,   ///< pressure_max_kpa under `limits` in the rig file
@@ -24,18 +24,19 @@ enum class BindingLimit : std::uint8_t {
 /// `none`.
 [[nodiscard]] std::string_view words_of(BindingLimit limit) noexcept;
 
-/// Reports the limit that restricts a command when limits have restricted the command for `moment_s`. If
-/// another limit then restricts the command for `moment_s`, reports this limit. Also reports when no limit
-/// restricts the command any more. Interruptions shorter than `gap_s` are ignored, because noise can move a
-/// command across a limit repeatedly.
+/// Reports which limit restricts a command. A limit is reported after limits have restricted the command for
+/// `moment_s`. If a different limit restricts the command for `moment_s` after a report, the new limit is
+/// reported. The value `none` is reported when no limit restricts the command any more. Interruptions shorter
+/// than `gap_s` are ignored, because noise can move a command across a limit repeatedly.
 class LimitWatch {
  public:
   static constexpr double moment_s = 0.5;
   static constexpr double gap_s = 0.1;
 
-  /// Processes one tick. Returns reported() if its value has changed in this tick, otherwise nothing.
+  /// Processes one tick. Returns reported() if the value of reported() has changed in this tick, otherwise
+  /// nothing.
   std::optional<BindingLimit> observe(double time_s, BindingLimit now) noexcept;
-  /// Returns the limit that was reported and still restricts the command.
+  /// Returns the last reported limit; `none` after the command has become free of limits.
   [[nodiscard]] BindingLimit reported() const noexcept { return reported_; }
 
  private:

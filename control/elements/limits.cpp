@@ -11,11 +11,11 @@ double in_range(const LimitSettings& limits, double pressure_kpa) noexcept {
 
 LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last_kpa, double elapsed_s,
                      double ceiling_kpa) noexcept {
-  // If the last command is not usable, the rest pressure is the only pressure that is known to be safe.
+  // If the last command is not finite, the rest pressure is the only pressure that is known to be safe.
   const double last = std::isfinite(last_kpa) ? in_range(limits, last_kpa) : resting_kpa(limits);
   if (std::isnan(wanted_kpa) || std::isnan(ceiling_kpa)) return {last, false, false, true, false};
-  // The ceiling counts as at least the rest pressure. Otherwise, a low ceiling would evacuate a finger, or
-  // stop a finger that returns to rest.
+  // A ceiling below the rest pressure is replaced by the rest pressure. Otherwise, a low ceiling would
+  // evacuate a finger, or stop a finger that returns to rest.
   const double highest_kpa = std::max(ceiling_kpa, resting_kpa(limits));
   const bool capped = wanted_kpa > highest_kpa;
   const double inside = in_range(limits, capped ? highest_kpa : wanted_kpa);

@@ -1,8 +1,8 @@
 #pragma once
-// Limits commands. All commands of the loop and of the feedforward plan pass through limit(), which keeps
-// them within the pressure range and the slew limits. The safe output (ChannelOutput::safe_kpa) is written
-// when the loop stops or its commands time out. It is either the last command, or the rest pressure without a
-// slew limit.
+// Defines the limits of a command and applies them. All commands of the control loop and of the feedforward
+// plan pass through limit(), which keeps them within the pressure range and the slew limits. The safe output
+// (ChannelOutput::safe_kpa) is written when the loop stops or its commands time out. The safe output is
+// either the last command, or the rest pressure without a slew limit.
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 
 namespace softgrip::control {
 
-/// Limits of one channel. The rig file must give each of them except rest_kpa, because no default is suitable
-/// for all rigs.
+/// Limits of one channel. The rig file must give a value for every member except rest_kpa, because no default
+/// is suitable for all rigs.
 struct LimitSettings {
   double pressure_min_kpa = 0;
   double pressure_max_kpa = 0;        ///< largest command; it must be above pressure_min_kpa
@@ -29,12 +29,13 @@ struct LimitSettings {
 struct LimitedCommand {
   double command_kpa = 0;
   bool saturated = false;  ///< the requested pressure is outside the pressure range
-  bool slewing = false;    ///< the request is further from the last command than the slew limits allow
+  bool slewing = false;    ///< the requested pressure is further from the last command than the slew limits
+                           ///< allow
   bool invalid = false;    ///< the request or the ceiling is not a number, so the last command is held
   bool capped = false;     ///< the requested pressure is above the ceiling
 };
 
-/// Returns the pressure in the pressure range that is nearest to `pressure_kpa`.
+/// Returns `pressure_kpa`, limited to the pressure range.
 [[nodiscard]] double in_range(const LimitSettings& limits, double pressure_kpa) noexcept;
 
 /// Returns the pressure of every safe state: `rest_kpa`, limited to the pressure range.
@@ -42,36 +43,36 @@ struct LimitedCommand {
   return std::max(limits.pressure_min_kpa, std::min(limits.rest_kpa, limits.pressure_max_kpa));
 }
 
-/// Returns `kpa`, limited to the pressures between `rest_kpa` and `bound_kpa`. The order of the two does not
-/// matter: the bound may be above or below rest. An infinite bound does not limit the pressure.
+/// Returns the pressure `kpa`, limited to the interval between `rest_kpa` and `bound_kpa`. `bound_kpa` may be
+/// above or below `rest_kpa`. An infinite bound does not limit the pressure.
 [[nodiscard]] inline double no_further(double rest_kpa, double kpa, double bound_kpa) noexcept {
   if (std::isinf(bound_kpa)) return kpa;
   return std::clamp(kpa, std::min(rest_kpa, bound_kpa), std::max(rest_kpa, bound_kpa));
 }
 
-/// Returns the end of the pressure range that is further from the rest pressure. If the range lies on one
-/// side of the rest pressure, the finger moves toward this end.
+/// Returns the end of the pressure range that is further from the rest pressure. If the rest pressure is one
+/// end of the range, the result is the opposite end.
 [[nodiscard]] inline double far_end_kpa(const LimitSettings& limits) noexcept {
   const double rest_kpa = resting_kpa(limits);
   const bool above = limits.pressure_max_kpa - rest_kpa >= rest_kpa - limits.pressure_min_kpa;
   return above ? limits.pressure_max_kpa : limits.pressure_min_kpa;
 }
 
-/// Returns true if a pressure differs from the rest pressure by more than 0.1 kPa. The channel then counts as
-/// pressurised.
+/// Returns true if a pressure differs from the rest pressure by more than 0.1 kPa, so that the channel counts
+/// as pressurised.
 [[nodiscard]] inline bool pressed(const LimitSettings& limits, double pressure_kpa) noexcept {
   constexpr double unpressed_kpa = 0.1;
   return std::abs(pressure_kpa - resting_kpa(limits)) > unpressed_kpa;
 }
 
-/// Value of a ceiling that does not limit the command; only the pressure range does.
+/// Value of a ceiling that has no effect, so that the pressure range alone bounds the command.
 inline constexpr double no_ceiling = std::numeric_limits<double>::infinity();
 
-/// Returns the command for the request `wanted_kpa` if `last_kpa` was written `elapsed_s` (>= 0) ago. The
-/// result is always inside the pressure range, even if the last command was outside. Inside the range, the
-/// slew limits apply too. If the ceiling is below the present command, the command decreases to the ceiling
-/// as fast as the slew limits permit. A ceiling below the rest pressure counts as a ceiling at the rest
-/// pressure.
+/// Returns the command for the requested pressure `wanted_kpa`. `last_kpa` is the command that was written
+/// `elapsed_s` (>= 0) ago. The result is always inside the pressure range, even if the last command was
+/// outside. Inside the pressure range, the slew limits apply too. If the ceiling is below the last command,
+/// the command decreases to the ceiling as fast as the slew limits permit. A ceiling below the rest pressure
+/// has the effect of a ceiling at the rest pressure.
 [[nodiscard]] LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last_kpa,
                                    double elapsed_s, double ceiling_kpa = no_ceiling) noexcept;
 

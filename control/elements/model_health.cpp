@@ -8,14 +8,14 @@
 namespace softgrip::control {
 namespace {
 
-/// An unfit model becomes fit when its error falls below this share of the limit for unfit models. The
-/// difference between the two limits prevents frequent changes of the state.
+/// A model becomes unfit when its error exceeds unfit_mm, and fit again when its error falls below this share
+/// of unfit_mm. The difference prevents frequent changes of the state.
 constexpr double recovery_share = 0.7;
-/// After an alarm, the CUSUM is limited to this multiple of its threshold. Otherwise, a model that fits the
-/// finger again would stay in alarm for a long time.
+/// After an alarm, the CUSUM is limited to this multiple of its threshold. Without this limit, a model that
+/// fits the finger again would stay in alarm for a long time.
 constexpr double cap_share = 1.5;
-/// Correction of the CUSUM threshold by Siegmund: it compensates the overshoot of the discrete random walk
-/// over the threshold.
+/// Siegmund's correction of the CUSUM threshold. This correction compensates the overshoot of the discrete
+/// random walk over the threshold.
 constexpr double overshoot = 1.166;
 
 }  // namespace
@@ -56,8 +56,8 @@ ResidualWhitener::ResidualWhitener(const ModelHealthSettings& settings) noexcept
   const double memory = settings.correlation_time_s;
   slow_variance_ = settings.model_error_mm * settings.model_error_mm;
   keep_ = std::exp(-interval / memory);
-  // Mean and variance of an Ornstein-Uhlenbeck process and of its average over one interval, for a known
-  // state at the start of the interval.
+  // Computes mean and variance of an Ornstein-Uhlenbeck process, and of its average over one interval. The
+  // state at the start of the interval is known.
   observe_ = memory / interval * (1 - keep_);
   process_variance_ = slow_variance_ * (1 - keep_ * keep_);
   average_variance_ = slow_variance_ * memory / (interval * interval) *

@@ -7,10 +7,10 @@
 // error is an Ornstein-Uhlenbeck process with standard deviation model_error_mm and correlation exp(-t /
 // correlation_time_s). Readings are averaged over interval_s. A Kalman filter of this process turns the
 // averages into innovations, which are independent and have unit variance if the residual has these
-// properties. A two-sided CUSUM (Page, Biometrika 41, 1954) accumulates the innovations. Its threshold
-// is computed from the required mean time between false alarms by Siegmund's formula (Sequential Analysis,
-// 1985, chapter 2). A model error that is larger or slower than the settings state raises an alarm, as
-// intended.
+// properties. A two-sided CUSUM (Page, Biometrika 41, 1954) accumulates the innovations. Its threshold is
+// computed with Siegmund's formula (Sequential Analysis, 1985, chapter 2) from the required mean time between
+// false alarms. An error of the model raises an alarm if it is larger than model_error_mm or slower than
+// correlation_time_s.
 
 #include <array>
 #include <cstddef>
@@ -21,22 +21,21 @@ namespace softgrip::control {
 enum class HealthState : std::uint8_t {
   unknown,  ///< the model has not been observed yet
   healthy,
-  suspect,  ///< the residual drifts more than that of a healthy model, so the model should be fitted again
-            ///< soon
-  unfit,    ///< the residual exceeds the tolerance of grip detection and of the feedforward
+  suspect,  ///< the residual drifts more than that of a healthy model; the model should be fitted again soon
+  unfit,    ///< the residual exceeds the tolerance of grip detection and of the feedforward, unfit_mm
 };
 [[nodiscard]] const char* name_of(HealthState state) noexcept;
 
 /// Properties of the residual of a healthy model, and the limits for warnings. The defaults were tested on
-/// the simulated finger with models whose parameters are wrong: 40 models per size of the parameter error,
-/// over five cycles of a 13 +- 7 mm sine. The number of models that become suspect or unfit is 0 for
-/// parameter errors up to 5 %. It is 5 for errors up to 10 %, and 23 for errors up to 20 % (checked by
-/// tests/control/tuning/tracking_run_test.cpp).
+/// the simulated finger with models whose parameters are wrong. The test used 40 models for each size of the
+/// parameter error, and five cycles of a 13 +- 7 mm sine. The number of models that become suspect or unfit
+/// is 0 for parameter errors up to 5 %. The number is 5 for errors up to 10 %, and 23 for errors up to 20 %
+/// (checked by tests/control/tuning/tracking_run_test.cpp).
 struct ModelHealthSettings {
   double model_error_mm = 0.4;      ///< > 0; standard deviation of the slow error
   double correlation_time_s = 4.0;  ///< > 0; correlation time of the slow error
   double noise_mm = 0.05;           ///< > 0; standard deviation of the noise of one reading
-  double interval_s = 1.0;          ///< > 0; time over which the residual is averaged before a decision
+  double interval_s = 1.0;          ///< > 0; time over which the readings are averaged before each decision
   double allowance_sigma = 0.5;     ///< > 0; half of the shift of the innovations that must be detected, in
                                     ///< standard deviations
   /// > 0; mean time between false alarms of a healthy model. The decision threshold is computed from this
@@ -48,21 +47,22 @@ struct ModelHealthSettings {
   double unfit_window_s = 5;  ///< > 0; time over which the root mean square of the residual is computed
 };
 
-/// Returns the mean number of independent standard normal values until a two-sided CUSUM with this allowance,
-/// which starts at zero, reaches `threshold`. The result is Siegmund's approximation. Its error is a few
-/// percent for run lengths of 50 and more.
+/// Returns the mean number of independent standard normal values until a two-sided CUSUM reaches `threshold`.
+/// The CUSUM starts at 0, and `allowance` is subtracted from each value. The result is Siegmund's
+/// approximation. Its error is a few percent for run lengths of 50 and more.
 [[nodiscard]] double cusum_run_length(double allowance, double threshold) noexcept;
-/// Returns the threshold for which cusum_run_length() returns `run_length`, which must be at least 2.
+/// Returns the threshold for which cusum_run_length() returns `run_length`. `run_length` must be at least 2.
 [[nodiscard]] double cusum_threshold(double allowance, double run_length) noexcept;
 
 /// Turns averages of a residual over intervals into innovations. The innovations are independent and standard
 /// normal if the residual has the properties in the settings. The filter is a Kalman filter whose process
-/// noise correlates with its observation noise. The reason is that the average over an interval and the state
-/// at its end depend on the same noise.
+/// noise correlates with its observation noise. The two correlate because the average over an interval and
+/// the state at its end depend on the same noise.
 class ResidualWhitener {
  public:
   explicit ResidualWhitener(const ModelHealthSettings& settings) noexcept;
-  /// Restarts the filter after a gap. The only knowledge after a gap is the variance of the slow error.
+  /// Restarts the filter after a gap in the readings. After the restart, the filter knows only the variance
+  /// of the slow error, not its value.
   void reset() noexcept;
   /// Returns the innovation of one interval in standard deviations; `count` is the number of averaged
   /// readings.
@@ -85,7 +85,7 @@ class ModelHealth {
   /// Processes a tick with a valid reading in free motion. Returns true if the state changed.
   bool observe(double residual_mm) noexcept;
   /// Processes a tick that has no valid reading in free motion. Returns true if the state changed. An
-  /// interval with too few readings is ignored.
+  /// interval with readings in less than half of its ticks is ignored.
   bool skip() noexcept;
 
   [[nodiscard]] HealthState state() const noexcept { return state_; }

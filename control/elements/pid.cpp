@@ -61,8 +61,8 @@ double Pid::hold(double feedforward_kpa) noexcept {
 void Pid::sent(double command_kpa) noexcept {
   if (aligns()) align_to_kpa_ = command_kpa;
   const double cut_kpa = command_kpa - request_kpa_;
-  // The anti-windup changes the integral. Without an integral gain, this change would never be removed, so
-  // the anti-windup is not applied.
+  // The anti-windup changes the integral. If the integral gain is 0, nothing would ever remove this change.
+  // Therefore, the anti-windup is not applied.
   if (cut_kpa == 0 || settings_.ki_kpa_per_mm_s == 0) return;
   switch (settings_.anti_windup) {
     case AntiWindup::none:

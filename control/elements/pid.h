@@ -1,5 +1,6 @@
 #pragma once
-// A PID controller with two degrees of freedom. Its anti-windup uses the command that was really sent.
+// Implements a PID controller with two degrees of freedom. Its anti-windup uses the command that was sent
+// after the limits.
 //
 //   request = feedforward + kp (b r - y) + I - kd d(y filtered)/dt,   dI/dt = ki (r - y)
 //
@@ -12,11 +13,12 @@
 
 namespace softgrip::control {
 
-/// Method against integrator windup, which occurs while the command cannot follow the request.
+/// Method that prevents integrator windup. Windup occurs while the limits keep the command away from the
+/// request.
 enum class AntiWindup : std::uint8_t {
-  none,              ///< no protection: the integrator continues (for comparisons)
+  none,              ///< no protection: the integrator continues (for comparisons with the other methods)
   conditional,       ///< the integrator stops while it would move a limited request further beyond the limit
-  back_calculation,  ///< the part of the request that the limits remove drives the integrator back within
+  back_calculation,  ///< the difference between request and limited command drives the integrator back within
                      ///< tracking_time_s
 };
 
@@ -25,37 +27,38 @@ struct PidSettings {
   double ki_kpa_per_mm_s = 0;
   double kd_kpa_s_per_mm = 0;
   double derivative_filter_s = 0.02;  ///< time constant of the first-order filter of the derivative; >= 0
-  double setpoint_weight = 1;         ///< setpoint weight b: share of the reference in the proportional part,
-                                      ///< 0 to 1
+  double setpoint_weight = 1;         ///< setpoint weight b, 0 to 1: factor of the reference in the
+                                      ///< proportional part
   AntiWindup anti_windup = AntiWindup::back_calculation;
-  double tracking_time_s = 0.5;  ///< > 0; time constant of back_calculation
+  double tracking_time_s = 0.5;  ///< > 0; time constant with which back_calculation drives the integrator
+                                 ///< back
 };
 
-/// One PID controller. In each tick, the caller calls step() to get the request, applies the limits, and
-/// passes the limited command to sent().
+/// One PID controller. In each tick, the caller calls step() to get the request, applies the limits to the
+/// request, and passes the limited command to sent().
 class Pid {
  public:
   Pid(const PidSettings& settings, double tick_s) noexcept;
 
-  /// Makes the request of the next step() equal to `command_kpa`, for any error and any feedforward: the
-  /// integrator absorbs the difference. Call this function at a start, when the mode changes from hold or
-  /// pressure to displacement, and for a new feedforward.
+  /// Makes the request of the next step() equal to `command_kpa`, for any control error and any feedforward.
+  /// To do so, the integrator absorbs the difference. Call this function at a start, when the mode changes
+  /// from hold or pressure to displacement, and when the feedforward changes.
   void align(double command_kpa) noexcept;
 
   /// Returns the feedback part of the request [kPa]. The request is the sum of feedforward_kpa and the
-  /// feedback. `error_reference_mm` is the value of the reference at the time at which `measurement_mm` was
-  /// sampled.
+  /// feedback. `error_reference_mm` is the reference at the time at which `measurement_mm` was sampled.
   [[nodiscard]] double step(double error_reference_mm, double measurement_mm,
                             double feedforward_kpa) noexcept;
 
   /// Processes a tick without a usable measurement, or a tick in which the feedback is held on purpose.
-  /// Returns the last feedback; the integrator and the derivative do not change. After align(), returns the
-  /// feedback that keeps the command unchanged, and the next step() continues from this feedback.
+  /// Returns the feedback of the last tick; the integrator and the derivative do not change. The first call
+  /// after align() returns the feedback that keeps the command unchanged. The next step() continues from this
+  /// feedback.
   [[nodiscard]] double hold(double feedforward_kpa) noexcept;
 
   /// Receives the command that was sent after the limits. The anti-windup acts on the difference between this
   /// command and the last request. The difference can come from the pressure range, from the slew limits or
-  /// from a feedforward outside them.
+  /// from a feedforward outside the pressure range.
   void sent(double command_kpa) noexcept;
 
   [[nodiscard]] double integral_kpa() const noexcept { return integral_kpa_; }
@@ -69,8 +72,8 @@ class Pid {
   PidSettings settings_;
   double tick_s_;
   double filter_keep_;     ///< share of the derivative filter's state that remains per tick
-  double tracking_share_;  ///< for back_calculation: share of the pressure removed by the limits that is
-                           ///< subtracted from the integral in each tick
+  double tracking_share_;  ///< for back_calculation: share of the difference between request and limited
+                           ///< command that is subtracted from the integral in each tick
   double integral_kpa_ = 0;
   double rate_mm_per_s_ = 0;  ///< filtered derivative of the measurement
   double last_error_mm_ = 0;
@@ -79,13 +82,13 @@ class Pid {
   double request_kpa_ = 0;
   double increment_kpa_ = 0;  ///< change of the integral in the last step
   double align_to_kpa_ = 0;
-  /// The value from which the next step() continues.
+  /// The state from which the next step() computes the feedback.
   enum class Memory : std::uint8_t {
-    none,           ///< the integral; there is no earlier measurement for the derivative and the trapezoidal
-                    ///< rule
+    none,           ///< only the integral; no earlier measurement exists for the derivative and the
+                    ///< trapezoidal rule
     measured,       ///< the integral and the measurement of the last step
     aligning,       ///< the command that align() received
-    aligned_ahead,  ///< the command that align() received, after hold() has kept it unchanged
+    aligned_ahead,  ///< the command that align() received, after hold() has kept this command unchanged
   };
   Memory memory_ = Memory::none;
 };

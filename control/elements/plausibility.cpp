@@ -11,11 +11,10 @@ double between_s(Nanoseconds from, Nanoseconds to) {
   return static_cast<double>(to - from) * 1e-9;
 }
 
-/// After this number of changes of the reading, the longest time without a change counts as known for the
-/// sensor.
+/// Number of changes of the reading after which longest_run_ is used to judge the sensor.
 constexpr std::uint32_t enough_changes = 50;
-/// A time without a change is implausible if it is longer than the longest earlier one times this factor. It
-/// must also be longer than unlike_at_least.
+/// A time without a change of the reading is implausible if it exceeds both of two bounds. The first bound is
+/// unlike_times multiplied by the longest earlier time without a change. The second bound is unlike_at_least.
 constexpr Nanoseconds unlike_times = 4;
 constexpr Nanoseconds unlike_at_least = ns_per_s / 10;
 
@@ -39,7 +38,8 @@ void Plausibility::Travel::see(double value) noexcept {
   highest = std::max(highest, value);
 }
 
-/// Stores the time without a change that has just ended, unless it was implausible for this sensor.
+/// Stores the duration `run` of a constant reading that has just ended. Does not store a duration that was
+/// implausible for this sensor.
 void Plausibility::learn(Nanoseconds run) noexcept {
   if (stands_still_) return;
   longest_run_ = std::max(longest_run_, run);

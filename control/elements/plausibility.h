@@ -1,5 +1,5 @@
 #pragma once
-// Checks electrically valid readings: their age, their speed of change, and the time for which they are
+// Checks electrically valid readings: their age, their rate of change, and the time for which they stay
 // constant.
 
 #include <cstddef>
@@ -14,24 +14,25 @@ namespace softgrip::control {
 inline constexpr std::size_t most_unsteady_jumps = 32;
 
 struct PlausibilitySettings {
-  double max_age_s = 0.05;          ///< > 0; a reading that is older than this is stale
-  double max_speed_mm_per_s = 500;  ///< > 0; no motion of the finger may be faster than this speed
-  double jump_margin_mm = 0.5;      ///< >= 0; addition to the permitted change of the reading, because of the
-                                    ///< sensor's noise
-  /// > 0; time for which the reading may stay constant while the command changes. It must be longer than the
-  /// valve's delay.
+  double max_age_s = 0.05;          ///< > 0; a reading that is older than this time is stale
+  double max_speed_mm_per_s = 500;  ///< > 0; no motion of the finger is faster than this speed, so a faster
+                                    ///< change of the reading is a jump
+  double jump_margin_mm = 0.5;      ///< >= 0; change of the reading that the sensor's noise can cause; added
+                                    ///< to the change that max_speed_mm_per_s permits
+  /// > 0; time for which the reading may stay constant while the command changes. This time must be longer
+  /// than the valve's delay.
   double frozen_after_s = 1.0;
-  double frozen_band_mm = 0;       ///< >= 0; a smaller change of the reading counts as no change (a
-                                   ///< quantisation step)
-  double frozen_command_kpa = 10;  ///< > 0; a reading that stays constant while the command changes by more
-                                   ///< than this is frozen
+  double frozen_band_mm = 0;       ///< >= 0; a change of the reading up to this size (a quantisation step)
+                                   ///< counts as no change
+  double frozen_command_kpa = 10;  ///< > 0; a reading is frozen if it stays constant while the command
+                                   ///< changes by at least this pressure
   /// > 0; a reading is also frozen if it stays constant while the model of the free finger moves by this
-  /// distance. This rule applies only to a sensor whose readings usually change (stands_still()).
+  /// distance. This rule applies only while Plausibility::stands_still() returns true.
   double frozen_expected_mm = 2;
-  /// > 0; a change between two readings is a jump if the part that the model does not explain is larger than
-  /// this (jump_watch.h).
+  /// > 0; a change between two readings is a jump if the model leaves more than this distance unexplained
+  /// (jump_watch.h).
   double jump_mm = 2;
-  /// Number of reversing jumps within 1 s that makes the sensor unsteady; 2 to most_unsteady_jumps.
+  /// Number of reversing jumps within 1 s that makes the sensor count as unsteady; 2 to most_unsteady_jumps.
   std::uint32_t unsteady_jumps = 4;
 };
 
@@ -40,21 +41,21 @@ class Plausibility {
  public:
   explicit Plausibility(const PlausibilitySettings& settings) noexcept;
 
-  /// Discards all earlier readings, so that the next valid reading is accepted.
+  /// Discards all earlier readings. As a result, the next valid reading is accepted at any displacement.
   void reset() noexcept;
 
   /// Returns the validity of `reading` at the time `now`. `command_kpa` is the last command that was sent. If
-  /// the driver reports an invalid reading, returns the reason that the driver gives. A jump is measured from
-  /// the last valid reading. The permitted change grows with the time since this reading, so a sensor that
-  /// returns after a gap becomes valid again. `expected_mm` is the displacement of the free-motion model at
-  /// the time of the reading.
+  /// the driver reports an invalid reading, returns the reason that the driver gives. A reading is a jump if
+  /// it differs too much from the last valid reading. The permitted difference grows with the time since the
+  /// last valid reading, so a sensor that returns after a gap becomes valid again. `expected_mm` is the
+  /// displacement of the free-motion model at the time of the reading.
   [[nodiscard]] model::Validity judge(const model::Reading& reading, Nanoseconds now, double command_kpa,
                                       double expected_mm = 0) noexcept;
 
-  /// Returns true if the last digits of this sensor usually change, but the reading has been constant for
-  /// much longer than ever before. The sensor may then be frozen; a finger at rest does not explain such a
-  /// reading. Returns false for a sensor whose readings are often constant because it is coarse, slow or
-  /// without noise.
+  /// Returns true if the readings of this sensor usually change, but the reading has now been constant much
+  /// longer than ever before. A finger at rest does not cause such a constant reading, because the sensor has
+  /// noise. Therefore, the sensor may be frozen. Returns false for a sensor whose readings are often constant
+  /// because it is coarse, slow or without noise.
   [[nodiscard]] bool stands_still() const noexcept { return stands_still_; }
 
  private:
@@ -73,10 +74,11 @@ class Plausibility {
   PlausibilitySettings settings_;
   Nanoseconds max_age_;
   Nanoseconds frozen_after_;
-  bool known_ = false;  ///< true: there is a last valid reading for comparison
+  bool known_ = false;  ///< true: a last valid reading exists, with which the next reading is compared
   double last_mm_ = 0;
   Nanoseconds last_sampled_at_ = 0;
-  bool watching_ = false;  ///< true: there is a displacement with which later readings are compared
+  bool watching_ = false;  ///< true: still_mm_ contains a displacement with which the next reading is
+                           ///< compared
   double still_mm_ = 0;
   Nanoseconds still_since_ = 0;
   Travel command_kpa_;

@@ -6,13 +6,15 @@
 namespace softgrip::control {
 namespace {
 
-/// Peak speed of a minimum-jerk move of unit length in unit time (Flash and Hogan, J. Neurosci. 5, 1985).
+/// Peak speed of a minimum-jerk motion over a distance of 1 in a time of 1 (Flash and Hogan, J. Neurosci. 5,
+/// 1985).
 constexpr double peak_speed_factor = 1.875;
-/// Time within which a moving reference that was cut comes to rest [s]. The next ramp begins after this time.
+/// Time in which a reference brakes to rest if it was cut while it moved [s]. The next ramp begins after this
+/// time.
 constexpr double brake_s = 0.2;
 
-/// Returns the polynomial of degree 5 from a moving start to rest at `value` within `duration`, as
-/// coefficients of the powers of time.
+/// Returns the polynomial of degree 5 that goes from the moving start `from` to rest at `value` within
+/// `duration`. The result contains the coefficients of the powers of time.
 std::array<double, 6> quintic_to_rest(const ReferencePoint& from, double value, double duration) {
   const double t = duration;
   const double distance = value - from.value;
@@ -129,7 +131,8 @@ bool Reference::ramp_to(double value, double speed) noexcept {
   const ReferencePoint from = last_point();
   const bool moving = from.rate != 0 || from.acceleration != 0;
   if (count_ + (moving ? 2U : 1U) > capacity) return false;
-  // Appends a ramp over the distance in which the speed decreases smoothly to 0 without a reversal.
+  // Appends a ramp that brakes the reference to speed 0 without a reversal. The ramp covers half of the
+  // distance that the present speed would cover in brake_s.
   if (moving && !ramp_for(from.value + from.rate * brake_s / 2, brake_s)) return false;
   const double distance = std::abs(value - final_value());
   if (distance == 0) return moving || hold_for(0);

@@ -1,6 +1,6 @@
 #pragma once
-// Defines the reference of a channel in advance: a short list of segments, from which the reference at any
-// time can be computed.
+// Defines the future reference of a channel as a short list of segments. The reference at any time is
+// computed from the segments.
 
 #include <array>
 #include <cstddef>
@@ -11,29 +11,29 @@ namespace softgrip::control {
 /// Value, rate and acceleration of a reference at one time, in mm for a displacement or kPa for a pressure.
 struct ReferencePoint {
   double value = 0;
-  double rate = 0;          ///< change of the reference's value per second
-  double acceleration = 0;  ///< change of the reference's rate per second
+  double rate = 0;          ///< change of `value` per second
+  double acceleration = 0;  ///< change of `rate` per second
 };
 
 /// A sequence of segments. Before the first segment and after the last segment, the reference is constant. In
 /// ramps and holds, value, rate and acceleration are continuous (quintic polynomial, minimum jerk). At the
-/// start of a sine, the acceleration has a step. The object is a plain value and allocates no memory. Times
-/// are seconds on the clock of the caller.
+/// start of a sine, the acceleration has a step. The class allocates no memory. Times are in seconds on the
+/// clock of the caller.
 class Reference {
  public:
   static constexpr std::size_t capacity = 8;
 
-  /// Creates a reference that holds 0 from time 0 on.
+  /// Creates a reference that is constant at 0 from the time 0 on.
   Reference() noexcept = default;
-  /// Discards all segments. From `time_s` on, the reference is constant at `value`, for example at the
-  /// present reading of the finger.
+  /// Discards all segments. From `time_s` on, the reference is constant at `value`. For example, `value` is
+  /// the present reading of the finger.
   void start(double time_s, double value) noexcept;
   /// Starts with a moving reference: the first appended segment continues the rate and the acceleration of
   /// `point`.
   void start(double time_s, const ReferencePoint& point) noexcept;
 
-  // Each of the following functions appends a segment after end_s(). If `capacity` segments are stored, the
-  // function changes nothing and returns false.
+  // Each of the following functions appends a segment after end_s(). If `capacity` segments are already
+  // stored, the function changes nothing and returns false.
 
   /// Appends a minimum-jerk ramp with the peak speed `speed` (> 0, per s). If the reference was cut while it
   /// moved, the reference brakes before the ramp.
@@ -48,14 +48,14 @@ class Reference {
   /// Ends the reference at `time_s` and removes its later part. If the reference ended earlier, it holds its
   /// final value until `time_s`. The next appended segment continues with the same value, rate and
   /// acceleration. A feedforward with preview has already used the reference up to now + preview. To change
-  /// the reference without a step of the command, cut it at now + preview.
+  /// the reference without a step of the command, call cut(now + preview).
   void cut(double time_s) noexcept;
-  /// Removes segments that ended before `time_s`, to make space for new ones. For times before the first
-  /// remaining segment, the reference then has the start value of this segment.
+  /// Removes segments that ended before `time_s`, to make space for new ones. Before the first remaining
+  /// segment, the reference is then constant at the start value of this segment.
   void forget_before(double time_s) noexcept;
 
   [[nodiscard]] ReferencePoint at(double time_s) const noexcept;
-  /// Returns at(time_s).value in less than half of the computing time of at().
+  /// Returns at(time_s).value. This function needs less than half of the computing time of at().
   [[nodiscard]] double value_at(double time_s) const noexcept;
   /// Returns the time at which the last segment ends. After this time, the reference is constant at
   /// final_value().
@@ -72,8 +72,8 @@ class Reference {
     /// frequency
     std::array<double, 6> c{};
   };
-  /// The segment that applies at a time, and the time within this segment. If there are no segments, the
-  /// pointer is null. `moves` is false before the first segment and after the end of a segment.
+  /// The segment that contains a time, and the time within this segment. If no segments exist, the pointer is
+  /// null. `moves` is false before the first segment and after the end of a segment.
   struct Place {
     const Segment* segment = nullptr;
     double time_s = 0;
@@ -88,7 +88,7 @@ class Reference {
 
   std::array<Segment, capacity> segments_{};
   std::size_t count_ = 0;
-  double rest_from_s_ = 0;  ///< time from which rest_ holds, if there are no segments
+  double rest_from_s_ = 0;  ///< time from which the reference is constant at rest_, if no segments exist
   ReferencePoint rest_{};
 };
 

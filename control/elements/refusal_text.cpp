@@ -6,7 +6,7 @@
 namespace softgrip::control {
 
 namespace {
-/// The texts for all refusals, in the order of RefusalCode.
+/// The texts for all codes of a refusal, in the order of RefusalCode.
 constexpr std::array<RefusalText, 13> texts{{
     {"The request was not refused.", ""},
     {"A fault is latched.",

@@ -9,10 +9,11 @@ namespace softgrip::control {
 
 struct RefusalText {
   std::string_view meaning;  ///< reason for the refusal in one sentence
-  std::string_view next;     ///< the next action of the user, with its command
+  std::string_view next;     ///< action that the user should take next, with the command for this action
 };
 
-/// Returns the texts for a code. For `none` and for unknown numbers, the text says that there is no reason.
+/// Returns the texts for the code of a refusal. For `none` and for unknown codes, the text says that the
+/// request was not refused.
 [[nodiscard]] const RefusalText& text_of(RefusalCode code) noexcept;
 
 }  // namespace softgrip::control

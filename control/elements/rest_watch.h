@@ -1,5 +1,5 @@
 #pragma once
-// Detects that a value is at rest: it has stayed within a band for a required time.
+// Detects that a value is at rest because it has stayed within a band for a required time.
 
 #include <algorithm>
 #include <optional>
@@ -12,8 +12,8 @@ class RestWatch {
 
   void start() noexcept { seen_.reset(); }
 
-  /// Processes one tick. Returns true if `value` has stayed within the band for the required time. If `value`
-  /// is empty because it is unknown, the required time starts from the beginning.
+  /// Processes one tick. Returns true if `value` has stayed within the band for the required time. An empty
+  /// `value` means that the value is unknown; the required time then restarts.
   bool observe(double time_s, std::optional<double> value) noexcept {
     if (!value) {
       start();

@@ -1,6 +1,6 @@
 #pragma once
-// Finds the pressure with which the chain of blocks after the valve reaches a given displacement after one
-// tick.
+// Finds the pressure at the actuator with which the blocks after the valve reach a given displacement after
+// one tick.
 
 #include <array>
 
@@ -9,12 +9,12 @@
 
 namespace softgrip::control {
 
-/// Finds the pressure by a Newton iteration on the implicit equation inside a bracket. check_feedforward()
-/// ensures that the instantaneous gain is positive. Therefore, the displacement at the end of a tick
-/// increases with the pressure at the end of the tick, and the solution is unique. The explicit
-/// "multiplicative" form computes the pressure from the hysteresis state of the last tick. It is not used,
-/// because it is a fixed-point iteration with the loop gain beta/alpha and diverges for a loop gain of 1 or
-/// more (tests/control/feedforward/actuator_inverse_test.cpp).
+/// Finds the pressure with a Newton iteration that solves the implicit equation inside a bracket.
+/// check_feedforward() ensures that the instantaneous gain is positive. Therefore, the displacement at the
+/// end of a tick increases with the pressure at the end of the tick, and the solution is unique. The explicit
+/// "multiplicative" form computes the pressure from the hysteresis state of the last tick. This class does
+/// not use the explicit form. The explicit form is a fixed-point iteration with the loop gain beta/alpha, and
+/// diverges for a loop gain of 1 or more (tests/control/feedforward/actuator_inverse_test.cpp).
 class ActuatorInverse {
  public:
   /// @param body  a model of the chain after the valve (see body_of()).
@@ -22,7 +22,7 @@ class ActuatorInverse {
 
   struct Solution {
     double pressure_kpa = 0;
-    bool reached = true;  ///< false: no solution in the bracket; `pressure_kpa` is the nearest bound
+    bool reached = true;  ///< false: the bracket contains no solution, so `pressure_kpa` is the nearest bound
   };
   /// Returns the pressure in [lower_kpa, upper_kpa] for which the output of the load is `displacement_mm` at
   /// the end of the next tick. The error of the displacement is at most 1e-11 mm. Does not change the state.
@@ -30,7 +30,8 @@ class ActuatorInverse {
 
   /// Advances by one tick in which the pressure changes linearly to `pressure_kpa`.
   void advance(double pressure_kpa) noexcept;
-  /// Copies the state of `body`, a chain of the same model, at the pressure `pressure_kpa`.
+  /// Copies the state of `body` at the pressure `pressure_kpa`. `body` must be a chain of the model that the
+  /// constructor received.
   void take_over(const model::Chain<double>& body, double pressure_kpa) noexcept;
 
   /// Returns the displacement at the output of the load after one tick in which the pressure changes linearly
@@ -42,7 +43,7 @@ class ActuatorInverse {
  private:
   double tick_s_;
   model::Chain<double> body_;
-  std::array<double, 3> past_kpa_{};  ///< last three pressures, newest first; a parabola through them gives
+  std::array<double, 3> past_kpa_{};  ///< last three pressures, newest first; the parabola through them gives
                                       ///< the next initial guess
 };
 

@@ -15,28 +15,29 @@ namespace {
 
 /// Shortest time in which the difference between the plan and the reference fades out [s].
 constexpr double fade_s = 0.5;
-/// A change of the reference's slope per tick that is larger than this is a jump [mm]. A corner from 50 mm/s
-/// up to 50 mm/s down at 200 Hz has exactly this size.
+/// Largest difference between two successive increments of the reference that is not a jump [mm]. An
+/// increment is the change in one tick. At 200 Hz, a reversal from 50 mm/s upward to 50 mm/s downward has
+/// exactly this size.
 constexpr double jump_mm = 0.5;
-/// Peak acceleration and peak speed of a minimum-jerk move over unit length in unit time.
+/// Peak acceleration and peak speed of a minimum-jerk motion over a distance of 1 in a time of 1.
 constexpr double peak_acceleration = 5.774;
 constexpr double peak_speed = 1.875;
-/// If the plan differs from the required pressure by more than this, the reference is reported as out of
-/// reach.
+/// If the pressure of the plan differs from the required pressure by more than this, the reference is
+/// reported as out of reach.
 constexpr double late_kpa = 1e-6;
-/// If the model of a plan differs from the reference by more than this, the reference is reported as out of
-/// reach.
+/// If the displacement in a plan differs from the reference by more than this, the reference is reported as
+/// out of reach.
 constexpr double missed_mm = 0.2;
-/// Largest difference between the first values of a reference and of its plan. A plan with a larger
-/// difference was computed for another motion, and would be worse than no plan.
+/// Largest difference between the first value of a reference and the first value of its plan [mm]. A plan
+/// with a larger difference was computed for another motion, and is not used.
 constexpr double off_plan_mm = 1;
-/// Largest difference that rounding causes between two clocks that should be equal.
+/// Largest difference that rounding causes between the clock of the reference and the clock of the plan.
 constexpr double clock_rounding_s = 1e-6;
-/// Time in which the difference between the previous pressure and the start of a plan fades out.
+/// Time in which the difference between the previous pressure and the first pressure of a new plan fades out.
 constexpr double plan_fade_s = 3;
 
 model::Model bouc_wen_of(const model::Model& model) {
-  // The asymmetry of the hysteresis is a separate block. The block is kept, because it is a part of the
+  // The asymmetry of the hysteresis is a separate block. This block is kept, because it is a part of the
   // hysteresis element.
   return model::only(model, [](const model::BlockInfo& info) {
     return model::is<model::BoucWen, model::AsymmetricBoucWen, model::DuhemHysteresis>(info);
@@ -55,8 +56,8 @@ BoucWenFeedforward::BoucWenFeedforward(const model::Model& model, const LimitSet
     : limits_(limits), inverse_(bouc_wen_of(model), tick_s) {}
 
 void BoucWenFeedforward::enter(const RunningModel& running, const FeedforwardQuery&, double) noexcept {
-  // The hysteresis needs no intermediate points. Therefore, the pressure change since the last call is
-  // applied as one segment.
+  // The result of the hysteresis does not depend on intermediate pressures. Therefore, the pressure change
+  // since the last call is applied as one segment.
   inverse_.advance(running.pressure_kpa());
 }
 
@@ -76,8 +77,8 @@ FullModelFeedforward::FullModelFeedforward(const model::Model& model, const Feed
       valve_(model, tick_s),
       preview_s_(tick_s + dead_time_s(model) + settings.extra_latency_s),
       inverse_(body_of(model), tick_s) {
-  // Estimates the motion that the finger can make at the slew limit: the immediate response determines its
-  // speed, and the creep determines its acceleration.
+  // Estimates the speed and the acceleration of the finger at the slew limit. The immediate response to
+  // pressure determines the speed, and the creep determines the acceleration.
   const model::Chain<double> body(body_of(model), {}, tick_s);
   const double at_once = body.peek(0.0, model::Dual<double>(0, 1)).v;
   const double after_tick = body.peek(tick_s, model::Dual<double>(0, 1)).v;
@@ -100,8 +101,8 @@ double FullModelFeedforward::command_toward(double wanted_kpa) noexcept {
   double next = wanted_kpa;
   const double time_constant_s = valve_.time_constant_s(now, wanted_kpa);
   if (time_constant_s > 0) {
-    // `left` is the difference that remains if the pressure changes in this tick by as much as the target
-    // does.
+    // `left` is the remaining distance to wanted_kpa if the pressure changes in this tick by the same amount
+    // as wanted_kpa.
     const double along = std::clamp(wanted_kpa - last_wanted_kpa_, -limits_.slew_down_kpa_per_s * tick_s_,
                                     limits_.slew_up_kpa_per_s * tick_s_);
     const double left = wanted_kpa - now - along;
@@ -121,8 +122,8 @@ void FullModelFeedforward::enter(const RunningModel& running, const FeedforwardQ
   valve_.take_over(running.valve());
   command_kpa_ = command_kpa;
   last_wanted_kpa_ = running.pressure_kpa();
-  // The fade-out begins at the position that the model would reach if the pressure moved towards the present
-  // command for one tick.
+  // The fade-out begins at the displacement that the model would reach after one tick in which the pressure
+  // moves towards the present command.
   const double before_mm = inverse_.displacement_mm();
   ValveInverse alone = valve_;
   const double alone_kpa = std::min(alone.advance(running.pressure_kpa(), command_kpa), ceiling_kpa_);
@@ -137,8 +138,8 @@ void FullModelFeedforward::fade_from(double displacement_mm, double speed_mm_per
                                      double then_s) noexcept {
   const double difference_mm = displacement_mm - to.value;
   const double distance_mm = std::abs(difference_mm);
-  // The shorter of the two times is sufficient. The speed limit applies to an element that responds
-  // immediately, and the acceleration limit to an element that creeps.
+  // The time `by_speed_s` applies to a finger that responds immediately, and `by_acceleration_s` to a finger
+  // that creeps. The shorter of the two times is sufficient.
   const double by_speed_s = peak_speed * distance_mm / easy_mm_per_s_;
   const double by_acceleration_s = std::sqrt(peak_acceleration * distance_mm / easy_mm_per_s2_);
   fade_.start(then_s, {difference_mm, speed_mm_per_s - to.rate, 0});
@@ -185,8 +186,9 @@ void PlannedFeedforward::enter(const RunningModel&, const FeedforwardQuery&, dou
 double PlannedFeedforward::unplanned_mm(const FeedforwardQuery& query, double wanted_mm,
                                         double then_s) const noexcept {
   double least_mm = std::numeric_limits<double>::max();
-  // The clocks of the reference and of the plan can differ by a rounding error, which matters at a jump of
-  // the reference. Therefore, the values on both sides of the jump are compared.
+  // The clocks of the reference and of the plan can differ by a rounding error. At a jump of the reference, a
+  // rounding error would select the wrong side of the jump. Therefore, the values on both sides of the jump
+  // are compared.
   for (const double aside_s : {0.0, -clock_rounding_s, clock_rounding_s}) {
     const double on_plan_s = then_s - query.plan_origin_s + aside_s;
     const double planned_mm =

@@ -1,5 +1,6 @@
 #pragma once
-// Defines the classes of the feedforward kinds. Their settings are in control/elements/feedforward.h.
+// Defines one class for each kind of feedforward. The settings of the kinds are in
+// control/elements/feedforward.h.
 
 #include <array>
 #include <variant>
@@ -18,8 +19,8 @@ namespace softgrip::control {
 /// Result of a feedforward in one tick.
 struct FeedforwardStep {
   double pressure_kpa = 0;
-  bool out_of_reach = false;  ///< true: the reference cannot be reached within the limits; the pressure goes
-                              ///< as far as the limits allow
+  bool out_of_reach = false;  ///< true: the reference cannot be reached within the limits, so the pressure
+                              ///< goes as far as the limits allow
 };
 
 /// Inputs of a feedforward. `reference` is the displacement of the finger in mm, and `offset_mm` is the
@@ -33,9 +34,9 @@ struct FeedforwardQuery {
                                        ///< is 0
 };
 
-// Each kind has three functions. enter() is called with the present outputs when tracking begins. step() is
-// called once per tick after enter(). preview_s() returns how far ahead of now the kind reads the reference.
-// A new kind needs a class and an entry in the variant of Feedforward.
+// Each kind of feedforward has three functions. enter() is called with the present outputs when tracking of a
+// reference begins. step() is called once per tick after enter(). preview_s() returns how far ahead of now
+// the kind reads the reference. A new kind needs a class and an entry in the variant of Feedforward.
 
 class NoFeedforward {
  public:
@@ -44,9 +45,9 @@ class NoFeedforward {
   [[nodiscard]] double preview_s() const noexcept { return 0; }
 };
 
-/// The published scheme: returns the pressure for which the Bouc-Wen element would follow the reference if it
-/// were the whole finger. The PID corrects the effect of the other elements of the finger, of the valve and
-/// of all delays.
+/// Implements the scheme of Zhang et al. 2025: computes the pressure for which the Bouc-Wen element follows
+/// the reference as if it were the whole finger. The PID corrects the effect of the other elements of the
+/// finger, of the valve and of all delays.
 class BoucWenFeedforward {
  public:
   BoucWenFeedforward(const model::Model& model, const LimitSettings& limits, double tick_s);
@@ -59,23 +60,23 @@ class BoucWenFeedforward {
   ActuatorInverse inverse_;
 };
 
-/// Inverse of the complete chain, computed from the finger back to the valve. The pressure at the actuator is
-/// planned ahead, and each tick adds one pressure to this plan. With this pressure, the chain after the valve
-/// reaches the reference at the time "now + one tick + all dead times". ValveInverse computes the command
-/// from the plan.
+/// Inverse of the complete chain, computed from the finger back to the valve. Each tick appends one pressure
+/// at the actuator to a plan. With this pressure, the chain after the valve reaches the reference at the time
+/// "now + one tick + all dead times". ValveInverse computes the command from the plan.
 ///
 /// The lead differentiates the plan, which contains no sensor noise. The command stays inside the pressure
-/// range and the slew limits. The plan is computed from the limited command, so it does not wind up. If the
-/// reference is out of reach, the plan goes as far as the limits allow, step() reports it, and the plan
-/// continues from there. Behind a lag, a command at the slew limit cannot stop the pressure at once.
-/// Therefore, the plan approaches the reference no faster than it can brake (constant deceleration slew/tau),
-/// so a jump of the reference causes no ringing.
+/// range and the slew limits. The plan is computed from the limited command, so the plan does not wind up. If
+/// the reference is out of reach, the plan goes as far as the limits allow, and step() reports this. The plan
+/// then continues from the pressure that it has reached. Behind a lag, a command at the slew limit cannot
+/// stop the pressure at once. Therefore, the plan limits its approach speed such that it can brake with the
+/// constant deceleration slew/tau. As a result, a jump of the reference causes no ringing.
 class FullModelFeedforward {
  public:
   FullModelFeedforward(const model::Model& model, const FeedforwardSettings& settings,
                        const LimitSettings& limits, double tick_s);
   /// Starts from the state of the running model. At the start, the displacement of the model can differ from
-  /// the reference because of creep or an offset of the reading. The difference fades out without a jump.
+  /// the reference because of creep or an offset of the reading. This difference fades out without a jump of
+  /// the command.
   void enter(const RunningModel& running, const FeedforwardQuery& query, double command_kpa) noexcept;
   FeedforwardStep step(const FeedforwardQuery& query) noexcept;
   [[nodiscard]] double preview_s() const noexcept { return preview_s_; }
@@ -94,28 +95,31 @@ class FullModelFeedforward {
   ActuatorInverse inverse_;
   double command_kpa_ = 0;                  ///< pressure command of the last tick
   double last_wanted_kpa_ = 0;              ///< pressure that was needed for the reference in the last tick
-  double easy_mm_per_s2_;                   ///< acceleration that the finger reaches within the slew limits
-  double easy_mm_per_s_;                    ///< speed that the finger reaches within the slew limits
+  double easy_mm_per_s2_;                   ///< acceleration of the finger while the command changes at the
+                                            ///< slew limit
+  double easy_mm_per_s_;                    ///< speed at which the finger moves while the command changes at
+                                            ///< the slew limit
   std::array<double, 2> last_target_mm_{};  ///< target displacements of the last two ticks, newest first
-  double last_displacement_mm_ = 0;         ///< displacement that the plan gave one tick earlier
+  double last_displacement_mm_ = 0;         ///< displacement in the plan one tick earlier
   Reference fade_;  ///< fade-out of the difference after enter() or after a jump of the reference, on the
                     ///< clock of the reference
 };
 
 /// Follows a plan that was computed before the sequence starts (control/sequences/planner.h). The plan is
 /// read ahead by the total dead time, plus half a tick because the board holds its output for a tick. The
-/// plan does not include the offset of the finger from its model (offset_mm), so the offset divided by the
-/// settled gain is added to the planned pressure. If there is no plan, or if the reference starts more than 1
-/// mm from its plan, the pressure is computed until the next step from the reference and the settled gain.
-/// Each change between the two sources of the pressure causes a difference, which fades out over 3 s. The PID
-/// corrects the remaining error.
+/// plan does not include offset_mm, the offset of the finger from its model. Therefore, the difference in
+/// displacement divided by the settled gain is added to the planned pressure. Without a plan, or if the
+/// reference starts more than 1 mm from its plan, the pressure is computed from the reference and the settled
+/// gain. This continues until the next step of the sequence. A change between plan and settled gain causes a
+/// pressure difference, which fades out over 3 s. The PID corrects the remaining error.
 class PlannedFeedforward {
  public:
   PlannedFeedforward(const model::Model& model, const FeedforwardSettings& settings,
                      const LimitSettings& limits, double tick_s);
   void enter(const RunningModel& running, const FeedforwardQuery& query, double command_kpa) noexcept;
   FeedforwardStep step(const FeedforwardQuery& query) noexcept;
-  /// Returns a time longer than the dead time, because a plan acts before its reference changes.
+  /// Returns the preview [s]. The preview is longer than the dead time, because the commands of a plan change
+  /// before its reference changes.
   [[nodiscard]] double preview_s() const noexcept { return ahead_s_ + plan_lead_s; }
 
  private:
@@ -132,7 +136,7 @@ class PlannedFeedforward {
   double last_kpa_ = 0;
   double difference_kpa_ = 0;  ///< difference between the last pressure of the previous source (plan or
                                ///< settled gain) and the first pressure of the new source
-  double fade_left_s_ = 0;     ///< remaining time of the fade-out between two pressures
+  double fade_left_s_ = 0;     ///< remaining time of the fade-out of difference_kpa_
   bool entering_ = true;
 };
 

@@ -14,15 +14,16 @@ constexpr int levels = 32;
 constexpr std::size_t points = 65;
 constexpr double curve_step_s = 0.02;
 
-/// The settled state of the finger under a constant command.
+/// The state of a finger that has settled under a constant command.
 struct Level {
   double command_kpa = 0;
   double pressure_kpa = 0;
   double displacement_mm = 0;
 };
 
-/// Returns the settled states in the order of increasing displacement. The first state belongs to the lowest
-/// command. The simulation reaches each state from rest.
+/// Returns the settled states of the finger, from the lowest to the highest command. A state whose
+/// displacement does not exceed that of the previous state is left out. The simulation reaches each state
+/// from rest.
 std::vector<Level> levels_of(const model::Model& model, const LimitSettings& limits) {
   model::Chain<double> valve(valve_of(model), {}, curve_step_s);
   model::Chain<double> body(body_of(model), {}, curve_step_s);

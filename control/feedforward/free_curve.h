@@ -1,6 +1,6 @@
 #pragma once
-// Computes the pressure that a free finger needs for a displacement. The pressure above this value is
-// gripping pressure.
+// Computes the pressure that a finger without contact needs for a displacement. The difference between the
+// command and this pressure is the gripping pressure.
 
 #include <vector>
 
@@ -9,16 +9,16 @@
 
 namespace softgrip::control {
 
-/// The displacement of a model's free finger at each command, on the first motion away from rest. It is taken
-/// three seconds after a jump to the command, when only slow creep remains. The inverse of the curve gives
-/// the command for a displacement. Beyond its ends, the curve continues with its mean slope. The constructor
+/// Displacement over command of a model's free finger, on the first motion away from rest. Each displacement
+/// is taken 3 s after a jump of the command, when only slow creep remains. The inverse of the curve gives the
+/// command for a displacement. Beyond its ends, the curve continues with its mean slope. The constructor
 /// simulates a few thousand steps. The other functions allocate no memory.
 class FreeCurve {
  public:
   FreeCurve(const model::Model& model, const LimitSettings& limits);
 
-  /// Returns the command under which the free finger rests at `displacement_mm`, the displacement of the
-  /// model without an offset [kPa].
+  /// Returns the command under which the free finger rests at `displacement_mm` [kPa]. `displacement_mm` is
+  /// the displacement of the model without an offset.
   [[nodiscard]] double command_kpa(double displacement_mm) const noexcept {
     return at(command_kpa_, displacement_mm);
   }
@@ -36,7 +36,7 @@ class FreeCurve {
 
   double lowest_mm_ = 0;
   double step_mm_ = 0;  ///< distance between two points of the curve; 0: the model does not move, so the
-                        ///< curve has one point
+                        ///< curve has only one point
   double slope_kpa_per_mm_ = 0;
   std::vector<double> command_kpa_;  ///< commands for displacements that start at lowest_mm_ and increase by
                                      ///< step_mm_

@@ -25,7 +25,7 @@ class Finger {
   [[nodiscard]] double displacement_mm() const { return body_.reading_mm(); }
   [[nodiscard]] double fastest_mm_per_s() const { return fastest_mm_per_s_; }
 
-  /// Moves the pressure from the end of the last ramp to another pressure and waits there.
+  /// Moves the pressure from `from_kpa` to `to_kpa` along a ramp, and waits at `to_kpa`.
   void go(double from_kpa, double to_kpa, double slew_kpa_per_s) {
     const double ramp_s = std::abs(to_kpa - from_kpa) / slew_kpa_per_s;
     const double step_s = std::max(finest_step_s, ramp_s / most_steps);

@@ -1,6 +1,6 @@
 #pragma once
-// Computes the displacement and the speed that a model's free finger reaches within its limits. The results
-// are compared with the limits of the rig file.
+// Computes the displacements and the speed that a finger without contact reaches within the limits of its
+// channel. The results are compared with the limits in the rig file.
 
 #include "control/elements/limits.h"
 #include "model/model.h"
@@ -9,13 +9,13 @@ namespace softgrip::control {
 
 struct FreeMotion {
   double rest_mm = 0;           ///< displacement of the finger at rest under the rest pressure
-  double lowest_mm = 0;         ///< three seconds after the command went to the lowest pressure
-  double highest_mm = 0;        ///< three seconds after the command went to the highest pressure
-  double fastest_mm_per_s = 0;  ///< largest speed in both directions within the slew limits
+  double lowest_mm = 0;         ///< displacement 3 s after the command went to the lowest pressure
+  double highest_mm = 0;        ///< displacement 3 s after the command went to the highest pressure
+  double fastest_mm_per_s = 0;  ///< largest speed, upward or downward, within the slew limits
 };
 
-/// Simulates the model through the complete pressure range and back, in a few thousand steps. Noise and dead
-/// times are left out.
+/// Simulates the model through the complete pressure range and back, in a few thousand steps. The simulation
+/// leaves out noise and dead times.
 [[nodiscard]] FreeMotion free_motion(const model::Model& model, const LimitSettings& limits);
 
 }  // namespace softgrip::control

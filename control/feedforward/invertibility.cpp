@@ -41,12 +41,11 @@ constexpr std::string_view creep_alone =
 constexpr std::string_view planned_needs_none =
     "use feedforward `planned`, which also works without an elastic element";
 
-/// If the gain is below this value, no element responds immediately to the pressure. The value is above 1e-9
-/// mm/kPa, the gain of a Kelvin-Voigt spring that has no effect.
+/// Smallest immediate gain of a model with an element that responds immediately to the pressure. A
+/// Kelvin-Voigt spring without effect has the gain 1e-9 mm/kPa, which is below this limit.
 constexpr double least_gain_mm_per_kpa = 1e-8;
 
-/// The smallest slope of displacement over pressure that was found so far, and the pressure at which it
-/// occurs.
+/// The smallest slope of displacement over pressure that was found so far, and the pressure of this slope.
 struct Worst {
   double gain_mm_per_kpa = std::numeric_limits<double>::max();
   double pressure_kpa = 0;
@@ -54,8 +53,8 @@ struct Worst {
 };
 
 /// Computes the slopes of displacement over pressure at `pressure_kpa`, for rising and for falling pressure.
-/// Each slope is computed for an immediate change and for a change over a tick. Stores the smallest slope in
-/// `worst`.
+/// Each slope is computed for a pressure change without duration and for a pressure change over one tick.
+/// Stores the smallest slope in `worst`.
 void look(const model::Chain<double>& chain, double pressure_kpa, double tick_s, Worst& worst) {
   constexpr double aside_kpa = 1e-7;
   for (const bool rising : {true, false}) {
@@ -67,10 +66,11 @@ void look(const model::Chain<double>& chain, double pressure_kpa, double tick_s,
   }
 }
 
-/// Moves a chain through its working range and checks the slope at every step. The first loading and the full
-/// unloading reach the outermost hysteresis states from any initial state. Inner loops and a slow pass cover
-/// the other states. In the slow pass, creep changes the state of the blocks that depend on displacement. The
-/// pressures go from 0 kPa up and down to the limits.
+/// Moves a chain through its working range and checks the slope of displacement over pressure at every step.
+/// The first loading and the full unloading reach the outermost hysteresis states from any initial state.
+/// Inner loops and a slow pass reach the hysteresis states between the outermost ones. In the slow pass,
+/// creep changes the state of the blocks that depend on displacement. The pressures go from 0 kPa up and down
+/// to the limits.
 Worst worst_gain(const model::Model& model, const LimitSettings& limits, double tick_s) {
   constexpr int steps = 200;
   constexpr std::array<double, 10> turns{1, 0, 1, 0.3, 0.8, 0.5, 0.6, 0, 0.4, 0};
@@ -96,8 +96,9 @@ Worst worst_gain(const model::Model& model, const LimitSettings& limits, double 
   return worst;
 }
 
-/// Returns the sentence about a Bouc-Wen element that has an inverse response; empty if the model has no such
-/// element. `stiff` is the immediate gain of the other elements, and `stiff_name` is the name of this gain.
+/// Returns the sentence in a refusal about a Bouc-Wen element with an inverse response. Returns an empty text
+/// if the model has no such element. `stiff` is the immediate gain of all elements except the Bouc-Wen
+/// element, and `stiff_name` is the name of this gain in the sentence.
 std::string wrong_way(const model::Model& model, double stiff, std::string_view stiff_name) {
   const model::Chain<double> chain(model);
   const auto* bouc_wen = chain.find<model::BoucWen<double>>();
@@ -125,8 +126,8 @@ tl::expected<void, Refusal> check_gain(const model::Model& model, const LimitSet
                                 backwards ? usual_cause : planned_needs_none});
 }
 
-/// Returns true if the feedforward can invert the block, or if it needs no inverse of the block. Blocks of
-/// the sensor do not move the finger, so they need no inverse.
+/// Returns true if the feedforward can invert the block or does not need to invert it. Blocks of the sensor
+/// do not move the finger, so their inverse is not needed.
 bool is_undone(const BlockInfo& info) {
   if (info.station == Station::sensor || info.inverse == Inverse::ignored) return true;
   if (info.inverse == Inverse::implicit) return true;
@@ -140,7 +141,7 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
                                            double tick_s) {
   const auto part = model::only(model, [](const BlockInfo& info) {
     return model::is<model::BoucWen, model::AsymmetricBoucWen, model::DuhemHysteresis>(
-        info);  // the asymmetry block is a part of the element
+        info);  // the block of the asymmetry is a part of the hysteresis element
   });
   if (!model::position_of<model::BoucWen>(part)) {
     return tl::unexpected(Refusal{
@@ -151,7 +152,7 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
 }
 
 /// Checks that a plan can be computed for the model. The model must have an element that moves the finger,
-/// and its gain must be positive.
+/// and the gain of the model must be positive.
 tl::expected<void, Refusal> check_planned(const model::Model& model, const LimitSettings& limits) {
   const auto elements = model::only(model, [](const BlockInfo& info) { return info.kind == Kind::element; });
   if (elements.blocks.empty())

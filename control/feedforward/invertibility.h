@@ -13,24 +13,24 @@
 
 namespace softgrip::control {
 
-/// The reason why a feedforward is refused, as a text for the user.
+/// The reason for which a feedforward is refused, as a text for the user.
 struct Refusal {
   std::string text;
-  std::string_view advice = {};  ///< proposed action; empty if the text is sufficient
+  std::string_view advice = {};  ///< proposed action; empty if `text` needs no proposal
 
   [[nodiscard]] std::string with_advice() const;
 };
 
 /// Checks that `settings.kind` can be computed for `model` over the working range, in every hysteresis state
-/// that the model can reach. The range extends from 0 kPa to pressure_max_kpa. It extends down to
-/// pressure_min_kpa if pressure_min_kpa is below 0. A refusal names the block or the values that prevent the
-/// feedforward.
+/// that the model can reach. The working range goes from 0 kPa to pressure_max_kpa. If pressure_min_kpa is
+/// below 0, the working range starts at pressure_min_kpa. A refusal names the block or the parameter values
+/// that prevent the feedforward.
 [[nodiscard]] tl::expected<void, Refusal> check_feedforward(const model::Model& model,
                                                             const FeedforwardSettings& settings,
                                                             const LimitSettings& limits, double tick_s);
 
-/// Returns the names of the blocks that full_model cannot invert, as text: "`a`, `b`". At present, full_model
-/// can invert all blocks.
+/// Returns the names of the blocks that the kind full_model cannot invert, as the text "`a`, `b`". At
+/// present, full_model can invert all blocks, so the text is empty.
 [[nodiscard]] std::string not_undone(std::span<const model::BlockInfo> blocks);
 
 }  // namespace softgrip::control

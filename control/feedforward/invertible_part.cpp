@@ -12,8 +12,8 @@
 namespace softgrip::control {
 namespace {
 
-/// Returns the displacements of the model while the pressure goes from 0 kPa to each end of the limits and
-/// back.
+/// Returns the displacements of the model while the pressure goes from 0 kPa to each end of the pressure
+/// range and back.
 std::vector<double> along_the_way(const model::Model& model, const LimitSettings& limits) {
   constexpr int steps = 100;
   constexpr double step_s = 0.05;

@@ -9,8 +9,8 @@ namespace softgrip::control {
 namespace {
 
 constexpr double moves_kpa_per_s = 0.2;
-/// If the error exceeds the overlap by less than this pressure [kPa], the pressure change is too small for an
-/// estimate of the flow through the port.
+/// Smallest difference between error and overlap from which the flow through the port is estimated [kPa]. A
+/// smaller difference causes a pressure change that is too small for this estimate.
 constexpr double shows_kpa = 0.01;
 
 }  // namespace
@@ -37,13 +37,13 @@ double RegulatorInverse::command_for(double next_kpa) const noexcept {
   double opened_kpa = direction_of(way_kpa, tick_s_) * n.overlap_kpa + way_kpa / share;
   const double time_constant_s = fills ? n.filling_s : n.venting_s;
   if (n.full_open_kpa > 0 && time_constant_s > 0) {
-    // The largest useful opening: with it, the port is still fully open at the end of the tick, although the
-    // pressure is closer to the command then.
+    // The opening is limited to its largest useful value. With this value, the port is fully open even at the
+    // end of the tick, although the error decreases during the tick.
     const double comes_kpa = (n.full_open_kpa - n.overlap_kpa) * tick_s_ / time_constant_s;
     const double most_kpa = n.full_open_kpa + comes_kpa;
     opened_kpa = std::clamp(opened_kpa, -most_kpa, most_kpa);
   }
-  // Until the middle of the tick, the error also changes the integral, which opens the port further.
+  // In the first half of the tick, the error also changes the integral, which opens the port further.
   const double drift = n.integral_s > 0 ? 0.5 * tick_s_ / n.integral_s : 0;
   const double error_kpa = (opened_kpa - regulated_.integral_kpa() + 0.5 * drift * way_kpa) / (1 + drift);
   return now_kpa + error_kpa;

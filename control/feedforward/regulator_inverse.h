@@ -1,19 +1,20 @@
 #pragma once
-// Finds the command for which a pressure regulator reaches a given pressure after one tick.
+// Finds the command with which a pressure regulator reaches a given pressure after one tick.
 
 #include "model/regulated_pressure.h"
 
 namespace softgrip::control {
 
-/// Returns the direction of a pressure change of `way_kpa` in a tick, -1 to 1. The magnitude is 1 for a real
-/// motion. It is smaller for a very small change: adding half of a dead band to such a change would add
-/// noise.
+/// Returns the direction of a pressure change of `way_kpa` in a tick, -1 to 1. The magnitude is 1 for a
+/// change that is faster than 0.2 kPa/s. For a slower change, the magnitude is smaller, because adding half
+/// of a dead band to a slow change would add noise.
 [[nodiscard]] double direction_of(double way_kpa, double tick_s) noexcept;
 
 /// Inverse of a pressure regulator whose command is held for a tick (model/regulated_pressure.h). A formula
-/// gives the command from the present state of the spool and of the integral. It assumes that the integral
-/// changes linearly during the tick and that the port has the flow of the last tick. The error is 0.1 % of
-/// the pressure change. The next tick starts from the actual pressure and corrects this error.
+/// gives the command from the present state of the spool and of the integral. The formula assumes that the
+/// integral changes linearly during the tick, and that the flow coefficient of the port has not changed since
+/// the last tick. The error of the resulting pressure is 0.1 % of the pressure change. The next tick starts
+/// from the actual pressure and corrects this error.
 class RegulatorInverse {
  public:
   /// @param tick_s  duration of a tick [s], > 0.
@@ -31,8 +32,8 @@ class RegulatorInverse {
  private:
   model::RegulatedPressure<double> regulated_;
   double tick_s_;
-  double filling_share_, venting_share_;  ///< share of the error beyond the overlap that a tick of filling or
-                                          ///< venting removes
+  double filling_share_, venting_share_;  ///< share of the error beyond the overlap that filling removes in
+                                          ///< one tick, and share that venting removes
 };
 
 }  // namespace softgrip::control

@@ -60,8 +60,8 @@ void RunningModel::reset(double command_kpa) noexcept {
 }
 
 void RunningModel::advance(double command_kpa) noexcept {
-  // The board holds its output, so the command jumps and then stays constant for a tick. Behind a lag, the
-  // pressure does not jump; it changes during the tick.
+  // The board holds its output for a tick, so the command jumps at the start of the tick and then stays
+  // constant. Behind a lag, the pressure does not jump; it changes during the tick.
   double at_once = command_kpa;
   double at_end = command_kpa;
   if (has_valve_) {

@@ -1,5 +1,5 @@
 #pragma once
-// Runs the model of a channel in parallel to the finger, with the commands that were really sent.
+// Runs the model of a channel in parallel to the finger, with the commands that were sent to the board.
 
 #include <cstddef>
 #include <vector>
@@ -12,10 +12,11 @@ namespace softgrip::control {
 /// Time after which a finger under a constant command counts as at rest, because only slow creep remains [s].
 inline constexpr double rests_after_s = 3;
 
-/// The running model, without its dead times. A dead time can exchange its place with every block that does
-/// not depend on time. Therefore, the dead times are removed from the chain, and the output of the chain is
-/// read with a delay. As a result, the chain runs ahead of the finger. A delay of any length costs one
-/// look-up in a table, and the feedforward gets the state at which its plan begins.
+/// The model that runs in parallel to the finger, without its dead times. A dead time can exchange its place
+/// with every block that does not depend on time. Therefore, the dead times are removed from the chain, and
+/// the output of the chain is read with a delay. As a result, the chain runs ahead of the finger by the dead
+/// times. The delayed output needs only one look-up in a table, for a dead time of any length. The state of
+/// the chain is the state at which the plan of the feedforward begins.
 class RunningModel {
  public:
   /// @param extra_latency_s  time from the computation of a command to the board's output.
@@ -29,19 +30,19 @@ class RunningModel {
   /// Advances by one tick in which the command is `command_kpa`.
   void advance(double command_kpa) noexcept;
 
-  /// Returns the reading that the model predicts for the time `age_s` ago [mm]. Between ticks, the prediction
-  /// is interpolated linearly.
+  /// Returns the reading that the model predicts for the time `age_s` before now [mm]. Between ticks, the
+  /// prediction is interpolated linearly.
   [[nodiscard]] double reading_mm(double age_s) const noexcept { return past(past_mm_, age_s); }
-  /// Returns the pressure at the actuator that belongs to reading_mm(age_s) [kPa].
+  /// Returns the pressure at the actuator at the time to which reading_mm(age_s) belongs [kPa].
   [[nodiscard]] double pressure_kpa(double age_s) const noexcept { return past(past_kpa_, age_s); }
 
   /// Returns how far the chain is ahead of the finger: the sum of the dead times and the extra latency [s].
   [[nodiscard]] double ahead_s() const noexcept { return ahead_s_; }
   /// Returns the pressure at the actuator at the time ahead_s() from now [kPa].
   [[nodiscard]] double pressure_kpa() const noexcept { return pressure_kpa_; }
-  /// Returns the valve without its dead times, in the state at the time ahead_s() from now.
+  /// Returns the valve blocks of the model without dead times, in the state at the time ahead_s() from now.
   [[nodiscard]] const model::Chain<double>& valve() const noexcept { return valve_; }
-  /// Returns the chain after the valve, in the state at the time ahead_s() from now.
+  /// Returns the blocks after the valve, in the state at the time ahead_s() from now.
   [[nodiscard]] const model::Chain<double>& body() const noexcept { return body_; }
 
  private:
@@ -56,14 +57,15 @@ class RunningModel {
   double pressure_kpa_ = 0;
   std::vector<double> past_mm_;   ///< ring buffer with one predicted reading per tick; the newest one is at
                                   ///< newest_
-  std::vector<double> past_kpa_;  ///< ring buffer of the pressures, with the indices of past_mm_
+  std::vector<double> past_kpa_;  ///< ring buffer of the pressures at the actuator, with the indices of
+                                  ///< past_mm_
   std::size_t newest_ = 0;
 };
 
 /// Returns the sum of the model's dead times [s].
 [[nodiscard]] double dead_time_s(const model::Model& model);
-/// Return the two parts of the model without dead times and noise. valve_of() returns the valve blocks whose
-/// output needs time to follow the command, and body_of() returns all other blocks.
+/// valve_of() returns those valve blocks of a model whose output needs time to follow the command. body_of()
+/// returns all other blocks of the model. Both functions leave out dead times and noise.
 [[nodiscard]] model::Model valve_of(const model::Model& model);
 [[nodiscard]] model::Model body_of(const model::Model& model);
 

@@ -30,7 +30,7 @@ double time_constants_s(const model::Model& valve, std::string_view direction) {
   return sum;
 }
 
-/// Returns half of the dead band before the first lag [kPa]; 0 if there is no such dead band.
+/// Returns half of the dead band that precedes the first lag [kPa]; 0 if no dead band precedes the first lag.
 double half_band_kpa(const model::Model& valve) {
   const auto first = std::ranges::find_if(valve.blocks, [](const model::BlockSpec& block) {
     return lags(block) || model::is<model::ValveDeadband>(model::catalogue()[block.type].info);

@@ -1,5 +1,5 @@
 #pragma once
-// Finds the command for which a valve reaches a given pressure after one tick.
+// Finds the command with which a valve reaches a given pressure after one tick.
 
 #include <optional>
 
@@ -27,12 +27,13 @@ class ValveInverse {
   /// @param tick_s  duration of a tick [s], > 0.
   ValveInverse(const model::Model& model, double tick_s);
 
-  /// Copies the state of `valve`, a chain of the model that valve_of() returns for the same model.
+  /// Copies the state of `valve`. `valve` is a chain of the model that valve_of() returns for the model of
+  /// the constructor.
   void take_over(const model::Chain<double>& valve) noexcept;
 
   /// Returns the command for which the pressure changes from `now_kpa` to `next_kpa` at the end of the tick.
-  /// If no port opens far enough for this change, returns a command that opens the port fully. Does not
-  /// change the state.
+  /// If no opening of the port is large enough for this change, returns a command that opens the port fully.
+  /// Does not change the state.
   [[nodiscard]] double command_for(double now_kpa, double next_kpa) const noexcept;
   /// Advances by one tick from the pressure `now_kpa` and returns the pressure at the end of the tick [kPa].
   double advance(double now_kpa, double command_kpa) noexcept;
@@ -56,7 +57,7 @@ class ValveInverse {
   Lag filling_, venting_;
   std::optional<RegulatorInverse> regulator_;  ///< inverse of the regulator, used if the valve has no lag
   double half_band_kpa_ = 0;
-  double behind_band_kpa_ = 0;  ///< pressure command after the dead band of the valve
+  double behind_band_kpa_ = 0;  ///< pressure command behind the valve's dead band
 };
 
 }  // namespace softgrip::control

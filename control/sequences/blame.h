@@ -1,5 +1,5 @@
 #pragma once
-// Reports each problem of a sequence at the parameter whose value causes the problem.
+// Reports each problem of a sequence at the parameter whose value causes this problem.
 
 #include <functional>
 #include <span>
@@ -10,20 +10,19 @@
 
 namespace softgrip::control {
 
-/// A function that reads a sequence with given values of its parameters and returns the problems of the
-/// sequence.
+/// A function that reads a sequence with given values of its parameters and returns the problems that it
+/// finds.
 using Judge = std::function<document::Problems(const std::vector<Parameter>& parameters)>;
 
-/// Adds the problems that `judge` finds with the values of `parameters`. If the value of one parameter alone
-/// causes a problem, the problem is reported at this parameter, and the message gives the line of the step.
-/// If several values together cause the problem, or if the default values cause it too, the problem is
-/// reported at the step.
+/// Adds the problems that `judge` finds with the values of `parameters`. A problem that the value of one
+/// parameter alone causes is reported at this parameter, and the message gives the line of the step. A
+/// problem that needs several values, or that exists with the default values too, is reported at the step.
 void blame_values(const document::Document& document, const std::vector<Parameter>& parameters,
                   const Judge& judge, document::Problems& problems);
 
-/// Tests both ends of the range of each parameter, while the other parameters have their defaults.
-/// Combinations of values are not tested here, but at each start. Adds nothing if the defaults already have
-/// problems.
+/// Tests the lowest and the highest value of each parameter, while all other parameters have their defaults.
+/// Combinations of values are not tested here, but at each start of the sequence. Adds nothing to `problems`
+/// if the sequence already has problems with all defaults.
 void blame_ends(const document::Document& document, std::vector<Parameter> parameters, const Judge& judge,
                 document::Problems& problems);
 

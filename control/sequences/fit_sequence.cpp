@@ -20,8 +20,8 @@ using document::Problems;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// The expected displacement shortfall of a detected part must be at least this multiple of the detection
-/// margin, so that noise does not hide the part.
+/// Smallest permitted ratio of the displacement shortfall that the gripping pressure causes to the detection
+/// margin. With a smaller ratio, noise could hide a part.
 constexpr double seen_from = 1.2;
 
 double rounded(double value) {
@@ -179,8 +179,8 @@ class Fitting {
     }
   }
 
-  /// Reports a grip whose permitted pressure is too low to detect a part, so that the grip would never report
-  /// HOLDING.
+  /// Reports a grip whose permitted gripping pressure is too low to detect a part. Such a grip would never
+  /// have the result HOLDING.
   void check_squeeze(const Step& step, const ChannelSettings& channel, std::size_t index) {
     std::optional<double>& least_kpa = least_squeeze_kpa_[index];
     if (!least_kpa) {
@@ -284,7 +284,8 @@ class Fitting {
     }
   }
 
-  /// Reports a pressure bound that the rest pressure already satisfies. Such a bound cannot verify a grip.
+  /// Reports a pressure bound of a grip that the finger already meets at the rest pressure. Such a bound
+  /// cannot verify the grip.
   void check_pressure_bound(const Step& step, const ChannelSettings& channel) {
     const bool below = step.verify.below();
     const double bound_kpa = below ? step.verify.pressure_max_kpa : step.verify.pressure_min_kpa;
@@ -300,8 +301,8 @@ class Fitting {
                  : "use pressure_max_kpa if the grip uses a pressure below the rest pressure");
   }
 
-  /// Reports a step that uses detection, contact or squeeze at pressures below rest. These functions need a
-  /// finger that moves upward from rest, because they compare it with its free motion.
+  /// Reports a step that uses detection, on_contact or squeeze_kpa at pressures below the rest pressure.
+  /// These three functions detect a part only if the finger moves upward from rest.
   void check_side(const Step& step, const ChannelSettings& channel) {
     const double rest_kpa = resting_kpa(channel.limits);
     const bool detects = step.kind == StepKind::grip && step.verify.by == VerifyBy::detection;
@@ -318,8 +319,8 @@ class Fitting {
                : "on_contact: ignore");
   }
 
-  /// Returns the highest pressure of a step. For a step to a displacement, the free curve gives this
-  /// pressure.
+  /// Returns the highest pressure of a step. For a step to a displacement, the highest pressure is the
+  /// command of the free curve for this displacement.
   static double highest_kpa(const Step& step, const ChannelSettings& channel) {
     if (step.kind == StepKind::pressure) return range_of(step.profile).highest;
     const bool track = step.kind == StepKind::track;
@@ -362,10 +363,12 @@ class Fitting {
   Problems& problems_;
   document::Document source_;
   std::uint32_t gripped_ = 0;
-  /// For each channel, the smallest gripping pressure that shows a part; empty until it is computed.
+  /// For each channel, the smallest gripping pressure with which a part is detected; empty until it is
+  /// computed.
   std::vector<std::optional<double>> least_squeeze_kpa_ =
       std::vector<std::optional<double>>(settings_.channels.size());
-  /// The displacement that each channel follows at the end of the previous step; NaN if it follows none.
+  /// For each channel, the displacement reference at the end of the previous step; NaN if the channel follows
+  /// no displacement.
   std::vector<double> follows_mm_ = std::vector<double>(settings_.channels.size(), unknown);
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Compares the steps of a sequence with the limits of a rig, and plans the motion of the fitted steps.
+// Compares the steps of a sequence with the limits of a rig, and plans the motion of the steps.
 
 #include <stop_token>
 
@@ -9,13 +9,13 @@
 namespace softgrip::control {
 
 /// Finds the channels of the steps by their names, and adds a problem for each step that does not fit the
-/// rig. If there is a problem, the result is not usable. This function computes no plan.
+/// rig. If a problem was added, the result is not usable. This function computes no plan.
 [[nodiscard]] PreparedSequence fit_to_rig(const Sequence& sequence, const RigSettings& settings,
                                           document::Problems& problems);
 
 /// Plans the motion of the channels with the feedforward `planned` (control/sequences/sequence_plans.h). A
-/// planned position that is out of reach is a warning. A plan that is too long, or that `stop` ends, is a
-/// problem.
+/// planned position that is out of reach is a warning. A plan that is longer than most_planned_s, or that a
+/// request through `stop` ends, is a problem.
 /// @param prepared  result of fit_to_rig() for this sequence.
 void plan_motion(const Sequence& sequence, const RigSettings& settings, PreparedSequence& prepared,
                  document::Problems& problems, const std::stop_token& stop);

@@ -33,7 +33,8 @@ const Node::Entry* entry_of(const Node& map, std::string_view key) {
   return found == map.entries.end() ? nullptr : &*found;
 }
 
-/// Returns "did you mean `squeeze_kpa`?", or a list of the parameters if no name is similar.
+/// Returns a hint for the unknown name `name`: "did you mean `squeeze_kpa`?", or a list of the parameters if
+/// no parameter has a similar name.
 std::string hint_of(const std::string& name, const std::vector<Parameter>& parameters) {
   if (parameters.empty()) return "this sequence has no `parameters`";
   std::vector<std::string> names;
@@ -54,8 +55,8 @@ bool is_name(std::string_view name) {
          std::all_of(name.begin(), name.end(), allowed);
 }
 
-/// Returns the unit of a parameter: from the end of its name, or from its key `unit:`. If both give a unit,
-/// the units must be equal.
+/// Returns the unit of a parameter. The unit comes from the end of the parameter's name or from its key
+/// `unit:`. If both give a unit, the two units must be equal.
 std::string unit_of(MapReader& map, const std::string& name) {
   const std::string_view own = document::unit_at_end(name);
   const bool known = std::find(units.begin(), units.end(), own) != units.end();
@@ -220,7 +221,7 @@ Document with_values(const Document& document, const std::vector<Parameter>& par
   for (Node::Entry& entry : bound.root.entries) {
     if (entry.key == "steps") binder.bind(entry.value, {});
   }
-  // If the document was not read completely, a step in the unread part may use the parameter.
+  // If a part of the document could not be read, a step in this part may use the parameter.
   if (document.complete) binder.report_unused();
   return bound;
 }

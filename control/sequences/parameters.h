@@ -10,14 +10,14 @@
 
 namespace softgrip::control {
 
-/// Returns the parameters that a document declares. The value of each parameter is its default. Errors of a
-/// parameter are added to `problems`, and the other parameters are still read.
+/// Returns the parameters that a document declares. The value of each parameter is its default. An error of
+/// one parameter is added to `problems`, and the next parameters are read nevertheless.
 [[nodiscard]] std::vector<Parameter> read_parameters(const document::Document& document,
                                                      document::Problems& problems);
 
-/// Assigns the values of a start request to the parameters. An unknown name, a repeated name and a value out
-/// of range are problems. They are reported at the parameter, or at the key `parameters` if the name is
-/// unknown.
+/// Assigns the values of a start request to the parameters. An unknown name, a repeated name and a value
+/// outside the range of its parameter are problems. A problem is reported at the parameter. If the name is
+/// unknown, the problem is reported at the key `parameters`.
 void set_values(std::span<const Argument> arguments, const document::Document& document,
                 std::vector<Parameter>& parameters, document::Problems& problems);
 

@@ -17,28 +17,30 @@ using Matrix = Eigen::MatrixXd;
 
 /// Shortest time between two points of a plan [s].
 constexpr double finest_step_s = 0.025;
-/// Duration of the part of a window whose commands are kept, and of the preview after this part. The effect
-/// of the reference at a time t ahead on the best present command decays with exp(-z t), where z is the zero
-/// of the inverse response: 7/s for the published model.
+/// Duration of the part of a window whose commands are kept, and of the preview after this part [s]. The best
+/// present command depends on the reference at a later time. This dependence decays with exp(-z t) over the
+/// time difference t, where z is the zero of the inverse response: 7/s for the published model.
 constexpr double decided_s = 4;
 constexpr double ahead_s = 1.5;
-/// Weight of the second difference of the command [mm/kPa]. Its effect is far below the required accuracy of
-/// a plan.
+/// Weight of the second difference of the command [mm/kPa]. The weight changes a plan by much less than the
+/// required accuracy.
 constexpr double smooth_mm_per_kpa = 1e-3;
 /// Weight of the part of a command that is outside its bounds [mm/kPa].
 constexpr double bound_mm_per_kpa = 30;
 /// Pressure difference for the numerical derivatives of the chain [kPa].
 constexpr double aside_kpa = 1e-6;
-/// Largest number of iterations of one search, and of all searches in one window. These numbers limit the
-/// computing time.
+/// Largest number of iterations of one search, and of all searches in one window together. Both numbers limit
+/// the computing time.
 constexpr int most_iterations = 25;
 constexpr int most_iterations_of_window = 60;
-/// If the root mean square error of a window is below this, no second initial guess is tried.
+/// If the root mean square error of a window is below this value, the search is not repeated from other
+/// initial guesses.
 constexpr double good_mm = 0.01;
 /// The search in a window ends when an iteration reduces the cost by less than this share.
 constexpr double done_share = 2e-3;
 
-/// One window of a plan: the state of the chain at its start, the command before its start, and the target.
+/// One window of a plan: the state of the chain at the start of the window, the commands before the window,
+/// and the target displacements.
 class Window {
  public:
   Window(const model::Chain<double>& begin, std::array<double, 2> before_kpa, Vector wanted_mm,
@@ -51,7 +53,7 @@ class Window {
         rise_kpa_(limits.slew_up_kpa_per_s * step_s),
         fall_kpa_(limits.slew_down_kpa_per_s * step_s) {}
 
-  /// Returns the best command that the search finds from the initial guess `u`.
+  /// Returns the command with the lowest cost that the search finds from the initial guess `u`.
   Vector solve(Vector u) {
     double cost = cost_of(u);
     double damping = 1e-4;
@@ -76,14 +78,15 @@ class Window {
           damping *= 10;
         }
       }
-      // A short step under strong damping does not mean that the search has converged.
+      // Strong damping makes the step of an iteration short. Therefore, a small improvement under strong
+      // damping does not mean that the search has converged.
       if (!better || (cost > (1 - done_share) * last && damping < 1e-3)) break;
     }
     return u;
   }
 
-  /// Returns the factor by which the response to a guess must be scaled to fit the target. Within a window,
-  /// the gain of a finger with slow creep is much smaller than its settled gain.
+  /// Returns the factor by which the commands `u` must be scaled so that their response fits the target.
+  /// Within a window, the gain of a finger with slow creep is much smaller than its settled gain.
   [[nodiscard]] double share_needed(const Vector& u) const {
     model::Chain<double> chain = begin_;
     double reached_wanted = 0, reached_reached = 0;
@@ -115,7 +118,8 @@ class Window {
     return i >= 0 ? u[i] : before_kpa_[static_cast<std::size_t>(-1 - i)];
   }
 
-  /// Returns by how much a command is outside the pressure range; negative below the range [kPa].
+  /// Returns by how much a command is outside the pressure range [kPa]. The result is negative below the
+  /// range, and 0 inside.
   [[nodiscard]] double outside(double u) const {
     return std::max(0.0, u - limits_.pressure_max_kpa) + std::min(0.0, u - limits_.pressure_min_kpa);
   }
@@ -135,10 +139,9 @@ class Window {
       chain.step(step_s_, u[i]);
       miss[i] = chain.after(model::Station::load) - wanted_mm_[i];
     }
-    // Column j is the derivative with respect to an equal change of point j and of all points after it, which
-    // makes one segment longer in its direction. A change of point j without the others would cause a small
-    // hysteresis loop. The difference between neighbouring columns is the derivative with respect to a single
-    // point.
+    // In this loop, column j is the derivative with respect to an equal change of point j and of all later
+    // points. A change of point j alone would cause a small hysteresis loop. After the loop, each column is
+    // reduced by the next column. The result is the derivative with respect to point j alone.
     for (Eigen::Index j = 0; j < n; ++j) {
       model::Chain<double>& other = states[static_cast<std::size_t>(j)];
       const double aside = std::copysign(aside_kpa, u[j] - before(u, j - 1));
@@ -154,7 +157,7 @@ class Window {
     add_rows(u, normal, gradient);
   }
 
-  /// Adds the rows for smoothness and for the bounds of the command.
+  /// Adds the terms for the smoothness and for the bounds of the command to the normal equations.
   void add_rows(const Vector& u, Matrix& normal, Vector& gradient) const {
     constexpr double smooth = smooth_mm_per_kpa * smooth_mm_per_kpa;
     constexpr double bound = bound_mm_per_kpa * bound_mm_per_kpa;
@@ -194,9 +197,9 @@ class Window {
   int iterations_left_ = most_iterations_of_window;
 };
 
-/// Searches from several initial guesses until the error of a command is below good_mm, and returns the best
-/// command. Several guesses are needed because the slope jumps where the command reverses, and a search may
-/// stop there.
+/// Searches from several initial guesses until the error of a command is below good_mm, and returns the
+/// command with the lowest cost. Several guesses are needed, because the slope of the hysteresis jumps where
+/// the command reverses, and a search may stop at such a jump.
 Vector best_of(Window& window, const Vector& guess, const Vector& proportional) {
   Vector best = window.solve(guess);
   double least = window.cost_of(best);
@@ -279,9 +282,9 @@ PressurePlan Planner::plan(const Reference& reference, double from_s, double to_
   for (std::size_t done = 1; done < points && !stop.stop_requested();) {
     Vector wanted(n);
     for (Eigen::Index i = 0; i < n; ++i) wanted[i] = wanted_at(done + static_cast<std::size_t>(i));
-    // The initial guess is the rest of the previous window, extended in proportion to the reference. A
-    // constant guess would give poor derivatives, because the slope of the hysteresis depends on the
-    // direction of the pressure.
+    // The initial guess is the rest of the previous window, extended in proportion to the reference. The
+    // initial guess is not constant, because the slope of the hysteresis depends on the direction of the
+    // pressure.
     const Vector proportional = wanted.unaryExpr(in_proportion);
     const Eigen::Index known = guess.size();
     guess.conservativeResize(n);

@@ -11,12 +11,12 @@ namespace {
 
 using document::Problems;
 
-/// A sequence with values of its parameters that differ from the defaults. It is fitted to a rig without
-/// planning.
+/// A sequence whose parameters have values that differ from the defaults. The sequence is fitted to a rig,
+/// but not planned.
 class Variation {
  public:
   Variation(const Sequence& sequence, const RigSettings& settings) : settings_(settings) {
-    Problems told;  // problems that were reported when the sequence was first read
+    Problems told;  // problems that were reported when the sequence was read with its defaults
     document_ = document::parse(sequence.file, sequence.text, told);
   }
 

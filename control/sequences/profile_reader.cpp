@@ -11,8 +11,8 @@ namespace {
 
 using document::MapReader;
 
-/// Reads the points of a pressure profile. The largest number of values in a document limits the number of
-/// points.
+/// Reads the points of a pressure profile. The number of points has no limit of its own; the largest number
+/// of values in a document limits it.
 void read_points(MapReader& map, const document::Document& document, document::Problems& problems,
                  std::vector<Point>& points) {
   for (const document::Node* item : map.sequence("points", true)) {

@@ -7,7 +7,7 @@
 namespace softgrip::control {
 
 /// Reads the keys `signal`, `scale`, `points` and `cycles` of a pressure step. Adds all errors to `problems`.
-/// @param document  document that contains the step.
+/// @param document  document that contains the pressure step.
 void read_profile(document::MapReader& map, const document::Document& document, document::Problems& problems,
                   Profile& profile);
 

@@ -38,7 +38,8 @@ std::vector<std::string> names(std::initializer_list<Enum> values) {
   return list;
 }
 
-/// Reads the parts of one file. After a problem, each function reports the problem and continues.
+/// Reads the parts of one sequence file. After a problem, each function reports the problem and continues
+/// with the next key.
 class FileReader {
  public:
   FileReader(const Document& document, Problems& problems) : document_(document), problems_(problems) {}
@@ -192,8 +193,8 @@ class FileReader {
     target.duration_s = by_duration.value_or(0);
   }
 
-  /// Reads the tolerance of a move. A move with a tolerance can fail, so the file must give the action on
-  /// failure.
+  /// Reads the tolerance of a move. A move with a tolerance can fail. Therefore, the file must give on_fail
+  /// for such a move.
   void tolerance(MapReader& map, Step& step) {
     step.tolerance_mm = map.optional_number("tolerance_mm", {0.01, 50});
     if (!step.tolerance_mm) return;
@@ -212,8 +213,8 @@ class FileReader {
         map.optional_number("squeeze_max_kpa", squeeze_kpa).value_or(bounds.squeeze_max_kpa);
   }
 
-  /// Reads the action on contact. If a contact is a failure, the file must also give the action on failure.
-  /// If the move has a tolerance, tolerance() has already read the action on failure.
+  /// Reads the action on contact. If a contact makes the step fail, the file must also give on_fail. If the
+  /// move has a tolerance, tolerance() has already read on_fail.
   void on_contact(MapReader& map, Step& step, OnContact otherwise) {
     const auto choice = map.optional_choice(
         "on_contact", names({OnContact::hold, OnContact::grip, OnContact::fail, OnContact::ignore}));
@@ -225,8 +226,8 @@ class FileReader {
     step.on_fail = on_fail(map);
   }
 
-  /// Reads the gripping pressure. If the step has no squeeze_max_kpa, the final gripping pressure is also its
-  /// upper limit.
+  /// Reads the gripping pressure of a step. If the step has no squeeze_max_kpa, the final gripping pressure
+  /// squeeze_kpa is also the upper limit.
   static void squeeze(MapReader& map, Step& step) {
     const auto by = map.optional_number("squeeze_kpa", squeeze_kpa);
     if (!by) {
@@ -299,8 +300,8 @@ class FileReader {
     return static_cast<std::uint32_t>(map.optional_integer("retries", 0, 10).value_or(0));
   }
 
-  /// Reads the action after a failure. The key is required, because a default action would not be visible in
-  /// the file.
+  /// Reads the action after a failed step. The key is required, because a default action would not be visible
+  /// in the file.
   OnFail on_fail(MapReader& map) {
     return static_cast<OnFail>(map.choice(
         "on_fail", names({OnFail::vent, OnFail::hold, OnFail::abort, OnFail::release, OnFail::carry_on})));
@@ -321,8 +322,8 @@ class FileReader {
   Problems& problems_;
 };
 
-/// Returns true if the document has errors. Parsing continues after an error, so a document with errors can
-/// look complete.
+/// Returns true if the document has errors. Parsing continues after an error, so a document can be marked
+/// complete although it has errors.
 bool refused(const Document& document, const Problems& problems) {
   return !document.complete ||
          std::any_of(problems.list().begin(), problems.list().end(),

@@ -10,10 +10,10 @@
 
 namespace softgrip::control {
 
-/// Reads a sequence from a parsed document. The values in `arguments` come from a start request; they replace
-/// the defaults of the parameters. Adds all errors to `problems` and returns nullopt if there are errors or
-/// if a part of the document could not be parsed. The sequence must be valid with its defaults, at both ends
-/// of each parameter's range and with the requested values.
+/// Reads a sequence from a parsed document. The values in `arguments` come from a start request and replace
+/// the defaults of the parameters. Adds all errors to `problems`. Returns nullopt if there are errors, or if
+/// a part of the document could not be parsed. The sequence must be valid with its defaults, at both ends of
+/// each parameter's range and with the values in `arguments`.
 [[nodiscard]] std::optional<Sequence> read_sequence(const document::Document& document,
                                                     document::Problems& problems,
                                                     std::span<const Argument> arguments = {});
@@ -22,8 +22,8 @@ namespace softgrip::control {
 [[nodiscard]] std::optional<Sequence> load_sequence(const std::string& path, document::Problems& problems,
                                                     std::span<const Argument> arguments = {});
 
-/// Reads the sequence from the same document with other values of its parameters. Adds the problems of these
-/// values to `problems`.
+/// Reads the sequence of a document with the values in `parameters`. Adds the problems that these values
+/// cause to `problems`.
 [[nodiscard]] std::optional<Sequence> read_with(const document::Document& document,
                                                 const std::vector<Parameter>& parameters,
                                                 document::Problems& problems);

@@ -13,10 +13,11 @@
 namespace softgrip::control {
 namespace {
 
-/// Longest part of a hold that a plan covers [s]. During a hold, the plan compensates creep and has no other
-/// effect.
+/// Longest part of a hold step that a plan covers [s]. During a hold step, the plan has no other effect than
+/// to compensate creep.
 constexpr double longest_hold_s = 20;
-/// If a plan misses its reference by more than this, the plan is reported.
+/// If the displacement in a plan differs from the reference by more than this distance, plan_steps() reports
+/// the plan [mm].
 constexpr double missed_mm = 0.2;
 
 bool planned(const ChannelSettings& channel) {
@@ -26,7 +27,7 @@ bool planned(const ChannelSettings& channel) {
 /// The expected motion of one channel in a sequence.
 class Walk {
  public:
-  /// @param plans  true: compute the plans; false: compute only their durations.
+  /// @param plans  true: compute the plans; false: compute only the durations of the plans.
   Walk(const ChannelSettings& channel, double margin_mm, double tick_s, bool plans)
       : planned_(planned(channel)),
         rest_kpa_(resting_kpa(channel.limits)),
@@ -35,7 +36,7 @@ class Walk {
     if (planned_ && plans) planner_.emplace(channel.model, channel.limits, tick_s);
   }
 
-  /// Begins a step and returns the time at which its result is expected.
+  /// Begins a step of the sequence and returns the time at which the result of this step is expected.
   double begin(PreparedStep& step, double time_s) {
     if (step.step.kind == StepKind::hold) {
       return time_s + (std::isfinite(step.step.hold_s) ? step.step.hold_s : longest_hold_s);
@@ -54,8 +55,8 @@ class Walk {
 
   [[nodiscard]] PreparedStep* step() const noexcept { return step_; }
 
-  /// Returns the duration of the motion that must be planned for the present step if the next step of the
-  /// channel begins at `time_s` [s]; 0 if there is nothing to plan.
+  /// Returns the duration of the motion that must be planned for the present step [s]; 0 if there is nothing
+  /// to plan. The next step of the channel begins at `time_s`.
   [[nodiscard]] double planned_s(double time_s) const {
     if (!planned_ || step_ == nullptr) return 0;
     const ChannelDemand demand = player_.demand(since_s_);
@@ -98,7 +99,7 @@ class Walk {
   double since_s_ = 0;
 };
 
-/// Returns true if two channels have equal settings and steps, so that they can share a plan.
+/// Returns true if two channels have equal settings, models and steps, so that one plan serves both channels.
 bool same_way(const RigSettings& settings, const PreparedSequence& sequence, std::size_t a, std::size_t b) {
   const ChannelSettings& one = settings.channels[a];
   const ChannelSettings& other = settings.channels[b];

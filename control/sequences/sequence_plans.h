@@ -1,6 +1,6 @@
 #pragma once
-// Plans a sequence before it starts: for each channel with feedforward `planned`, computes the command for
-// each step to a displacement.
+// Plans a sequence before it starts. For each channel with the feedforward `planned`, computes the command
+// for each step to a displacement.
 
 #include <stop_token>
 #include <vector>
@@ -10,7 +10,8 @@
 
 namespace softgrip::control {
 
-/// A plan whose error is large, because the model cannot follow the reference within the limits.
+/// A plan whose displacement differs too much from its reference, because the model cannot follow the
+/// reference within the limits.
 struct MissedPlan {
   std::size_t step = 0;
   std::size_t channel = 0;
@@ -22,13 +23,14 @@ struct MissedPlan {
 /// planning.
 inline constexpr double most_planned_s = 600;
 
-/// Computes the plans for the expected execution of the sequence. Each channel begins at rest under its rest
-/// pressure, no step fails, and each settling time and verification window is as short as possible. The loop
-/// uses the same player, so the references of the plans are those that the loop will follow. A plan ends at
-/// the channel's next step. It covers at most 20 s of a hold; after this time, the last command remains.
-/// PlannedFeedforward (control/feedforward/feedforward_kinds.h) handles deviations. The function fills
-/// PreparedStep::plans and PreparedSequence::planned_s. For a sequence longer than most_planned_s, it fills
-/// only planned_s. After a stop request it returns soon, and the sequence must not be used.
+/// Computes the plans for the expected execution of the sequence. In this execution, each channel begins at
+/// rest under its rest pressure, and no step fails. Each settling time and verification window is as short as
+/// possible. The plans use the ChannelPlayer of the control loop, so their references are those that the loop
+/// will follow. A plan ends at the next step of its channel. The plan covers at most 20 s of a hold; after
+/// this time, the last command remains. PlannedFeedforward (control/feedforward/feedforward_kinds.h) handles
+/// deviations from the expected execution. The function fills PreparedStep::plans and
+/// PreparedSequence::planned_s. If the planned motion is longer than most_planned_s, the function fills only
+/// planned_s. After a request through `stop`, the function returns soon, and the sequence must not be used.
 [[nodiscard]] std::vector<MissedPlan> plan_steps(PreparedSequence& sequence, const RigSettings& settings,
                                                  const std::stop_token& stop = {});
 

@@ -5,7 +5,8 @@
 
 namespace softgrip::control::step_ranges {
 
-// Bounds that no rig of soft fingers exceeds. The limits of the rig are narrower; prepare() checks them.
+// Ranges that no rig of soft fingers exceeds. A rig has narrower limits, and prepare() checks a sequence
+// against these limits.
 inline constexpr document::Range displacement_mm{-100, 200};
 inline constexpr document::Range pressure_kpa{-100, 1000};
 inline constexpr document::Range squeeze_kpa{0.1, 1000};

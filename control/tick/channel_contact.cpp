@@ -9,10 +9,11 @@
 namespace softgrip::control {
 
 namespace {
-/// The command counts as reduced to a lower pressure if it is at most this much above that pressure [kPa].
+/// Largest difference between the command and a lower target pressure at which the command counts as reduced
+/// to the target [kPa].
 constexpr double taken_back_kpa = 0.05;
-/// A contact is accepted after this time [s]. The time is longer than noise and longer than a single wrong
-/// reading.
+/// A contact is accepted after it has lasted for this time [s]. Noise and a single wrong reading last for a
+/// shorter time.
 constexpr double contact_lasts_s = 0.02;
 using Mode = ChannelDemand::Mode;
 }  // namespace
@@ -26,8 +27,8 @@ OnContact ChannelPlayer::on_contact() const noexcept {
   return step_->squeeze.by_kpa > 0 ? OnContact::squeeze : OnContact::close;
 }
 
-/// Returns true if the finger moves in a direction in which it can meet an object. A finger that holds a part
-/// is already in contact, and an opening finger moves away from the object.
+/// Returns true if the finger moves in a direction in which it can meet an object. Returns false for a finger
+/// that holds a part, and for an opening finger, which moves away from the object.
 bool ChannelPlayer::under_way() const noexcept {
   if (!closing_ || result_ == GripResult::holding) return false;
   return stage_ == Stage::ramp || (stage_ == Stage::settle && !squeezing_) || stage_ == Stage::profile;
@@ -46,16 +47,16 @@ void ChannelPlayer::look_for_contact(double time_s, const ChannelOutput& seen) n
   if (contact_met_ == OnContact::squeeze) {
     begin_squeeze(time_s, seen);
   } else if (contact_met_ != OnContact::ignore && contact_met_ != OnContact::close) {
-    // A part of the commanded pressure has not reached the finger yet. Therefore, the command is reduced to
-    // the pressure that the finger had at contact.
+    // At contact, a part of the commanded pressure has not reached the finger yet. Therefore, the command is
+    // reduced to the pressure that the finger had at contact.
     const double touched_with_kpa = seen.free_kpa + std::max(0.0, seen.squeeze_kpa);
     stay_at(no_further(traits_.rest_kpa, touched_with_kpa, seen.command_kpa), time_s);
     stopped_by_contact_ = true;
   }
 }
 
-/// Waits until the command has been reduced to the pressure at contact. After that, the step fails or passes;
-/// this depends on its action on contact.
+/// Waits until the command has been reduced to the pressure at contact. After that, the step fails if its
+/// on_contact is `fail`. Otherwise, the step passes.
 Progress ChannelPlayer::stopped(const ChannelOutput& seen) noexcept {
   if (seen.command_kpa > pressure_.final_value() + taken_back_kpa) return Progress::pending;
   return step_->on_contact == OnContact::fail ? Progress::failed : pass();
@@ -86,8 +87,9 @@ double ChannelPlayer::squeezing_kpa(double time_s, const ChannelOutput& seen) co
                   by_pressure ? step_->target.value : infinite);
 }
 
-/// Returns false if the contact is lost; the finger then moves towards its target as before the contact. If
-/// the object yields until the finger reaches the target, the pressure stays constant.
+/// Continues the increase of the gripping pressure. Returns false if the contact is lost; the finger then
+/// moves towards its target as before the contact. If the object yields until the finger reaches its target
+/// displacement, the pressure stays constant.
 bool ChannelPlayer::squeezes_on(double time_s, const ChannelOutput& seen) noexcept {
   const bool by_displacement = step_->target.quantity == Target::Quantity::displacement_mm;
   if (by_displacement && seen.displacement_mm >= step_->target.value) stay_at(pressure_kpa_, time_s);

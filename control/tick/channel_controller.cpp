@@ -21,10 +21,10 @@ constexpr double settled_after_s = 0.2;
 constexpr double settled_sigma = 4;
 /// Time constant of the filter that removes the noise of the reading from ChannelOutput::free_kpa [s].
 constexpr double need_filter_s = 0.03;
-/// A reduction of the command by a limit is not reported if it is smaller than this [kPa].
+/// A limit that reduces the command by less than this pressure is not reported [kPa].
 constexpr double unnoticed_kpa = 0.5;
-/// Largest number of missed ticks that the model computes after a gap. After a longer gap, the channel starts
-/// from rest.
+/// Largest number of missed ticks for which the model is advanced after a gap. After a longer gap, the model
+/// restarts at rest under the present command.
 constexpr std::int64_t most_ticks = 1000;
 /// Longest gap after which a plan is continued [ticks]. After a longer gap, the feedforward restarts.
 constexpr std::int64_t most_planned_ticks = 10;
@@ -58,7 +58,7 @@ void ChannelController::start(double command_kpa, ChannelOutput& channel) noexce
   channel.command_kpa = limit(limits_, command_kpa, command_kpa, 0).command_kpa;
   channel.safe_kpa = channel.free_kpa = channel.command_kpa;
   channel.displacement_mm = channel.pressure_kpa = channel.temperature_c =
-      not_known;  // a value that was never read is NaN, not 0
+      not_known;  // a value that was never read is NaN, because 0 would look like a reading
   running_.reset(channel.command_kpa);
   plausibility_.reset();
   jumps_.reset();
@@ -83,11 +83,11 @@ void ChannelController::tick(const ChannelInput& input, ChannelOutput& channel) 
   send(input.demand, request(input.demand, ticks, channel), channel);
 }
 
-/// Splits the pressure into free-motion pressure and gripping pressure. The free-motion pressure is the lower
-/// of two values. One value is the pressure on the first loading. The other is the pressure in the present
-/// state of the model, which creep and hysteresis can lower. The pressure of a moving finger is higher than
-/// the pressure that it needs at rest. If an object stops the finger, this difference becomes gripping
-/// pressure.
+/// Computes the free-motion pressure and the gripping pressure. The free-motion pressure is the lower of two
+/// values: the pressure of the first loading, and the pressure in the present state of the model. Creep and
+/// hysteresis can make the second value lower than the first. The pressure of a moving finger is higher than
+/// the pressure that the finger needs at rest. If an object stops the finger, the difference between the two
+/// pressures becomes gripping pressure.
 void ChannelController::weigh(double predicted_mm, ChannelOutput& channel) noexcept {
   channel.squeeze_kpa = not_known;
   if (!displacement_used_ || channel.validity != model::Validity::valid) return;
@@ -116,7 +116,7 @@ void ChannelController::send(const ChannelDemand& demand, double wanted_kpa,
                                                                  : BindingLimit::step_squeeze;
     return;
   }
-  // A vent moves at the slew limit on purpose, so the slew limit is not reported.
+  // During a vent, the command is meant to move at the slew limit. Therefore, the slew limit is not reported.
   const double behind_kpa = in_range(limits_, wanted_kpa) - limited.command_kpa;
   const bool slewed = limited.slewing && demand.mode != DemandMode::vent;
   channel.bound_by = !slewed || std::abs(behind_kpa) <= unnoticed_kpa ? BindingLimit::none
@@ -124,7 +124,7 @@ void ChannelController::send(const ChannelDemand& demand, double wanted_kpa,
                                                                       : BindingLimit::rig_slew_down;
 }
 
-/// Returns the number of ticks since the last call.
+/// Advances the model to `now` and returns the number of ticks since the last call.
 std::int64_t ChannelController::advance(Nanoseconds now, double command_kpa) noexcept {
   std::int64_t ticks = 1;
   if (loop_ == Loop::stopped) {
@@ -142,7 +142,7 @@ std::int64_t ChannelController::advance(Nanoseconds now, double command_kpa) noe
   return ticks;
 }
 
-/// Returns the reading that the model predicts without its offset [mm].
+/// Takes over a reading, and returns the reading that the model predicts without its offset [mm].
 double ChannelController::take_reading(const ChannelInput& input, ChannelOutput& channel) noexcept {
   const model::Reading& reading = input.reading;
   const bool none_yet = reading.validity == model::Validity::none_yet;
@@ -159,8 +159,8 @@ double ChannelController::take_reading(const ChannelInput& input, ChannelOutput&
   return predicted_mm;
 }
 
-/// Processes a reading for the detection of repeated jumps. A reading that the plausibility check rejects as
-/// a jump is processed too.
+/// Processes a reading to detect a sensor that jumps back and forth. A reading that the plausibility check
+/// rejects as a jump is processed too.
 void ChannelController::watch_jumps(const model::Reading& reading, double predicted_mm,
                                     ChannelOutput& channel) noexcept {
   if (reading.validity == model::Validity::valid && std::isfinite(reading.displacement_mm)) {
@@ -202,7 +202,7 @@ void ChannelController::watch_model(const ChannelInput& input, double predicted_
   channel.health_rms_mm = health_.rms_mm();
 }
 
-/// Returns the requested command [kPa].
+/// Returns the command that the demand requests, before the limits [kPa].
 double ChannelController::request(const ChannelDemand& demand, std::int64_t ticks,
                                   ChannelOutput& channel) noexcept {
   const bool tracks = demand.mode == DemandMode::displacement && demand.reference != nullptr;
@@ -246,7 +246,7 @@ double ChannelController::track(const ChannelDemand& demand, std::int64_t ticks,
   if (entering || released) pid_.align(channel.command_kpa);
   loop_ = demand.feedback_held ? Loop::held : Loop::closed;
   if (loop_ == Loop::closed && displacement_used_ && channel.validity == model::Validity::valid) {
-    // The control error is the difference between the reference at the time of the reading and the reading.
+    // The control error is the reference at the time of the reading minus the reading.
     const double then_mm =
         limit_reference(limits_, demand.reference->value_at(demand.time_s - channel.age_s)).reference_mm;
     channel.feedback_kpa = pid_.step(then_mm, channel.displacement_mm, planned.pressure_kpa);

@@ -1,6 +1,7 @@
 #pragma once
-// Computes the command of one finger in one tick from its reading and its reference. The limits apply to the
-// sum of feedforward and PID feedback. The model runs in parallel with the commands that were really sent.
+// Computes the command of one finger in one tick from the reading and the reference of the finger. The limits
+// apply to the sum of feedforward and PID feedback. The model runs in parallel, with the commands that were
+// sent to the board.
 
 #include <cstdint>
 #include <optional>
@@ -23,17 +24,17 @@ struct ChannelInput {
   Nanoseconds now = 0;     ///< time for which the tick was scheduled
   model::Reading reading;  ///< newest reading that the driver returned
   ChannelDemand demand;    ///< demand of the sequence player or of the supervisor
-  /// Sets the model's offset to the difference between reading and model. This is requested only at rest,
-  /// before a motion starts; see ChannelOutput::synchronised.
+  /// True: sets the offset of the model to the difference between reading and model. The caller requests this
+  /// only at rest, before a motion starts; see ChannelOutput::synchronised.
   bool resynchronise = false;
-  /// True if the finger moves without contact, as far as is known. The residual shows the error of the model
-  /// only if this is true.
+  /// True if the finger moves without contact, as far as the controller knows. Only then, the residual shows
+  /// the error of the model.
   bool free_motion = true;
 };
 
-/// The settings must be in the ranges that their headers state. If check_feedforward()
-/// (control/feedforward/invertibility.h) refuses the model for the configured feedforward, the channel has no
-/// feedforward.
+/// Computes the commands of one channel. The settings must be in the ranges that their headers state. If
+/// check_feedforward() (control/feedforward/invertibility.h) refuses the model for the configured
+/// feedforward, the channel has no feedforward.
 class ChannelController {
  public:
   ChannelController(const ChannelSettings& settings, double tick_s);
@@ -46,20 +47,20 @@ class ChannelController {
   /// are more than one period apart (missed cycles), the model computes the missed ticks.
   void tick(const ChannelInput& input, ChannelOutput& channel) noexcept;
 
-  /// Returns how far ahead of now the feedforward reads the reference. If the reference is cut at now +
-  /// preview_s(), the command changes without a step.
+  /// Returns how far ahead of now the feedforward reads the reference [s]. To avoid a step of the command,
+  /// cut the reference at now + preview_s() and not earlier.
   [[nodiscard]] double preview_s() const noexcept { return feedforward_.preview_s(); }
   [[nodiscard]] const LimitSettings& limits() const noexcept { return limits_; }
   /// Returns the offset that resynchronisation has added to the model [mm].
   [[nodiscard]] double offset_mm() const noexcept { return offset_mm_; }
 
  private:
-  /// Determines how the command is computed.
+  /// The source of the command in a tick.
   enum class Loop : std::uint8_t {
     stopped,  ///< there has been no tick since the call of start()
     open,     ///< the demand gives the command without feedback: hold, vent, pressure
     closed,   ///< the command is the sum of feedforward and feedback
-    held,     ///< the command is the sum of feedforward and a constant feedback
+    held,     ///< the command is the sum of feedforward and a feedback that is held constant
   };
   [[nodiscard]] bool tracking() const noexcept { return loop_ == Loop::closed || loop_ == Loop::held; }
 
@@ -77,7 +78,7 @@ class ChannelController {
   double tick_s_;
   LimitSettings limits_;
   double noise_mm_;
-  double need_share_;  ///< share of the difference to a new value by which ChannelOutput::free_kpa changes
+  double need_share_;  ///< share of the difference to its new value by which ChannelOutput::free_kpa changes
                        ///< per tick
   bool displacement_used_;
   RunningModel running_;
@@ -92,7 +93,7 @@ class ChannelController {
   Nanoseconds last_now_ = 0;
   std::uint32_t sequence_ = 0;  ///< sequence number of the last reading
   double offset_mm_ = 0;
-  /// during resynchronisation: number of ticks since the residual settled
+  /// during resynchronisation: number of ticks for which the residual has been within the noise
   std::optional<std::int64_t> settled_ticks_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Defines what the sequence player or the supervisor demands of one channel in one tick.
+// Defines the input of a channel from the sequence player or the supervisor in one tick.
 
 #include <cstdint>
 #include <limits>
@@ -9,7 +9,8 @@
 
 namespace softgrip::control {
 
-/// The mode may change in each tick; the command does not jump at such a change.
+/// The demand on one channel in one tick. The mode may change in each tick; the command does not jump at a
+/// change of the mode.
 struct ChannelDemand {
   enum class Mode : std::uint8_t {
     hold,          ///< the pressure command does not change
@@ -27,13 +28,14 @@ struct ChannelDemand {
   const PressurePlan* plan = nullptr;
   double plan_origin_s = 0;
   /// True in mode displacement if the finger is in contact with an object. The feedback then keeps its value,
-  /// so the finger does not press harder and harder against a stiff object. The feedforward continues.
+  /// so that a growing integral does not press the finger harder and harder against a stiff object. The
+  /// feedforward continues to follow the reference.
   bool feedback_held = false;
-  /// Upper bounds of the step for the command. They apply in every mode: the command never exceeds either of
-  /// them.
+  /// Largest command that the step of the sequence permits [kPa]. The bound applies in every mode, as
+  /// squeeze_max_kpa does.
   double pressure_max_kpa = std::numeric_limits<double>::infinity();
-  /// Upper bound of the gripping pressure. Gripping pressure is the pressure above the command under which
-  /// the free finger rests at the present displacement.
+  /// Upper bound of the gripping pressure [kPa]. The gripping pressure is the command minus the command under
+  /// which the free finger rests at the present displacement.
   double squeeze_max_kpa = std::numeric_limits<double>::infinity();
 };
 

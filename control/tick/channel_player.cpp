@@ -7,12 +7,13 @@
 namespace softgrip::control {
 
 namespace {
-/// Duration for which the past reference is kept [s]. It is needed because the feedback compares a reading
-/// with the reference at the time of the reading.
+/// Duration for which past values of the reference are kept [s]. The feedback compares a reading with the
+/// reference at the time of the reading, which is in the past.
 constexpr double kept_s = 1;
 using Mode = ChannelDemand::Mode;
 
-/// Appends a ramp to `value`. Returns false if the reference has no space for the ramp.
+/// Appends a ramp that ends at `value`, with the speed or the duration of `target`. Returns false if the
+/// reference has no space for the ramp.
 bool append_ramp(Reference& reference, const Target& target, double value) noexcept {
   if (target.speed > 0) return reference.ramp_to(value, target.speed);
   if (target.duration_s > 0) return reference.ramp_for(value, target.duration_s);
@@ -73,8 +74,8 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
       stage_ = Stage::ramp;
       break;
     case StepKind::release:
-      // A release that begins early may start below its target pressure. In this case, the release must not
-      // increase the pressure.
+      // A release step that begins early may start below its target pressure. In this case, the release step
+      // must not increase the pressure.
       go_to(step.target,
             step.target.at_rest ? traits_.rest_kpa
                                 : no_further(traits_.rest_kpa, step.target.value, seen.command_kpa),
@@ -106,8 +107,8 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
   }
 }
 
-/// Starts the ramp to a target. A ramp of the displacement continues from the present reference, or from the
-/// position of the finger if there is no reference. A ramp of the pressure continues from the last command.
+/// Starts the ramp to a target. A displacement ramp starts at the present reference, or at the displacement
+/// of the finger if there is no reference. A pressure ramp starts at the last command.
 void ChannelPlayer::go_to(const Target& target, double value, double time_s,
                           const ChannelOutput& seen) noexcept {
   Reference& reference = target.quantity == Target::Quantity::displacement_mm ? displacement_ : pressure_;
@@ -127,7 +128,7 @@ void ChannelPlayer::go_to(const Target& target, double value, double time_s,
     mode_ = Mode::displacement;
   }
   if (!append_ramp(reference, target, value)) {
-    reference.forget_before(time_s);  // discard the past, which needs space after many short steps
+    reference.forget_before(time_s);  // discard past segments, whose number grows with many short steps
     append_ramp(reference, target, value);
   }
   ramp_end_s_ = reference.end_s();
@@ -164,8 +165,8 @@ bool ChannelPlayer::idle(double time_s, const ChannelOutput& seen) noexcept {
 
 Progress ChannelPlayer::tick(double time_s, const ChannelOutput& seen) noexcept {
   take(seen);
-  // While the sensor may be frozen, contact is evaluated only in a release step. A frozen sensor looks like a
-  // finger that an object stops.
+  // While the sensor may be frozen, contact is evaluated only in a release step. The reading of a frozen
+  // sensor looks like the reading of a finger that an object stops.
   feel(seen, !seen.stands_still || step_->kind == StepKind::release);
   look_for_contact(time_s, seen);
   Progress progress = advance(time_s, seen);
@@ -173,7 +174,8 @@ Progress ChannelPlayer::tick(double time_s, const ChannelOutput& seen) noexcept 
     pressure_kpa_ = squeezing_ ? squeezing_kpa(time_s, seen) : pressure_at(time_s);
   }
   if (progress == Progress::pending && time_s >= deadline_s_) {
-    // The result NO PART requires a window with usable readings. Without them, the result is ERROR.
+    // The result NO PART requires a verification window with usable readings. If readings in the window are
+    // unusable, the result is ERROR.
     const bool looked = stage_ == Stage::verify && !window_.blinded(time_s);
     failure_ = looked ? GripResult::no_part : GripResult::error;
     progress = Progress::failed;
@@ -211,7 +213,8 @@ Progress ChannelPlayer::advance(double time_s, const ChannelOutput& seen) noexce
     case Stage::done:
       break;
   }
-  // Without usable readings, the channel cannot confirm that the finger still holds the part.
+  // A verified channel that has no usable reading at present stays pending, because it cannot confirm that
+  // the finger still holds the part.
   return verified_ && !usable(step_->verify, seen) ? Progress::pending : Progress::passed;
 }
 
@@ -243,7 +246,7 @@ Progress ChannelPlayer::settle(double time_s, const ChannelOutput& seen) noexcep
   }
   if (time_s < stage_end_s_) return Progress::pending;
   if (step_->kind != StepKind::grip) return pass();
-  // The pressure that was reached at this time is kept during verification and hold.
+  // The pressure at the end of the settling time is kept during verification and hold.
   if (squeezing_) stay_at(pressure_kpa_, time_s);
   stage_ = Stage::verify;
   window_.start(time_s, step_->verify.window_s);
@@ -279,8 +282,8 @@ Progress ChannelPlayer::verify(double time_s, const ChannelOutput& seen) noexcep
   return Progress::pending;
 }
 
-/// Executes a release: purges, then waits until the finger is at the displacement that the free-motion model
-/// predicts. Without displacement feedback, the step passes after the purge.
+/// Executes the end of a release step. After the purge, waits until the finger is at the displacement that
+/// the free-motion model predicts. Without displacement feedback, the step passes after the purge.
 Progress ChannelPlayer::release(double time_s) noexcept {
   if (time_s < stage_end_s_) return Progress::pending;
   stage_ = Stage::free;

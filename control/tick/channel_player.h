@@ -21,11 +21,12 @@ enum class Progress : std::uint8_t { pending, passed, failed };
 struct ChannelTraits {
   double margin_mm = 0;           ///< margin of grip detection
   double rest_kpa = 0;            ///< rest pressure of the channel
-  double preview_s = 0;           ///< how far ahead of now the feedforward reads the reference
+  double preview_s = 0;           ///< time by which the feedforward reads the reference ahead of now
   bool displacement_used = true;  ///< true: the displacement sensor of the channel is used
 };
 
-/// Executes the steps of a sequence for one channel. In all functions, `seen` is the output of the last tick.
+/// Executes the steps of a sequence for one channel. In all functions, `seen` is the output of the channel in
+/// the last tick.
 class ChannelPlayer {
  public:
   explicit ChannelPlayer(const ChannelTraits& traits) noexcept
@@ -34,30 +35,32 @@ class ChannelPlayer {
   /// Prepares the first step of a sequence: keeps the command, assumes no contact, and clears the last
   /// result.
   void reset() noexcept;
-  /// Starts an attempt at a step. `step` and `plan` (nullptr if there is no plan) must exist until the
-  /// attempt ends. A hold step continues with the plan of the previous step.
+  /// Starts an attempt at a step. `step` and `plan` must exist until the attempt ends; `plan` is nullptr if
+  /// there is no plan. A hold step continues with the plan of the previous step.
   void begin(const Step& step, const PressurePlan* plan, double time_s, const ChannelOutput& seen) noexcept;
-  /// Moves the channel back to the position or pressure at which the attempt began, with the speed that the
-  /// step specifies.
+  /// Moves the channel back to the displacement or pressure at which the attempt began. The return has the
+  /// speed that the step specifies.
   void back_off(double time_s, const ChannelOutput& seen) noexcept;
-  /// Executes a tick of the step, or of the return after back_off(). During a return, `passed` means that the
-  /// return is finished.
+  /// Executes a tick of the step, or of the return that back_off() has started. During a return, the result
+  /// `passed` means that the return is finished.
   Progress tick(double time_s, const ChannelOutput& seen) noexcept;
-  /// Executes a tick while no sequence runs. If a held part is lost, returns true once.
+  /// Executes a tick while no sequence runs. Returns true in the tick in which the loss of a held part is
+  /// detected.
   bool idle(double time_s, const ChannelOutput& seen) noexcept;
 
-  /// Returns the demand of the last tick. Its `reference` points to a member of this object.
+  /// Returns the demand of the last tick. The member `reference` of the demand points to a member of this
+  /// object.
   [[nodiscard]] ChannelDemand demand(double time_s) const noexcept;
   /// Returns true if the finger is in contact with an object.
   [[nodiscard]] bool touching() const noexcept { return contact_.touching(); }
-  /// Returns true if the finger moves less than its model because an object is in its way.
+  /// Returns true if the finger moves less than its model because an object blocks the finger.
   [[nodiscard]] bool held_back() const noexcept { return follow_.held(); }
-  /// Returns the action for a contact that occurred in the motion. Each contact is returned only once.
-  /// Returns nothing if there is no new contact.
+  /// Returns the action for a contact that occurred during the motion, once for each contact. Returns nothing
+  /// if no new contact has occurred.
   [[nodiscard]] std::optional<OnContact> take_contact() noexcept;
   /// Returns true if the finger stays at the pressure of its first contact with an object.
   [[nodiscard]] bool stopped_by_contact() const noexcept { return stopped_by_contact_; }
-  /// Returns the result that the channel gets if its step fails in this tick: NO PART or ERROR.
+  /// Returns the grip result of the channel for a step that fails in this tick: NO PART or ERROR.
   [[nodiscard]] GripResult failure() const noexcept { return failure_; }
 
   [[nodiscard]] GripResult result() const noexcept { return result_; }
@@ -69,7 +72,7 @@ class ChannelPlayer {
   /// Returns the evidence that a verification by the criterion `by` uses.
   [[nodiscard]] GripEvidence evidence_of(VerifyBy by) const noexcept;
   /// Returns the displacement shortfall in the last tick [mm]: the displacement of free motion minus the
-  /// reading; NaN if it is unknown.
+  /// reading. Returns NaN if the shortfall is unknown.
   [[nodiscard]] double shortfall_mm() const noexcept { return shortfall_mm_; }
 
   /// Keeps the present command from now on.
@@ -81,7 +84,7 @@ class ChannelPlayer {
   [[nodiscard]] double motion_end_s() const noexcept {
     return stage_ == Stage::profile ? stage_end_s_ : ramp_end_s_;
   }
-  /// Returns the pressure that the present step commands at a time in mode pressure [kPa].
+  /// Returns the pressure that the present step commands at `time_s` in mode pressure [kPa].
   [[nodiscard]] double pressure_at(double time_s) const noexcept;
 
  private:
@@ -131,7 +134,8 @@ class ChannelPlayer {
   double plan_origin_s_ = 0;
   double profile_start_s_ = 0;
   double pressure_kpa_ = 0;
-  double start_value_ = 0;  ///< value at the start of the attempt, in the target's unit
+  double start_value_ = 0;  ///< displacement or pressure at the start of the attempt, in the unit of the
+                            ///< target
   double ramp_end_s_ = 0;
   double stage_end_s_ = 0;
   double deadline_s_ = 0;
@@ -140,13 +144,14 @@ class ChannelPlayer {
   Bounds bounds_;         ///< bounds of the step; in a hold, also the bounds of the previous step
   bool profile_ = false;  ///< true: the pressure follows the profile of the step
   bool closing_ = false;  ///< true: the step increases the displacement or the pressure
-  /// Time since which two conditions have been true without interruption: the finger is in contact, and the
-  /// command is at or above the rest pressure.
+  /// Start of the time in which two conditions have been true without interruption: the finger is in contact,
+  /// and the command is at or above the rest pressure. Empty while a condition is false.
   std::optional<double> touching_since_s_;
   bool met_ = false;                      ///< true: a contact occurred in this attempt
   std::optional<OnContact> contact_met_;  ///< action for a contact that take_contact() has not returned yet
   bool stopped_by_contact_ = false;
-  bool squeezing_ = false;       ///< true: the pressure is kept a fixed amount above the free-motion pressure
+  bool squeezing_ = false;       ///< true: the command is kept above the free-motion pressure by a fixed
+                                 ///< gripping pressure
   double squeeze_from_kpa_ = 0;  ///< gripping pressure at the time squeeze_from_s_
   double squeeze_from_s_ = 0;
   Contact contact_;
@@ -154,7 +159,7 @@ class ChannelPlayer {
   EvidenceWindow window_;
   bool verified_ = false;  ///< true: the grip was verified in this attempt
   HoldWatch hold_;
-  Verify held_by_;  ///< criterion by which the held part is monitored
+  Verify held_by_;  ///< criterion by which the holding of the part is monitored
   GripResult failure_ = GripResult::error;
   GripResult result_ = GripResult::none;
   GripEvidence evidence_ = GripEvidence::none;

@@ -1,6 +1,6 @@
 #pragma once
-// Defines the settings of one channel as plain values, in the units of the rig file. The caller checks the
-// settings (settings_problems() in settings.h); the controller does not check them again.
+// Defines the settings of one channel, in the units of the rig file. The caller checks the settings with
+// settings_problems() (settings.h); the controller does not check them.
 
 #include <string>
 
@@ -22,11 +22,11 @@ struct ChannelSettings {
   LimitSettings limits;
   PlausibilitySettings plausibility;
   ModelHealthSettings health;
-  /// True: the channel has an input for the measured pressure (a monitor output of the valve).
+  /// True: the channel has an input for the measured pressure, for example a monitor output of the valve.
   bool pressure_measured = false;
-  /// False: the displacement sensor is absent, or the work blocks it. Its readings are recorded. However,
-  /// they cause no faults and are not used for feedback or detection. Then only pressure targets are
-  /// possible, and only the weaker verification by pressure.
+  /// False: the channel has no usable displacement sensor, for example because the work blocks the sensor.
+  /// The readings are recorded, but they cause no faults and are not used for feedback or detection. Such a
+  /// channel can only have pressure targets, and a grip can only be verified by pressure.
   bool displacement_used = true;
 };
 

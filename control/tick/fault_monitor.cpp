@@ -27,19 +27,19 @@ FaultCode code_of(model::Validity validity) noexcept {
   return FaultCode::sensor_error;
 }
 
-/// Returns true if the board itself reports the fault. Such a fault need not be present for several cycles.
+/// Returns true if the board itself reports the fault. Such a fault latches at once, without a number of
+/// cycles for which it must last.
 bool said_by_board(FaultCode code) noexcept {
   return inhibits(code) && code != FaultCode::cycles_lost;
 }
 
-/// Returns the number of commands with which a measured value is compared: the commands within the delay, and
-/// one more at each end.
+/// Returns the number of commands with which a measured value is compared: all commands within the delay,
+/// plus one command before the delay and one command after it.
 std::size_t window_of(double delay_s, double rate_hz) {
   return static_cast<std::size_t>(std::ceil(delay_s * rate_hz)) + 2;
 }
 
-/// After the daemon or the bus starts, a finger under pressure may deflate for this time. It is a multiple of
-/// the pressure window.
+/// Number of pressure windows for which a finger may deflate after the daemon or the bus has started.
 constexpr std::size_t grace_windows = 4;
 
 }  // namespace
@@ -82,8 +82,8 @@ Fault FaultMonitor::bus(const BusHealth& bus, bool starting) noexcept {
   if (good) return {};
   const FaultCode code = bus.fault == FaultCode::none ? FaultCode::bus_down : bus.fault;
   const Fault fault{code, whole_rig, static_cast<double>(bus_cycles_)};
-  // If the daemon cannot reach the board, the watchdog trip is a consequence of the bus fault. Therefore, the
-  // bus fault is reported and the watchdog trip is not.
+  // If the daemon cannot reach the board, the watchdog trip is a consequence of the bus fault. Therefore,
+  // only the bus fault is reported.
   const bool unreached = !bus.connected && code == FaultCode::board_watchdog_tripped;
   note_cause({unreached ? FaultCode::bus_down : code, whole_rig, fault.value});
   if (starting && !said_by_board(bus.fault)) return {};
@@ -131,8 +131,8 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
 Fault FaultMonitor::reading(Channel& channel, std::uint8_t index, const ChannelOutput& seen,
                             bool starting) const noexcept {
   const bool silent = seen.validity == model::Validity::none_yet || seen.validity == model::Validity::stale;
-  // While the bus is down, missing readings are not a fault of their own, because the bus fault already
-  // covers them. In the first tick after the bus fault, the reading is still old and counts as invalid.
+  // While the bus is down, missing readings cause no fault of a channel, because the bus fault already covers
+  // them. In the first tick after the bus fault, the reading is still old and counts as invalid.
   const bool invalid = seen.validity != model::Validity::valid && !(silent && (starting || !bus_good()));
   channel.invalid_cycles = invalid ? channel.invalid_cycles + 1 : 0;
   channel.beyond_cycles = seen.displacement_beyond ? channel.beyond_cycles + 1 : 0;
@@ -146,10 +146,10 @@ Fault FaultMonitor::reading(Channel& channel, std::uint8_t index, const ChannelO
 }
 
 /// Returns true if the measured pressure has differed from the commands for pressure_cycles cycles. A cycle
-/// without an exchange does not change the count. Therefore, an unreliable connection cannot hide a burst
-/// pressure line. If no pressure is measured, it counts as equal to the commands. The pressure is not checked
-/// for a time after start-up, and after a bus failure that is itself a fault. During this time, the finger
-/// may still have its earlier pressure.
+/// without an exchange does not change the number of cycles. Therefore, an unreliable connection cannot hide
+/// a burst pressure line. A channel without a measured pressure never differs from its commands. For a time
+/// after start-up and after a bus fault, the pressure is not checked, because the finger may still have an
+/// earlier pressure.
 bool FaultMonitor::pressure_due(Channel& channel, double pressure_kpa, bool starting) const noexcept {
   if (settings_.pressure_cycles == 0) return false;
   if (starting || bus_cycles_ >= settings_.bus_down_cycles) {
@@ -165,8 +165,8 @@ bool FaultMonitor::pressure_due(Channel& channel, double pressure_kpa, bool star
   return channel.pressure_cycles >= settings_.pressure_cycles;
 }
 
-/// Returns true if a pressure differs from all commands of the window. Compares the newest command first,
-/// because it usually matches.
+/// Returns true if a pressure differs from all commands of the window. The newest command is compared first,
+/// because the pressure usually equals this command.
 bool FaultMonitor::off(const Channel& channel, double kpa, std::size_t window,
                        double tolerance_kpa) const noexcept {
   const std::vector<double>& sent = channel.sent_kpa;

@@ -1,5 +1,5 @@
 #pragma once
-// Detects fault conditions in a tick and decides which condition has lasted long enough to be a fault. The
+// Detects fault conditions in a tick, and decides which condition has lasted long enough to be a fault. The
 // supervisor latches the faults.
 
 #include <array>
@@ -18,14 +18,14 @@ class FaultMonitor {
  public:
   explicit FaultMonitor(const RigSettings& settings);
 
-  /// Checks one tick. `seen` is the output of the last tick. The read-back is compared with the commands in
-  /// `seen` and with earlier commands. While `starting` is true, a missing response is no fault, because the
-  /// board has not responded yet. Returns the most severe fault whose condition has lasted long enough. The
-  /// order of the checks in the implementation is the order of severity.
+  /// Checks one tick. `seen` is the output of the last tick. The output that the board reports is compared
+  /// with the commands in `seen` and with earlier commands. While `starting` is true, the board has not
+  /// responded yet, so a missing response is no fault. Returns the most severe fault whose condition has
+  /// lasted long enough. The order of the checks in the implementation is the order of severity.
   Fault observe(const TickInput& input, std::span<const ChannelOutput> seen, bool starting) noexcept;
 
-  /// Returns the most severe fault condition of this tick. The condition is a fault, or can become a fault if
-  /// it lasts. If a fault were reset while its condition is present, the fault would latch again.
+  /// Returns the most severe fault condition of this tick. The condition is a fault, or becomes a fault if it
+  /// lasts long enough. A reset of the fault during the condition would make the fault latch again.
   [[nodiscard]] const Fault& cause() const noexcept { return cause_; }
   /// Returns true if there is no bus fault in this tick.
   [[nodiscard]] bool bus_good() const noexcept { return bus_cycles_ == 0; }
@@ -36,9 +36,9 @@ class FaultMonitor {
     std::uint32_t beyond_cycles = 0;
     std::uint32_t readback_cycles = 0;
     std::uint32_t pressure_cycles = 0;
-    std::uint32_t pressure_grace = 0;  ///< number of cycles for which the pressure may still have an earlier
-                                       ///< value
-    std::vector<double> sent_kpa;      ///< ring buffer of the past commands for the longest window
+    std::uint32_t pressure_grace = 0;  ///< number of cycles in which the measured pressure may still have an
+                                       ///< earlier value
+    std::vector<double> sent_kpa;      ///< ring buffer of the past commands that covers the longest window
   };
   void remember(std::span<const ChannelOutput> seen) noexcept;
   void note_cause(const Fault& fault) noexcept;
@@ -47,13 +47,14 @@ class FaultMonitor {
   Fault reading(Channel& channel, std::uint8_t index, const ChannelOutput& seen,
                 bool starting) const noexcept;
   bool pressure_due(Channel& channel, double pressure_kpa, bool starting) const noexcept;
-  /// Returns true if the pressure `kpa` is more than the tolerance outside the range of the newest `window`
-  /// commands.
+  /// Returns true if the pressure `kpa` is outside the range of the newest `window` commands by more than the
+  /// tolerance.
   [[nodiscard]] bool off(const Channel& channel, double kpa, std::size_t window,
                          double tolerance_kpa) const noexcept;
 
   FaultSettings settings_;
-  std::size_t readback_window_ = 0;  ///< number of compared commands, including the newest command
+  std::size_t readback_window_ = 0;  ///< number of past commands with which the read-back is compared,
+                                     ///< including the newest command
   std::size_t pressure_window_ = 0;
   std::vector<bool> displacement_used_;
   std::vector<Channel> channels_;

@@ -29,7 +29,8 @@ std::string_view name_of(SequenceEnd end) noexcept {
 
 RigController::Channel::Channel(const RigSettings& rig, const ChannelSettings& settings)
     : controller(settings, 1 / rig.rate_hz),
-      // Without displacement feedback, a finger counts as at rest if its command has stayed constant.
+      // Without displacement feedback, a finger counts as at rest after its command has been constant for
+      // rest_time_s.
       rest(settings.displacement_used ? rig.rest_band_mm : 0, rig.rest_time_s),
       longest_age(nanoseconds(settings.plausibility.max_age_s)),
       displacement_used(settings.displacement_used) {}
@@ -83,10 +84,10 @@ const TickOutput& RigController::tick(const TickInput& input) noexcept {
   return output_;
 }
 
-/// While no sequence runs, limits the command of a channel to the pressure at the board's output. The reason
-/// is that only a sequence may move a pressure away from rest. If the bus no longer applies the commands, the
-/// command changes at once. Otherwise the command changes at the slew limits, because a command that was sent
-/// but not written yet may still be written.
+/// Limits the command of a channel to the pressure at the board's output while no sequence runs, because only
+/// a sequence may move a pressure away from rest. If the bus no longer applies the commands, the command
+/// changes at once. Otherwise, the command changes at the slew limits, because the board may still receive a
+/// command that was already sent.
 void RigController::stay_within_outputs(std::size_t index, double last_kpa, const TickInput& input) noexcept {
   if (may_rise(supervisor_.state()) || index >= input.outputs_kpa.size()) return;
   const Channel& channel = channels_[index];
@@ -98,8 +99,8 @@ void RigController::stay_within_outputs(std::size_t index, double last_kpa, cons
   command_kpa = no_further(channel.rest_kpa(), allowed_kpa, command_kpa);
 }
 
-/// Invalidates the readings of the last tick after a gap between two ticks. A tick uses these readings for
-/// its decisions. After a gap, they do not show if a part is held or if a finger is at rest.
+/// Invalidates the readings of the last tick after a gap between two ticks. A tick bases its decisions on
+/// these readings. After a gap, the readings no longer show if a part is held or if a finger is at rest.
 void RigController::forget_old_readings(Nanoseconds now) noexcept {
   const Nanoseconds gap = last_now_ == no_tick ? 0 : now - last_now_;
   last_now_ = now;
@@ -130,9 +131,9 @@ SupervisorInputs RigController::supervisor_inputs(const TickInput& input, double
   return inputs;
 }
 
-/// Waits until all channels of the sequence are at rest. For each vented channel, the model is then shifted
-/// to the reading. The shift must not exceed the margin of grip detection. With a larger shift, the creep
-/// that is contained in the shift would decay and later look like an object.
+/// Checks if all channels of the sequence are at rest. For each vented channel, the model is then shifted to
+/// the reading. The shift must not exceed the margin of grip detection. A larger shift can contain creep, and
+/// the decay of this creep would later look like an object.
 Rest RigController::look_for_rest(const PreparedSequence& sequence, double time_s) noexcept {
   bool all = true;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
@@ -193,8 +194,8 @@ void RigController::conclude_sequence(const SequencePlayer::Outcome& outcome, Ph
   if (outcome.finished) supervisor_.sequence_ended(outcome.end, outcome.action, phase, output_.events);
 }
 
-/// Executes the sequence. During a gap, the board may have vented. The bus reports this only with the next
-/// exchange, so no step ends before this exchange.
+/// Executes a tick of the sequence. During a gap between two ticks, the board may have vented the fingers.
+/// The bus reports such a vent only with the next exchange. Therefore, no step ends before this exchange.
 void RigController::play(const TickInput& input, double time_s) noexcept {
   const Nanoseconds age = input.now - input.readings.front().sampled_at;
   const bool silent = input.bus.fault == FaultCode::none && input.bus.consecutive_failures == 0 &&
@@ -241,7 +242,7 @@ void RigController::tell_limits(std::size_t index, double time_s) noexcept {
 void RigController::tell_changes(std::size_t index) noexcept {
   const ChannelOutput& seen = output_.channels[index];
   const bool valid = seen.validity == model::Validity::valid;
-  // Before the first response of the board, no event about a reading is added.
+  // Before the first response of the board, a channel has no reading, so no event about a reading is added.
   if (seen.validity != model::Validity::none_yet && valid != channels_[index].valid_before) {
     output_.events.add_of_channel(index, valid ? Event::Kind::reading_valid : Event::Kind::reading_invalid,
                                   seen.validity, 0, seen.age_s);

@@ -1,6 +1,7 @@
 #pragma once
-// Computes the commands of one tick from the readings of this tick. The class is the interface between
-// control and the loop. It runs in softgripd, in `softgrip run`, in virtual time, in tests and in benchmarks.
+// Computes the commands of one tick from the readings of this tick. The control loop calls this class, and
+// the class calls the rest of control/. The programs softgripd and `softgrip run`, simulations in virtual
+// time, tests and benchmarks use this class.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,17 +18,17 @@
 
 namespace softgrip::control {
 
-/// The controller of a rig. The constructor may allocate memory. It throws only std::bad_alloc, because
-/// settings_problems() has checked the settings. tick() does not allocate memory, does not call the operating
-/// system, and cannot fail.
+/// The controller of a rig. The constructor may allocate memory. The constructor throws no other exception
+/// than std::bad_alloc, because settings_problems() has checked the settings. tick() does not allocate
+/// memory, does not call the operating system, and cannot fail.
 class RigController {
  public:
   explicit RigController(const RigSettings& settings);
-  // The loop reads the output inside this object, so the object must not be copied.
+  // The control loop refers to the output inside this object, so the object must not be copied.
   RigController(const RigController&) = delete;
   RigController& operator=(const RigController&) = delete;
 
-  /// Executes one tick; its duration is 1/settings.rate_hz. Returns output().
+  /// Executes one tick. Ticks follow each other at intervals of 1/settings.rate_hz. Returns output().
   const TickOutput& tick(const TickInput& input) noexcept;
 
   /// Returns the output of the last tick. Before the first tick, the commands are the rest pressures.
@@ -50,7 +51,7 @@ class RigController {
     bool valid_before = true;
     bool unsteady_before = false;
     bool resynchronise = false;
-    /// The reason why the finger had not settled at the last check of rest.
+    /// The reason why the last check found that the finger had not settled.
     UnsettledReason unsettled = UnsettledReason::none;
   };
 

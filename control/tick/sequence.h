@@ -1,5 +1,5 @@
 #pragma once
-// Defines grip sequences as plain values: as written in the file (Sequence), and fitted to one rig
+// Defines grip sequences in two forms: as written in the file (Sequence), and fitted to one rig
 // (PreparedSequence). The members have the names of the keys in the file; docs/reference/sequence-file.md
 // describes the keys.
 
@@ -20,10 +20,10 @@
 
 namespace softgrip::control {
 
-/// Value of an unlimited time or of a missing pressure bound.
+/// Value of an unlimited time, and of a pressure bound that the file does not give.
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Returns the bit of a channel in a bit mask of channels.
+/// Returns a bit mask that contains only the channel `channel`.
 constexpr std::uint32_t channel_bit(std::size_t channel) noexcept {
   return 1U << channel;
 }
@@ -33,13 +33,14 @@ enum class StepKind : std::uint8_t {
   move,      ///< moves to a target along a ramp
   grip,      ///< moves to a target, then verifies the grip: HOLDING or NO PART
   hold,      ///< keeps the command and verifies the grip repeatedly; result PART LOST if the object is lost
-  release,   ///< moves towards the rest pressure, then purges: RELEASED
-  track,     ///< follows a displacement over time with feedback, for studies
-  pressure,  ///< follows a pressure over time without feedback, for experiments
+  release,   ///< moves towards the rest pressure, then stays at the rest pressure for purge_s: result
+             ///< RELEASED
+  track,     ///< follows a displacement over time with feedback; used in studies
+  pressure,  ///< follows a pressure over time without feedback; used in experiments
 };
 [[nodiscard]] std::string_view name_of(StepKind kind) noexcept;
 
-/// The action if a step has failed and there are no more retries.
+/// The action after a step that has failed and has no retries left.
 enum class OnFail : std::uint8_t {
   vent,      ///< the sequence ends, and all channels go to the rest pressure
   hold,      ///< the sequence ends, and the commands do not change
@@ -50,18 +51,19 @@ enum class OnFail : std::uint8_t {
 /// Returns the name of an action in the file: "vent", "hold", "abort", "release" or "continue".
 [[nodiscard]] std::string_view name_of(OnFail action) noexcept;
 
-/// The action if a finger meets an object during the motion of its step.
+/// The action when a finger meets an object during the motion of its step.
 enum class OnContact : std::uint8_t {
   hold,     ///< the finger stays at the pressure of the first contact, and its step is finished
-  grip,     ///< as hold; in addition, the sequence continues with its next grip step at once
+  grip,     ///< the finger stays at the pressure of the first contact, and the sequence continues with its
+            ///< next grip step at once
   fail,     ///< the finger stays at the pressure of the first contact, and its step fails
-  ignore,   ///< the motion continues as without a contact
-  squeeze,  ///< for a grip with squeeze_kpa: increases the gripping pressure to squeeze_kpa (not a value in
+  ignore,   ///< the motion continues as if there were no contact
+  squeeze,  ///< for a grip with squeeze_kpa: the gripping pressure increases to squeeze_kpa (not a value in
             ///< files)
-  close,    ///< for a grip without squeeze_kpa: continues to its target with constant feedback (not a value
-            ///< in files)
+  close,    ///< for a grip without squeeze_kpa: the motion continues to its target while the feedback stays
+            ///< constant (not a value in files)
 };
-/// Returns the name of an action: "hold", "grip", "fail", "ignore", "squeeze" or "close".
+/// Returns the name of an action on contact: "hold", "grip", "fail", "ignore", "squeeze" or "close".
 [[nodiscard]] std::string_view name_of(OnContact action) noexcept;
 
 /// The criterion by which a grip is verified.
@@ -72,30 +74,37 @@ enum class VerifyBy : std::uint8_t {
 };
 [[nodiscard]] std::string_view name_of(VerifyBy by) noexcept;
 
-/// Target of a ramp. The ramp has the duration `duration_s` or the speed `speed` [target's unit per s].
+/// Target of a ramp. Either the duration `duration_s` or the speed `speed` [unit of the target per s]
+/// determines the time of the ramp.
 struct Target {
   enum class Quantity : std::uint8_t { displacement_mm, pressure_kpa };
   Quantity quantity = Quantity::pressure_kpa;
   double value = 0;
   bool at_rest = false;   ///< true: the target is the rest pressure of the channel; `value` is not used
   double speed = 0;       ///< speed of the ramp; 0: the ramp has the duration duration_s
-  double duration_s = 0;  ///< if duration_s and speed are 0, the ramp is as fast as the limits allow
+  double duration_s = 0;  ///< duration of the ramp; if duration_s and speed are both 0, the ramp is as fast
+                          ///< as the limits allow
 };
 
 struct Verify {
   VerifyBy by = VerifyBy::detection;
-  double window_s = 0.3;  ///< time for which the evidence must be present without interruption
-  double displacement_min_mm = -std::numeric_limits<double>::infinity();  ///< lower bound for position; for
-                                                                          ///< detection, an additional
-                                                                          ///< condition
-  double displacement_max_mm = std::numeric_limits<double>::infinity();   ///< upper bound for position; for
-                                                                          ///< detection, an additional
-                                                                          ///< condition
-  double pressure_min_kpa = 0;                                        ///< lower bound for pressure, if the
-                                                                      ///< grip is above the rest pressure
-  double pressure_max_kpa = std::numeric_limits<double>::infinity();  ///< upper bound for pressure, if the
-                                                                      ///< grip is below the rest pressure
-  /// Returns true for a verification by a pressure below the rest pressure.
+  double window_s = 0.3;  ///< time for which the evidence of the grip must be present without interruption
+  double displacement_min_mm = -std::numeric_limits<double>::infinity();  ///< lower bound of the
+                                                                          ///< displacement: the criterion of
+                                                                          ///< verification by position, an
+                                                                          ///< additional condition of
+                                                                          ///< verification by detection
+  double displacement_max_mm = std::numeric_limits<double>::infinity();   ///< upper bound of the
+                                                                          ///< displacement: the criterion of
+                                                                          ///< verification by position, an
+                                                                          ///< additional condition of
+                                                                          ///< verification by detection
+  double pressure_min_kpa = 0;  ///< lower bound for verification by pressure, if the grip is above the rest
+                                ///< pressure
+  double pressure_max_kpa = std::numeric_limits<double>::infinity();  ///< upper bound for verification by
+                                                                      ///< pressure, if the grip is below the
+                                                                      ///< rest pressure
+  /// Returns true if the grip is verified by a pressure below the rest pressure.
   [[nodiscard]] bool below() const noexcept { return std::isfinite(pressure_max_kpa); }
 };
 
@@ -108,8 +117,8 @@ struct Point {
 
 /// Pressure over time of a pressure step: points or a test signal, repeated `cycles` times.
 struct Profile {
-  std::vector<Point> points;  ///< times start at 0 and do not decrease; two points at the same time are a
-                              ///< jump
+  std::vector<Point> points;  ///< points of the profile; their times start at 0 and do not decrease, and two
+                              ///< points at the same time form a jump
   std::optional<model::SignalName> signal;  ///< test signal, used in place of points
   double scale = 1;                         ///< factor by which the values of the signal are multiplied
   std::uint32_t cycles = 1;
@@ -123,8 +132,8 @@ struct Profile {
 /// memory.
 [[nodiscard]] double value_at(const Profile& profile, double time_s) noexcept;
 
-/// Displacement of a track step over time: mean - amplitude cos(2 pi f t). The displacement starts at its
-/// lowest value.
+/// Displacement reference of a track step: mean_mm - amplitude_mm cos(2 pi frequency_hz t). The reference
+/// starts at its lowest value.
 struct Sine {
   double mean_mm = 0;
   double amplitude_mm = 0;
@@ -135,18 +144,17 @@ struct Sine {
 /// Upper bounds of the command in a step.
 struct Bounds {
   double pressure_max_kpa = std::numeric_limits<double>::infinity();
-  /// Upper bound of the gripping pressure. Gripping pressure is the pressure above the command under which
-  /// the free finger rests at the present displacement.
+  /// Upper bound of the gripping pressure [kPa]. The gripping pressure is the command minus the command under
+  /// which the free finger rests at the present displacement.
   double squeeze_max_kpa = std::numeric_limits<double>::infinity();
 };
 
-/// The gripping pressure of a grip after its first contact.
+/// Gripping pressure that a grip step applies after its first contact.
 struct Squeeze {
-  double by_kpa = 0;           ///< pressure above that of the free finger at the same displacement; 0: only
-                               ///< the target of the grip determines the pressure
-                               ///< pressure
-  double speed_kpa_per_s = 0;  ///< speed at which the gripping pressure increases; it must be above 0 if
-                               ///< by_kpa is above 0
+  double by_kpa = 0;           ///< pressure above the pressure of the free finger at the same displacement;
+                               ///< 0: the target of the grip alone determines the pressure
+  double speed_kpa_per_s = 0;  ///< rate at which the gripping pressure increases; above 0 if by_kpa is above
+                               ///< 0
 };
 
 /// One step of a sequence, as written in the file.
@@ -160,15 +168,16 @@ struct Step {
   Sine sine;                           ///< reference of a track step
   Profile profile;                     ///< pressure over time of a pressure step
   double settle_s = 0;                 ///< waiting time after the end of the ramp
-  std::optional<double> tolerance_mm;  ///< for move: the step fails if the displacement is not within this
-                                       ///< tolerance of the target by timeout_s
-  Bounds bounds;                       ///< for all kinds except release; for hold only if the file gives
-                                       ///< bounds for the hold
+  std::optional<double> tolerance_mm;  ///< for move: the step fails if the displacement does not come within
+                                       ///< this tolerance of the target before timeout_s
+  Bounds bounds;                       ///< upper bounds of the command, for all kinds of steps except
+                                       ///< release; a hold has bounds of its own only if the file gives them
   OnContact on_contact = OnContact::ignore;
   bool on_contact_stated = false;  ///< true: the sequence file gives the key on_contact
   Squeeze squeeze;                 ///< gripping pressure of a grip step
   Verify verify;                   ///< criterion by which a grip step is verified
-  double hold_s = 0;               ///< infinite: the hold lasts until a release is requested
+  double hold_s = 0;               ///< duration of a hold step; infinite: the hold lasts until a release is
+                                   ///< requested
   double reverify_every_s = 0;     ///< for hold: time between two verifications
   double purge_s = 0;              ///< for release: time for which the channels stay at the rest pressure
   std::optional<double> timeout_s;
@@ -176,7 +185,7 @@ struct Step {
   OnFail on_fail = OnFail::abort;
 };
 
-/// The time at which an open interlock input has an effect.
+/// The situations in which an open interlock input has an effect.
 enum class Interlock : std::uint8_t {
   start,   ///< while the interlock is open, a start is refused
   always,  ///< while the interlock is open, a start is refused; when it opens, a running sequence is stopped
@@ -188,13 +197,14 @@ struct Sequence {
   std::string about;  ///< description of the sequence in one line; may be empty
   Interlock interlock = Interlock::start;
   std::vector<std::string> channels;  ///< channels that the sequence uses; empty: all channels of the rig
-  std::vector<Parameter> parameters;  ///< the parameters with the values that the steps use
+  std::vector<Parameter> parameters;  ///< the parameters of the sequence, with the values that are inserted
+                                      ///< into the steps
   std::vector<Step> steps;
   std::string file;  ///< name of the file as the user wrote it
-  std::string text;  ///< the file's text, for messages and for the recording's provenance
+  std::string text;  ///< text of the file, for messages and for the provenance of a recording
 };
 
-/// A step that was fitted to the channels and limits of a rig.
+/// A step after it was fitted to the channels and limits of a rig.
 struct PreparedStep {
   Step step;
   std::uint32_t channels = 0;      ///< bit i: channel i takes part in the step
@@ -210,18 +220,18 @@ struct PreparedStep {
   }
 };
 
-/// A sequence fitted to one rig: names are replaced by channels, and targets are checked against the limits.
-/// It does not change while it runs.
+/// A sequence after it was fitted to one rig: channel names are replaced by indices, and targets are checked
+/// against the limits. A prepared sequence does not change while it runs.
 struct PreparedSequence {
   std::string name;
   Interlock interlock = Interlock::start;
   std::uint32_t channels = 0;         ///< channels of all steps; bit i is channel i
-  std::uint32_t needs_detection = 0;  ///< channels that are verified by detection; at rest, their free-motion
-                                      ///< model must agree with their reading
+  std::uint32_t needs_detection = 0;  ///< bit mask of the channels that are verified by detection; at rest,
+                                      ///< the free-motion model of these channels must agree with the reading
   std::uint64_t rig = 0;              ///< rig_key() of the settings for which the sequence was prepared
   std::vector<Argument> parameters;   ///< values of the sequence's parameters, for status and events
   std::vector<PreparedStep> steps;
-  double planned_s = 0;  ///< duration of the planned motion of one channel: the longest of all channels
+  double planned_s = 0;  ///< duration of the planned motion of the channel with the longest planned motion
 };
 
 /// Returns a hash of the rig settings on which a prepared sequence depends.

@@ -50,8 +50,8 @@ SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const Chan
     }
   });
   if (to_grip) return go_to_step(now().grip_step, time_s, seen, events);
-  // The sequence reacts to a lost part at once. In all other cases, it waits until every finger of the step
-  // has a result.
+  // If a part is lost during a hold, the sequence reacts at once. In all other cases, the sequence waits
+  // until every channel of the step has a result.
   if (done_ != now().channels && !(holds && refused_ != 0)) {
     return {};
   }
@@ -133,7 +133,7 @@ SequencePlayer::Outcome SequencePlayer::failed(double time_s, std::span<const Ch
   return finished(step.on_fail == OnFail::release ? OnFail::vent : step.on_fail, events);
 }
 
-/// Sets the result of a channel that passed its step.
+/// Sets the grip result of a channel that has passed its step.
 void SequencePlayer::answer_passed(std::size_t channel, double time_s, EventList& events) noexcept {
   ChannelPlayer& player = channels_[channel];
   const Step& step = now().step;
@@ -168,7 +168,7 @@ SequencePlayer::Outcome SequencePlayer::finished(OnFail action, EventList& event
   return {true, end_, action};
 }
 
-/// Sets the result ERROR for every channel of the sequence that has no result.
+/// Sets the result ERROR for every channel of the sequence that has no grip result.
 void SequencePlayer::answer_the_rest(EventList& events) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     if ((sequence_->channels & channel_bit(i)) != 0 && channels_[i].result() == GripResult::none) {
@@ -249,8 +249,8 @@ bool SequencePlayer::free_motion(std::size_t channel, bool at_rest) const noexce
   const ChannelPlayer& player = channels_[channel];
   if (player.result() == GripResult::holding) return false;
   if (player.stopped_by_contact()) return false;
-  // These steps expect no contact. If the displacement differs from the model, the reason is a blocked line
-  // or a changed finger.
+  // Track and pressure steps expect no contact. If the displacement differs from the model, the reason is a
+  // blocked line or a changed finger.
   if (plays(StepKind::track) || plays(StepKind::pressure)) return true;
   const bool may_touch = plays(StepKind::grip) || plays(StepKind::hold) || plays(StepKind::release);
   return may_touch ? !player.touching() : at_rest || !player.held_back();

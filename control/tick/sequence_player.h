@@ -1,6 +1,6 @@
 #pragma once
 // Executes a prepared sequence. All channels of a step start together, and the next step starts when all of
-// these channels have a result. The class does not allocate memory after construction.
+// these channels have a result. After construction, the class allocates no memory.
 
 #include <cstddef>
 #include <cstdint>
@@ -25,21 +25,22 @@ class SequencePlayer {
   struct Outcome {
     bool finished = false;
     SequenceEnd end = SequenceEnd::done;
-    OnFail action = OnFail::hold;  ///< for a finished sequence, one of vent, hold and abort
+    OnFail action = OnFail::hold;  ///< action after a finished sequence: vent, hold or abort
   };
   /// Executes a tick of the running sequence.
   Outcome tick(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
 
-  /// Handles a release request. The sequence continues with its next release step. If there is no such step,
-  /// the sequence is finished and must be vented. If the request comes at a time other than a hold, the
-  /// sequence ends as `stopped` and not as `done`.
+  /// Handles a release request. The sequence continues with its next release step. Without a further release
+  /// step, the sequence is finished and must be vented. A release request during a hold step lets the
+  /// sequence end as `done`. A release request during any other step lets the sequence end as `stopped`.
   Outcome release(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
 
   /// Ends the sequence because of a stop or a fault. A channel without a result gets ERROR. A channel with
-  /// the result HOLDING gets ERROR if it may no longer hold the part. This is the case after a fault. It is
-  /// also the case if the release of the channel was interrupted and the channel is not in `venting`.
+  /// the result HOLDING gets ERROR if the finger may have lost the part. This is possible after a fault, and
+  /// after an interrupted release of a channel that is not in `venting`.
   void interrupt(SequenceEnd end, std::uint32_t venting, EventList& events) noexcept;
-  /// Executes a tick in which no sequence runs: verifies that the held parts are still held.
+  /// Executes a tick in which no sequence runs. Checks that each part that a finger held at the end of the
+  /// sequence is still held.
   void idle_tick(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
   /// Records that a vent has released these channels: their result HOLDING becomes RELEASED.
   void vented(std::uint32_t channels, EventList& events) noexcept;
@@ -55,15 +56,15 @@ class SequencePlayer {
   [[nodiscard]] std::uint16_t step() const noexcept { return step_; }
   /// Returns the phase of the rig, which selects the safe action.
   [[nodiscard]] Phase phase() const noexcept;
-  /// Returns true if the finger moves without contact, as far as is known. `at_rest` is true if the command
-  /// of the channel is the rest pressure.
+  /// Returns true if the finger moves without contact, as far as the player knows. `at_rest` is true if the
+  /// command of the channel is the rest pressure.
   [[nodiscard]] bool free_motion(std::size_t channel, bool at_rest) const noexcept;
 
  private:
   template <class Do>
   void for_each_of_step(Do&& act) noexcept;
   [[nodiscard]] const PreparedStep& now() const noexcept { return sequence_->steps[step_]; }
-  /// Returns true if the present step is of this kind.
+  /// Returns true if the present step is of the kind `kind`.
   [[nodiscard]] bool plays(StepKind kind) const noexcept {
     return play_ != Play::nothing && now().step.kind == kind;
   }
@@ -86,7 +87,7 @@ class SequencePlayer {
   enum class Play : std::uint8_t {
     nothing,      ///< no sequence runs
     step,         ///< an attempt at the present step is in progress
-    backing_off,  ///< the channels return to the start of the attempt, to make another attempt
+    backing_off,  ///< the channels return to the start of the failed attempt, before the next attempt begins
   };
 
   std::vector<ChannelPlayer> channels_;
@@ -94,9 +95,9 @@ class SequencePlayer {
   const PreparedSequence* sequence_ = nullptr;  ///< the running sequence; nullptr if none runs
   std::uint16_t step_ = 0;
   std::uint32_t attempts_ = 0;           ///< number of retries of the present step
-  SequenceEnd end_ = SequenceEnd::done;  ///< `failed` after the first failure of a step
-  std::uint32_t done_ = 0;               ///< channels that have a result of the present step
-  std::uint32_t refused_ = 0;            ///< channels whose result of the present step is a failure
+  SequenceEnd end_ = SequenceEnd::done;  ///< reason of the end: `failed` from the first failure of a step on
+  std::uint32_t done_ = 0;               ///< bit mask of the channels that have a result of the present step
+  std::uint32_t refused_ = 0;            ///< bit mask of the channels that have failed the present step
 };
 
 }  // namespace softgrip::control

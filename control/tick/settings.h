@@ -1,6 +1,5 @@
 #pragma once
-// Defines the settings of a RigController as plain values. The reader of the rig file (rig/rig_file.h)
-// creates them.
+// Defines the settings of a RigController. The reader of the rig file (rig/rig_file.h) creates them.
 
 #include <array>
 #include <cstddef>
@@ -14,13 +13,15 @@
 
 namespace softgrip::control {
 
-/// Largest number of channels of a rig. It gives snapshots and rows of recordings a fixed size.
+/// Largest number of channels of a rig. Status snapshots and rows of recordings have space for this number of
+/// channels.
 inline constexpr std::size_t max_channels = 16;
 
 /// The phase of a rig, which determines its safe output.
 enum class Phase : std::uint8_t {
   idle,       ///< no sequence runs, or a sequence is starting or resynchronising
-  closing,    ///< approach, grip, settle and verify; also tracking and pressure steps of studies
+  closing,    ///< the fingers approach or grip a part, settle, or verify the grip; also during the track and
+              ///< pressure steps of studies
   holding,    ///< a hold step is in progress
   releasing,  ///< a release step is in progress
 };
@@ -28,9 +29,10 @@ inline constexpr std::size_t phase_count = 4;
 /// Returns "idle", "closing", "holding" or "releasing". These are the keys of `safe_action` in the rig file.
 [[nodiscard]] std::string_view name_of(Phase phase) noexcept;
 
-/// The action of the outputs when motion must end.
+/// The action on the outputs when the motion must end.
 enum class SafeAction : std::uint8_t {
-  vent,  ///< go to the rest pressure: at the slew limit while the loop runs, at once when the loop ends
+  vent,  ///< the outputs go to the rest pressure: at the slew limit while the loop runs, at once when the
+         ///< loop ends
   hold,  ///< the outputs keep the last command
 };
 /// Returns the name of an action: "vent" or "hold".
@@ -38,42 +40,53 @@ enum class SafeAction : std::uint8_t {
 
 /// Settings of the grip detection, for all channels.
 struct DetectionSettings {
-  /// A finger is in contact with an object if its displacement shortfall is at least this [mm].
+  /// Smallest displacement shortfall that counts as contact with an object [mm].
   double margin_mm = 0.6;
-  /// RMSE of the models; NaN if it is unknown. The margin must be at least three times the RMSE.
+  /// RMSE of the models of the fingers [mm]; NaN if it is unknown. margin_mm must be at least three times
+  /// this RMSE.
   double model_rmse_mm = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Properties of the installation that the daemon cannot read from the bus. The rig file must give all of
-/// them.
+/// Properties of the installation that the daemon cannot read from the bus. The rig file must give all these
+/// properties.
 struct SafetySettings {
-  /// Action of a stop, a fault or a shutdown, for each phase in which it can occur.
+  /// Action after a stop, a fault or a shutdown, for each phase in which one of them can occur.
   std::array<SafeAction, phase_count> safe_action{};
-  /// Action of an emergency stop. Use `hold` only if the emergency stop circuit does not vent the fingers. If
-  /// the circuit vents them, a held command would fill the fingers again when the circuit is reset.
+  /// Action after an emergency stop. Use `hold` only if the emergency stop circuit does not vent the fingers.
+  /// If the circuit vents the fingers, a held command would fill them again when the circuit is reset.
   SafeAction on_emergency_stop = SafeAction::vent;
-  /// True if the board sets its outputs to the rest pressure when communication stops. In this case, bus
-  /// faults vent in every phase, because a held command would pressurise the fingers again after
-  /// reconnection.
+  /// True if the board sets its outputs to the rest pressure when communication stops. In this case, a bus
+  /// fault vents the fingers in every phase. Otherwise, a held command would pressurise the fingers again
+  /// after reconnection.
   bool board_vents_when_silent = true;
 };
 
-/// Number of cycles for which a condition may last before it is a fault. These numbers determine the
-/// guaranteed reaction times of the rig. docs/reference/rig-file.md states the meaning of each member in the
-/// section `faults`.
+/// Number of cycles for which each fault condition may last before the fault latches. These numbers determine
+/// the guaranteed reaction times of the rig.
 struct FaultSettings {
-  std::uint32_t bus_down_cycles = 5;
-  std::uint32_t invalid_reading_cycles = 3;
-  std::uint32_t displacement_cycles = 3;
-  std::uint32_t readback_cycles = 5;
-  double readback_tolerance_kpa = 1;
-  double readback_delay_s = 0.1;
-  std::uint32_t pressure_cycles = 0;
-  double pressure_tolerance_kpa = 5;
-  double pressure_delay_s = 0.5;
-  bool model_unfit_is_fault = false;
-  bool unsteady_is_fault = false;
-  std::uint32_t overrun_cycles = 0;
+  std::uint32_t bus_down_cycles = 5;         ///< number of consecutive cycles without a valid exchange
+  std::uint32_t invalid_reading_cycles = 3;  ///< number of consecutive cycles in which the reading of a
+                                             ///< channel is not valid
+  std::uint32_t displacement_cycles = 3;     ///< number of consecutive cycles in which a reading is outside
+                                             ///< the displacement range and its margin
+  std::uint32_t readback_cycles = 5;         ///< number of consecutive cycles in which the output that the
+                                             ///< board reports differs from the commands
+  double readback_tolerance_kpa = 1;         ///< largest distance of the read-back from the range of the past
+                                             ///< commands at which the two count as equal
+  double readback_delay_s = 0.1;             ///< length of the past period whose commands are compared with
+                                             ///< the read-back
+  std::uint32_t pressure_cycles = 0;  ///< number of consecutive cycles in which the measured pressure differs
+                                      ///< from the commands; 0: the pressure is not checked
+  double pressure_tolerance_kpa = 5;  ///< largest distance of the measured pressure from the range of the
+                                      ///< past commands at which the two count as equal
+  double pressure_delay_s = 0.5;      ///< length of the past period whose commands are compared with the
+                                      ///< measured pressure
+  bool model_unfit_is_fault = false;  ///< true: an unfit model is a fault; false: model health is only
+                                      ///< reported
+  bool unsteady_is_fault = false;     ///< true: a sensor that jumps back and forth is a fault; false: such a
+                                      ///< sensor is only reported
+  std::uint32_t overrun_cycles = 0;   ///< number of consecutive missed cycles at which a fault occurs; 0:
+                                      ///< missed cycles are only counted
 };
 
 /// All settings of a RigController.
@@ -84,15 +97,15 @@ struct RigSettings {
   double rest_band_mm = 0.2;   ///< a finger is at rest if its readings stay within this band for rest_time_s
   double rest_time_s = 0.3;    ///< time for which the readings must stay within rest_band_mm; a sequence
                                ///< starts only from rest
-  double rest_timeout_s = 10;  ///< if the fingers do not come to rest within this time, the start ends with
-                               ///< ERROR
+  double rest_timeout_s = 10;  ///< longest wait for the fingers to come to rest; after this time, the start
+                               ///< ends with ERROR
   DetectionSettings detection;
   FaultSettings faults;
 };
 
 /// Returns the problems of the settings, one sentence each. If the list is empty, RigController accepts the
-/// settings. The reader of the rig file reports most problems with their location. This function also checks
-/// relations between keys, and settings that code has made.
+/// settings. The reader of the rig file reports most problems with their location in the file. This function
+/// also checks relations between settings, and settings that do not come from a rig file.
 [[nodiscard]] std::vector<std::string> settings_problems(const RigSettings& settings);
 
 }  // namespace softgrip::control

@@ -27,8 +27,8 @@ SupervisorOutputs Supervisor::tick(const TickInput& input, const SupervisorInput
   return outputs;
 }
 
-/// Latches the first fault. A later fault is reported once. Its only other effect is that it can turn a hold
-/// into a vent.
+/// Latches the first fault. Each later fault is reported once, and it can turn a hold into a vent. A later
+/// fault has no other effect.
 void Supervisor::latch(const SupervisorInputs& inputs, SupervisorOutputs& outputs,
                        EventList& events) noexcept {
   const Fault& fault = inputs.fault;
@@ -41,8 +41,8 @@ void Supervisor::latch(const SupervisorInputs& inputs, SupervisorOutputs& output
   told_ |= place;
   events.add(Event{Event::Kind::fault_latched, fault.channel, static_cast<std::uint16_t>(fault.code), 0,
                    fault.value, GripEvidence::none});
-  // After the first fault, the player is idle. Therefore, the phase in which the first fault occurred
-  // determines which channels hold.
+  // After the first fault, the player is idle. Therefore, the safe action of later faults also depends on the
+  // phase in which the first fault occurred.
   const bool first = state_ != State::faulted;
   if (first) fault_phase_ = inputs.phase;
   if (action_for(fault.code, fault_phase_) == SafeAction::vent) venting_ = all_;
@@ -55,7 +55,8 @@ void Supervisor::latch(const SupervisorInputs& inputs, SupervisorOutputs& output
 
 SafeAction Supervisor::action_for(FaultCode code, Phase phase) const noexcept {
   const auto number = static_cast<unsigned>(code);
-  // The board's output has changed, so the command that a hold would keep is no longer present at the output.
+  // The board has changed its outputs by itself. A hold would keep a command that no longer corresponds to
+  // the outputs.
   if (code == FaultCode::board_watchdog_tripped || code == FaultCode::outputs_overwritten)
     return SafeAction::vent;
   // If the inputs cannot be read, the daemon does not see an emergency stop. Therefore, lost inputs count as
@@ -156,8 +157,8 @@ void Supervisor::answer_stop(const SupervisorInputs& inputs, const Request& requ
   }
 }
 
-/// Stops the rig if the start that the request names is running. Only the loop knows which start runs in this
-/// tick. Therefore, the loop makes this decision, and not the client.
+/// Stops the rig if the running start is the start that the request names. Only the control loop knows which
+/// start runs in this tick. Therefore, the loop decides this, and not the client.
 void Supervisor::answer_stop_of(const SupervisorInputs& inputs, const Request& request,
                                 SupervisorOutputs& outputs, EventList& events) noexcept {
   if (playing() && start_request_ == request.of_start) {
@@ -168,8 +169,8 @@ void Supervisor::answer_stop_of(const SupervisorInputs& inputs, const Request& r
   events.add(Event::Kind::request_refused, RefusalCode::named_start_not_running, request.id);
 }
 
-/// Marks the start that a stop request names if this start may still be in the queue. The marked start is
-/// later refused, because a stop takes effect before the starts in the queue.
+/// Remembers the start that a stop request names, if this start may still be in the queue of the loop. When
+/// this start arrives, it is refused, because a stop takes effect before the starts in the queue.
 void Supervisor::withdraw(const Request& stop) noexcept {
   const bool may_wait = stop.of_start > taken_ && stop.of_start < stop.id;
   if (!may_wait || withdrawn(stop.of_start)) return;
@@ -181,8 +182,8 @@ bool Supervisor::withdrawn(std::uint32_t start) const noexcept {
   return start != 0 && std::find(withdrawn_.begin(), withdrawn_.end(), start) != withdrawn_.end();
 }
 
-/// Vents all channels. This request is never refused, because it is the way to end a hold, also after a
-/// fault.
+/// Vents all channels. This request is never refused, because an operator must always be able to end a hold,
+/// also after a fault.
 void Supervisor::answer_vent(const Request& request, SupervisorOutputs& outputs, EventList& events) noexcept {
   venting_ = all_;
   if (state_ == State::faulted || state_ == State::starting) {
@@ -196,8 +197,8 @@ void Supervisor::answer_vent(const Request& request, SupervisorOutputs& outputs,
   go(State::stopping, request.id, events);
 }
 
-/// Ends a hold without a step of the pressure. If a sequence runs, it continues with its release step. If
-/// none runs, the pressurised channels go to the rest pressure at the slew limit.
+/// Ends a hold without a step of the pressure. A running sequence continues with its release step. If no
+/// sequence runs, the pressurised channels go to the rest pressure at the slew limit.
 void Supervisor::answer_release(const SupervisorInputs& inputs, const Request& request,
                                 SupervisorOutputs& outputs, EventList& events) noexcept {
   const auto refuse = [&](RefusalCode code) { events.add(Event::Kind::request_refused, code, request.id); };

@@ -24,7 +24,7 @@ enum class Rest : std::uint8_t { pending, at_rest, timed_out };
 /// Inputs of the supervisor in addition to the tick input. In the bit masks, bit i is channel i.
 struct SupervisorInputs {
   Fault fault;  ///< fault that the supervisor must latch now
-  Fault cause;  ///< present condition that is a fault, or can become a fault if it lasts
+  Fault cause;  ///< present condition that is a fault, or becomes a fault if it lasts long enough
   bool bus_good = false;
   std::uint32_t ready = 0;    ///< channels that have a valid reading, or that need no reading
   std::uint32_t at_rest = 0;  ///< channels whose command is at the rest pressure
@@ -33,21 +33,21 @@ struct SupervisorInputs {
   Rest rest = Rest::pending;
 };
 
-/// Outputs of the supervisor for this tick.
+/// Outputs of the supervisor for this tick. In the bit masks, bit i is channel i.
 struct SupervisorOutputs {
-  std::optional<SequenceEnd> interrupt;          ///< reason for which the player must stop; empty: it
-                                                 ///< continues
-  std::optional<std::uint32_t> acknowledged_by;  ///< id of the request because of which the grip results must
-                                                 ///< be reset
+  std::optional<SequenceEnd> interrupt;          ///< reason for which the player must end its sequence;
+                                                 ///< empty: the player continues
+  std::optional<std::uint32_t> acknowledged_by;  ///< id of the request that resets the grip results; empty:
+                                                 ///< no reset
   bool release = false;                          ///< true: the running sequence must continue with its
                                                  ///< release step
   std::uint32_t vented = 0;                      ///< channels that have been vented because of a stop
-  std::uint32_t no_rest = 0;                     ///< channels that get ERROR, because they did not come to
-                                                 ///< rest
+  std::uint32_t no_rest = 0;                     ///< channels that get the result ERROR, because they did not
+                                                 ///< come to rest
   bool seek_rest = false;                        ///< true: a start was accepted, so the loop must wait until
                                                  ///< the channels are at rest
-  const PreparedSequence* begin = nullptr;       ///< sequence that must start now, because all its channels
-                                                 ///< are at rest
+  const PreparedSequence* begin = nullptr;       ///< sequence that must start now, because all channels of
+                                                 ///< the sequence are at rest
 };
 
 class Supervisor {
@@ -55,15 +55,16 @@ class Supervisor {
   explicit Supervisor(const RigSettings& settings);
 
   SupervisorOutputs tick(const TickInput& input, const SupervisorInputs& inputs, EventList& events) noexcept;
-  /// The caller calls this function when the player has reached the end of the sequence.
+  /// Ends the sequence in the supervisor. The caller calls this function when the player has reached the end
+  /// of the sequence.
   void sequence_ended(SequenceEnd end, OnFail action, Phase phase, EventList& events) noexcept;
 
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] const Fault& first_fault() const noexcept { return first_fault_; }
-  /// Returns the channels that go to their rest pressure while the state is not `running`. All other channels
-  /// keep their command.
+  /// Returns a bit mask of the channels that go to their rest pressure while the state is not `running`. All
+  /// other channels keep their command.
   [[nodiscard]] std::uint32_t venting() const noexcept { return venting_; }
-  /// Returns the channels that must vent if the loop ends now while the player is in `phase`.
+  /// Returns a bit mask of the channels that must vent if the loop ends now while the player is in `phase`.
   [[nodiscard]] std::uint32_t venting_on_leaving(Phase phase) const noexcept;
   [[nodiscard]] const PreparedSequence* sequence() const noexcept { return sequence_; }
 
@@ -77,7 +78,7 @@ class Supervisor {
                     EventList& events) noexcept;
   [[nodiscard]] RefusalCode refusal_of_start(const TickInput& input,
                                              const SupervisorInputs& inputs) const noexcept;
-  /// Returns true if the start is refused, and reports the refusal.
+  /// Returns true if the start must be refused, and adds an event with the reason.
   [[nodiscard]] bool refuses_start(const TickInput& input, const SupervisorInputs& inputs,
                                    EventList& events) const noexcept;
   void answer_check(const TickInput& input, const SupervisorInputs& inputs, EventList& events) const noexcept;
@@ -107,14 +108,14 @@ class Supervisor {
   std::uint32_t told_ = 0;           ///< bit mask of the faults that were reported since the first fault; bit
                                      ///< i is entry i of all_faults()
   std::uint32_t venting_ = 0;
-  const PreparedSequence* sequence_ = nullptr;  ///< set from the acceptance of a start until the end of the
-                                                ///< sequence
+  const PreparedSequence* sequence_ = nullptr;  ///< sequence of the accepted start; nullptr after the end of
+                                                ///< the sequence
   std::uint32_t start_request_ = 0;
   std::uint32_t halted_by_ = 0;  ///< id of the newest request to vent, or to stop any sequence
-  std::uint32_t taken_ = 0;      ///< id of the newest request of any other kind; such requests arrive in the
-                                 ///< order of their ids
-  /// Ids of starts that a stop request named before they arrived. The array is large enough, because the
-  /// queue of the loop cannot hold more starts.
+  std::uint32_t taken_ = 0;      ///< id of the newest request of any kind that does not set halted_by_;
+                                 ///< requests of these kinds arrive in the order of their ids
+  /// Ids of starts that a stop request named before these starts arrived. 64 entries are sufficient, because
+  /// the queue of the loop cannot hold more starts.
   static constexpr std::size_t most_withdrawn = 64;
   std::array<std::uint32_t, most_withdrawn> withdrawn_{};
   std::size_t next_withdrawn_ = 0;  ///< index of the next entry of withdrawn_ to be written

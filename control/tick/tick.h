@@ -1,6 +1,6 @@
 #pragma once
-// Defines the inputs and outputs of RigController (control/tick/rig_controller.h) for one tick. They are
-// plain values without allocated memory, so threads can copy them.
+// Defines the inputs and outputs of RigController (control/tick/rig_controller.h) for one tick. The outputs
+// contain no allocated memory, so one thread can copy them to another.
 
 #include <array>
 #include <cstddef>
@@ -21,15 +21,15 @@ struct PreparedSequence;  // control/tick/sequence.h defines this struct
 
 /// States of the supervisor. Status and recordings use the names of these states.
 enum class State : std::uint8_t {
-  starting,         ///< not all channels have a valid reading yet; the commands are the rest pressures, or
+  starting,         ///< not every channel has a valid reading yet; the commands are the rest pressures, or
                     ///< the commands after a fault
   idle,             ///< the rig is ready, and nothing moves
-  resynchronising,  ///< a start was accepted; waits until the fingers are at rest, and adjusts the models to
-                    ///< the readings
+  resynchronising,  ///< a start was accepted; the controller waits until the fingers are at rest, and adjusts
+                    ///< the models to the readings
   running,          ///< a sequence runs
   stopping,         ///< a sequence was stopped; the stop action is not finished yet
-  faulted,          ///< a fault is latched; the rig file gives the outputs for the phase in which the fault
-                    ///< occurred
+  faulted,          ///< a fault is latched; the outputs follow the action that the rig file gives for the
+                    ///< phase of the fault
 };
 [[nodiscard]] std::string_view name_of(State state) noexcept;
 /// Returns true if a request makes the rig move in this state: resynchronising, running or stopping.
@@ -37,14 +37,14 @@ enum class State : std::uint8_t {
   return state == State::resynchronising || state == State::running || state == State::stopping;
 }
 
-/// Returns true if a pressure may move away from rest in this state: a sequence was started and has not
-/// ended.
+/// Returns true if a pressure may move away from the rest pressure in this state, because a sequence was
+/// started and has not ended.
 [[nodiscard]] constexpr bool may_rise(State state) noexcept {
   return state == State::resynchronising || state == State::running;
 }
 
-/// The reason why a finger has not settled, although a start needs it at rest. Either the finger moves, or
-/// its reading differs from the model.
+/// The reason why a finger is not ready for a start: the finger moves, or its reading at rest differs from
+/// the model.
 enum class UnsettledReason : std::uint8_t { none, moves, off_model };
 
 /// The reason why a sequence ended.
@@ -57,7 +57,7 @@ struct Request {
   enum class Kind : std::uint8_t {
     none,
     start,
-    check,  ///< the reply is the same as for a start at this time, but the rig does not start
+    check,  ///< tests if a start would be accepted at this time; the rig does not start
     stop,
     vent,
     acknowledge,
@@ -68,19 +68,19 @@ struct Request {
                                                ///< contain it
   const PreparedSequence* sequence = nullptr;  ///< for start and check; must exist until the sequence has
                                                ///< ended
-  std::uint32_t of_start = 0;                  ///< for stop: id of the only start that must stop; 0: any
-                                               ///< start
+  std::uint32_t of_start = 0;                  ///< for stop: id of the start that must stop; 0: any running
+                                               ///< start must stop
 };
 
-/// State of the bus in the time since the last tick.
+/// State of the bus, from the exchanges since the last tick.
 struct BusHealth {
   bool connected = false;             ///< true: a connection to the board is open
   FaultCode fault = FaultCode::none;  ///< cause of the last failed exchange; `none` after a successful
                                       ///< exchange
   std::uint32_t consecutive_failures = 0;
-  /// Number of times that the bus thread has stopped applying the commands. After such a stop, the bus thread
-  /// writes no pressure that is further from rest than TickInput::outputs_kpa, and `fault` gives the reason.
-  /// The bus thread applies commands again when they come from a tick that has read the new number.
+  /// Number of times that the bus thread has stopped applying the commands; `fault` gives the reason. After
+  /// such a stop, the bus thread writes no pressure that is further from rest than TickInput::outputs_kpa.
+  /// The bus thread applies the commands of a tick again after this tick has read the new value of `inhibit`.
   std::uint32_t inhibit = 0;
 };
 
@@ -88,8 +88,8 @@ struct TickInput {
   Nanoseconds now = 0;
   std::span<const model::Reading> readings;  ///< newest reading of each channel
   BusHealth bus;
-  /// For each channel, the pressure at the board's output or a pressure that is nearer to rest. Empty:
-  /// unknown.
+  /// For each channel, the pressure at the board's output, or a pressure between this pressure and the rest
+  /// pressure. Empty: the outputs are unknown.
   std::span<const double> outputs_kpa;
   Request request;
   bool emergency_stop = false;       ///< state of the emergency stop input; true: stop
@@ -99,28 +99,29 @@ struct TickInput {
   std::uint32_t overrun_cycles = 0;  ///< number of cycles that the loop missed just before this tick
 };
 
-/// The output of one channel in one tick. Each tick modifies the output of the previous tick, because a tick
-/// decides on the basis of the previous values. The commands, the rows of the recording and the status are
-/// copied from this output.
+/// The output of one channel in one tick. A tick starts with the output of the previous tick and changes it,
+/// because some decisions depend on the previous values. The commands for the board, the rows of the
+/// recording and the status are copied from this output.
 struct ChannelOutput {
   double command_kpa = 0;      ///< command for the board, within the pressure range and the slew limits
-  double safe_kpa = 0;         ///< command that is written if the loop stops now; it depends on the phase
-  double reference_mm = 0;     ///< limited reference at the time of this tick; NaN if no reference is
-                               ///< followed
-  double displacement_mm = 0;  ///< last valid reading; NaN before the first one
-  double pressure_kpa = 0;     ///< measured pressure; NaN if it is not measured
-  double temperature_c = 0;    ///< measured temperature; NaN if it is not measured; it is recorded, but not
-                               ///< used
-  double feedforward_kpa = 0;  ///< feedforward part of the request; 0 if no reference is followed
-  double feedback_kpa = 0;     ///< feedback part of the request; 0 if no reference is followed
+  double safe_kpa = 0;         ///< command that is written if the loop stops now; the command depends on the
+                               ///< phase of the rig
+  double reference_mm = 0;     ///< reference at the time of this tick, limited to the displacement range; NaN
+                               ///< if no reference is followed
+  double displacement_mm = 0;  ///< last valid reading; NaN before the first valid reading
+  double pressure_kpa = 0;     ///< measured pressure; NaN if no pressure is measured
+  double temperature_c = 0;    ///< measured temperature, which is recorded but not used; NaN if no
+                               ///< temperature is measured
+  double feedforward_kpa = 0;  ///< feedforward part of the requested command; 0 if no reference is followed
+  double feedback_kpa = 0;     ///< feedback part of the requested command; 0 if no reference is followed
   double residual_mm = 0;      ///< reading minus (model output + offset) at the time of the reading; NaN
                                ///< without a reading
-  double shortfall_mm = 0;     ///< displacement of free motion minus reading; NaN if it is unknown
+  double shortfall_mm = 0;     ///< displacement of free motion minus reading; NaN if the shortfall is unknown
   double free_kpa = 0;         ///< command under which the free finger rests at the last valid reading
-  /// gripping pressure: the pressure above free_kpa; NaN without displacement feedback
+  /// gripping pressure: command minus free_kpa; NaN without displacement feedback
   double squeeze_kpa = 0;
   double age_s = 0;          ///< age of the reading in this tick
-  double health_rms_mm = 0;  ///< root mean square of the residual; above a limit, the model is unfit
+  double health_rms_mm = 0;  ///< root mean square of the residual; above unfit_mm, the model is unfit
   std::uint16_t step = 0;    ///< index of the step in the sequence
   model::Validity validity = model::Validity::none_yet;
   GripResult result = GripResult::none;
@@ -128,36 +129,36 @@ struct ChannelOutput {
   HealthState health =
       HealthState::unknown;  ///< health of the channel's model: healthy, suspect, unfit or unknown
   bool health_changed = false;
-  BindingLimit bound_by = BindingLimit::none;  ///< limit that changes the command noticeably compared with
+  BindingLimit bound_by = BindingLimit::none;  ///< limit that changes the command by more than 0.5 kPa from
                                                ///< the request
-  BindingLimit limit = BindingLimit::none;     ///< limit bound_by, after it has been active for
+  BindingLimit limit = BindingLimit::none;     ///< value of bound_by after it has restricted the command for
                                                ///< LimitWatch::moment_s
-  bool saturated = false;                      ///< true: the request was outside the pressure range
-  bool slewing = false;                        ///< true: the request was further from the last command than
-                                               ///< the slew limits allow
-  bool request_invalid = false;                ///< true: the request was not a number, so the last command
-                                               ///< was held
+  bool saturated = false;                      ///< true: the requested command was outside the pressure range
+  bool slewing = false;                        ///< true: the requested command was further from the last
+                                               ///< command than the slew limits allow
+  bool request_invalid = false;                ///< true: the requested command was not a number, so the last
+                                               ///< command was held
   bool reference_clamped = false;              ///< true: the reference was outside the displacement range, so
                                                ///< it was limited
   bool out_of_reach = false;         ///< true: the feedforward cannot reach the reference within the limits
-  bool stands_still = false;         ///< true: the reading has been constant for a time that is implausible
-                                     ///< for this sensor
+  bool stands_still = false;         ///< true: the reading has been constant for an implausibly long time for
+                                     ///< this sensor
   bool unsteady = false;             ///< true: the reading jumps back and forth repeatedly
-  double jump_mm = 0;                ///< size of the last jump; the sign gives the direction
-  bool displacement_beyond = false;  ///< true: the reading is outside the displacement range and the margin
-                                     ///< around the range
+  double jump_mm = 0;                ///< size of the last jump of the reading; negative for a decrease
+  bool displacement_beyond = false;  ///< true: the reading is outside the displacement range and outside the
+                                     ///< margin around this range
   bool synchronised = false;         ///< true: resynchronisation was requested, and residual_mm has settled
 };
 
 /// Value of `Event::channel` for an event that concerns the complete rig.
 inline constexpr std::uint8_t whole_rig = 0xff;
 
-/// A fault, and the channel that it concerns.
+/// A fault and the channel in which it occurred.
 struct Fault {
   FaultCode code = FaultCode::none;
   std::uint8_t channel = whole_rig;
-  double value = 0;  ///< value of the fault condition: an age, a displacement, a read-back or a number of
-                     ///< cycles
+  double value = 0;  ///< value of the fault condition: for example an age, a displacement, a read-back or a
+                     ///< number of cycles
 };
 
 /// An event that the daemon must report. A tick has at most a few events.
@@ -176,26 +177,27 @@ struct Event {
     reading_valid,
     contact,           ///< a finger has come into contact with an object during a motion
     limit_binds,       ///< a limit has restricted a command for longer than LimitWatch::moment_s
-    limit_free,        ///< the limit that was reported no longer restricts the command
-    release_asked,     ///< the sequence continues with its release step
+    limit_free,        ///< the limit that was reported by limit_binds no longer restricts the command
+    release_asked,     ///< a release was requested, so the sequence continues with its release step
     reading_unsteady,  ///< the reading jumps back and forth repeatedly
     reading_steady,    ///< the reading has not jumped for JumpWatch::calm_s
-    start_checked,     ///< the result of a check: a start would be accepted now
-    not_at_rest,       ///< the reason why a start found no rest. `detail` is an UnsettledReason; `value` is
-                       ///< the model offset [mm]
+    start_checked,     ///< the result of a request of the kind `check`: a start would be accepted now
+    not_at_rest,       ///< a start found a finger that was not at rest. `detail` is an UnsettledReason;
+                       ///< `value` is the model offset [mm]
   };
   Kind kind = Kind::state_changed;
   std::uint8_t channel = whole_rig;
   /// Detail of the event. Its type depends on `kind`: State, FaultCode, GripResult, step, RefusalCode,
   /// HealthState, Validity, SequenceEnd, OnContact, BindingLimit or UnsettledReason.
   std::uint16_t detail = 0;
-  std::uint32_t request = 0;  ///< id of the request that the event answers; 0 if there is none
-  /// Value of the event (a displacement shortfall, an age, a contact position); 0 if there is none.
+  std::uint32_t request = 0;  ///< id of the request that the event answers; 0 if the event answers no request
+  /// Value of the event: a displacement shortfall, an age, a contact position or another number. The value is
+  /// 0 for an event without a number.
   double value = 0;
   GripEvidence evidence = GripEvidence::none;  ///< for a grip result: the evidence on which it is based
 };
 
-/// The events of one tick. Events beyond the capacity of the list are counted, but not stored.
+/// The events of one tick. If the list is full, further events are counted, but not stored.
 class EventList {
  public:
   void add(const Event& event) noexcept {
@@ -205,8 +207,8 @@ class EventList {
       ++lost_;
     }
   }
-  /// Adds an event that concerns the complete rig. `detail` is a value of one of the enumerations that
-  /// Event::detail names.
+  /// Adds an event that concerns the complete rig. The type of `detail` is one of the types that the comment
+  /// on Event::detail lists.
   template <class Detail>
   void add(Event::Kind kind, Detail detail, std::uint32_t request = 0, double value = 0) noexcept {
     add_of_channel(whole_rig, kind, detail, request, value);
@@ -232,9 +234,9 @@ class EventList {
 struct TickOutput {
   State state = State::starting;
   Fault first_fault;  ///< the fault that latched first
-  Fault cause;        ///< present condition that is a fault, or can become a fault if it lasts
-  /// Channels that are under pressure but do not move: after a sequence that ended in a hold, or after a stop
-  /// or a fault with the action hold. Bit i is channel i.
+  Fault cause;        ///< present condition that is a fault, or becomes a fault if it lasts long enough
+  /// Bit mask of the channels that are under pressure but do not move; bit i is channel i. This is the case
+  /// after a sequence that ended with the action hold, and after a stop or a fault with the action hold.
   std::uint32_t under_pressure = 0;
   std::size_t channel_count = 0;
   std::array<ChannelOutput, max_channels> channels{};

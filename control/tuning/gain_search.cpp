@@ -34,8 +34,8 @@ GainPoint centre_of_best(const Corners& corners) {
   return centre;
 }
 
-/// Performs one step of the simplex method: replaces the corner with the highest cost, or moves all corners
-/// towards the corner with the lowest cost.
+/// Performs one step of the simplex method. The step replaces the corner with the highest cost, or moves all
+/// corners towards the corner with the lowest cost.
 void move_worst(Corners& corners, const std::function<double(const GainPoint&)>& cost) {
   const GainPoint centre = centre_of_best(corners);
   const GainPoint worst = corners[3].second;

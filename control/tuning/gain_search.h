@@ -1,6 +1,6 @@
 #pragma once
-// Searches PID gains. All controllers are tuned by this search, so that a comparison of controllers shows the
-// effect of their other parts.
+// Searches the PID gains with the lowest cost. All controllers in a comparison are tuned by this search.
+// Therefore, differences between their results come from their structure and not from the method of tuning.
 
 #include <array>
 #include <functional>
@@ -15,11 +15,13 @@ using GainPoint = std::array<double, 3>;
 
 /// Settings of the simplex method of Nelder and Mead (Computer Journal 7, 1965).
 struct Simplex {
-  GainPoint edges{0.4, 0.4, 0.02};  ///< distances from the start point of the search to the other corners of
-                                    ///< the simplex
-  int iterations = 60;              ///< number of iterations; each iteration computes the cost once or twice
+  GainPoint edges{0.4, 0.4, 0.02};  ///< distances of the corners of the simplex from the start point of the
+                                    ///< search, one distance per variable
+  int iterations = 60;              ///< number of iterations of the search; each iteration computes the cost
+                                    ///< once or twice
   double done_share = 0;            ///< the search ends when the costs of the corners differ by less than
-                                    ///< this share
+                                    ///< this share of a cost; 0: the number of iterations alone ends the
+                                    ///< search
 };
 /// Returns the corner of the simplex that has the lowest cost at the end of the search.
 [[nodiscard]] GainPoint nelder_mead(const std::function<double(const GainPoint&)>& cost,
@@ -27,12 +29,13 @@ struct Simplex {
 
 struct GainSearch {
   int iterations = 60;  ///< number of iterations of the simplex search after the grid search
-  /// Step through the points of the grid of 5 values of kp and 6 values of ki; 1 uses all points.
+  /// Step through the list of grid points (5 values of kp, 6 values of ki). With the step n, only every n-th
+  /// point is used; with 1, all points are used.
   int coarseness = 1;
 };
 
-/// Returns the gains with the smallest `cost`. A coarse grid search in kp and ki is followed by the simplex
-/// search in ln kp, ln ki and kd. All other settings keep their defaults.
+/// Returns the gains with the smallest `cost`. A coarse grid search in kp and ki comes first. The simplex
+/// search in ln kp, ln ki and kd starts from the best grid point. All other PID settings keep their defaults.
 [[nodiscard]] PidSettings search_gains(const std::function<double(const PidSettings&)>& cost,
                                        const GainSearch& search = {});
 

@@ -23,7 +23,8 @@ namespace {
 
 constexpr double rest_s = 0.5;
 constexpr double approach_s = 3;
-/// Lowest frequency at which the response of a loop is computed, and the factor between two frequencies.
+/// Lowest frequency at which the frequency response of a loop is computed, and the ratio of two successive
+/// frequencies.
 constexpr double lowest_hz = 1e-3;
 constexpr double step_factor = 1.005;
 
@@ -42,7 +43,7 @@ double quantised(double value, double step) {
   return step > 0 ? step * std::round(value / step) : value;
 }
 
-/// A simulated finger with a simulated board and clock.
+/// A simulated finger with a simulated board and a simulated clock.
 class Bench {
  public:
   explicit Bench(const TrackingRun& run)
@@ -52,8 +53,8 @@ class Bench {
         finger_(run.finger, {}, tick_s_, run.seed),
         seed_(derived_seed(run.seed, 1)) {}
 
-  /// Advances to the exchange of the tick and writes the command. Returns the reading that was taken in the
-  /// same exchange.
+  /// Advances the simulation to the exchange of the tick and writes the command in this exchange. Returns the
+  /// reading of the same exchange.
   double exchange(double command_kpa) {
     if (exchange_s_ > 0) finger_.step(exchange_s_, out_kpa_);
     out_kpa_ = quantised(command_kpa, run_.command_step_kpa);
@@ -61,8 +62,8 @@ class Bench {
     return quantised(finger_.reading_mm() + run_.noise_mm * normal_at(seed_, readings_++),
                      run_.reading_step_mm);
   }
-  /// Advances to the end of the tick. Returns the finger's displacement in the middle between the exchange
-  /// and the end of the tick, and its displacement at the end.
+  /// Advances the simulation to the end of the tick. Returns two displacements of the finger: halfway between
+  /// the exchange and the end of the tick, and at the end of the tick.
   std::array<double, 2> rest_of_tick() {
     std::array<double, 2> places{};
     for (double& place : places) {
@@ -83,8 +84,9 @@ class Bench {
   double out_kpa_ = 0;
 };
 
-/// Smallest and largest instantaneous slope of the model over its working range in two cycles. The second
-/// cycle is needed, because the hysteresis may differ between the two cycles.
+/// Smallest and largest instantaneous slope of displacement over pressure, over the working range in two
+/// cycles. Two cycles are needed, because the hysteresis in the second cycle may differ from that in the
+/// first.
 struct GainRange {
   double smallest = std::numeric_limits<double>::max();
   double largest = 0;
@@ -113,7 +115,8 @@ GainRange gain_range(const model::Model& body, const LimitSettings& limits) {
   return range;
 }
 
-/// Returns the compliance of the creep at the frequency s, without the instantaneous part [mm/kPa].
+/// Returns the compliance of the creep at the complex frequency `s` [mm/kPa]. The instantaneous part of the
+/// compliance is not included.
 std::complex<double> creep(const model::Model& body, std::complex<double> s) {
   std::complex<double> sum = 0;
   for (const model::BlockSpec& block : body.blocks) {
@@ -212,7 +215,8 @@ LoopMargins loop_margins(const model::Model& model, const PidSettings& pid, cons
   const double dead_s = dead_time_s(model) + 0.5 * tick_s + age_s;
   LoopMargins margins;
   for (const double gain : {gains.smallest, gains.largest}) {
-    bool beyond = true;  // true while |L| > 1; with an integrator, |L| > 1 at the lowest frequency
+    bool beyond = true;  // true while the loop gain |L| is above 1; with an integrator, |L| is above 1 at the
+                         // lowest frequency
     double phase = 0;
     std::complex<double> before = 0;
     const auto steps = static_cast<int>(std::log(0.5 / tick_s / lowest_hz) / std::log(step_factor));

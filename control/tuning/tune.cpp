@@ -14,12 +14,13 @@
 namespace softgrip::control {
 namespace {
 
-/// Search variables: ln kp, ln ki, derivative time [s]; a negative derivative time means no derivative.
+/// Search variables: ln kp, ln ki, derivative time [s]; a negative derivative time means a PID without
+/// derivative.
 using Point = GainPoint;
 
 constexpr double filter_share = 0.125;
-/// Smallest cost of a loop whose stability margin is too small [mm]. The cost increases with the amount by
-/// which the margin is too small.
+/// Smallest cost of a control loop whose sensitivity is above its bound [mm]. The cost increases with the
+/// sensitivity.
 constexpr double no_margin_mm = 100;
 constexpr double most_error_mm = 50;
 
@@ -56,7 +57,7 @@ class Cost {
     return rmse(pid, fingers_, task_.noise_mm);
   }
 
-  /// Returns the worst stability margins over all fingers.
+  /// Returns the worst stability margins over all simulated fingers.
   [[nodiscard]] LoopMargins margins(const PidSettings& pid) const {
     LoopMargins worst;
     worst.crossover_hz = 0.5 * task_.rate_hz;

@@ -1,5 +1,5 @@
 #pragma once
-// Tunes PID gains for fingers whose parameters differ from the parameters of the model.
+// Tunes PID gains for fingers whose parameters differ from those of the model in the controller.
 
 #include <cstdint>
 #include <string>
@@ -12,18 +12,19 @@
 
 namespace softgrip::control {
 
-/// The task of a tuning. The simulated fingers are random variations of `finger`; the controller uses
+/// The input of a tuning. The simulated fingers are random variations of `finger`; the controller uses
 /// `channel.model`.
 struct TuneTask {
   ChannelSettings channel;  ///< model, feedforward and limits of the controller; its PID gains are not used
   model::Model finger;
   double rate_hz = 200;
-  double exchange_s = 0;  ///< time from the tick to the exchange, as in TrackingRun
+  double exchange_s = 0;  ///< time from the start of a tick to its exchange, as in TrackingRun
   double mean_mm = 13;
   double amplitude_mm = 7;
   std::vector<double> frequencies_hz{0.1, 0.3};  ///< frequencies of the tracked sines
   double noise_mm = 0.03;
-  double mismatch = 0.05;       ///< largest relative error of each parameter of a finger
+  double mismatch = 0.05;       ///< largest relative difference of a finger's parameter from the parameter of
+                                ///< `finger`
   int draws = 6;                ///< number of random fingers
   double most_sensitivity = 2;  ///< largest permitted Ms of each finger; Ms = 2 means a gain margin of 2 and
                                 ///< a phase margin of 29 degrees
@@ -41,17 +42,17 @@ struct Tuned {
   double noisy_mm = 0;      ///< tracking error for the unchanged `finger`, with noise
   double mismatch_mm = 0;   ///< tracking error for the random fingers, without noise
   int evaluations = 0;
-  std::string limited_by;  ///< factor that limits the tuning result, as text
+  std::string limited_by;  ///< factor that prevents a smaller tracking error, as text
 };
 
-/// Minimises the tracking error over all fingers. The largest Ms must stay within its bound. A grid search in
-/// kp and ki is followed by the simplex search of Nelder and Mead (Computer Journal 7, 1965). The simplex
-/// search varies kp, ki and the derivative time. The filter time of the derivative is an eighth of the
-/// derivative time, but at least two ticks.
+/// Returns the gains with the smallest tracking error over all fingers. The largest sensitivity Ms must not
+/// exceed most_sensitivity. A grid search in kp and ki comes first; the simplex search of Nelder and Mead
+/// (Computer Journal 7, 1965) refines the result. The simplex search varies kp, ki and the derivative time.
+/// The filter time of the derivative is 1/8 of the derivative time, but at least two ticks.
 [[nodiscard]] Tuned tune(const TuneTask& task);
 
-/// Chooses a sine that the model can reach. Its mean and its amplitude are fixed shares of the displacement
-/// at the highest pressure.
+/// Sets the sine of the task to a sine that the model can follow. The mean and the amplitude are fixed shares
+/// of the displacement at the highest pressure.
 void choose_reference(TuneTask& task);
 
 }  // namespace softgrip::control

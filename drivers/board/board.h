@@ -1,5 +1,6 @@
 #pragma once
-// The interface between the bus thread and an I/O board. A board has N channels with one command each.
+// Defines the interface between the bus thread and an I/O board. A board has N channels with one pressure
+// command each.
 
 #include <chrono>
 #include <cstddef>
@@ -17,21 +18,22 @@ using model::Reading;
 /// The result of an exchange with the board.
 enum class BusStatus : std::uint8_t {
   ok,
-  disconnected,      ///< there is no open session; connect() is necessary
-  timed_out,         ///< the deadline passed before the exchange was complete
-  bad_reply,         ///< the reply has a wrong unit id, length, transaction id or function; the session must
-                     ///< be closed
+  disconnected,      ///< no session is open, so connect() must be called first
+  timed_out,         ///< the deadline passed before the exchange with the board was complete
+  bad_reply,         ///< the reply has an unexpected unit id, length, transaction id or function code; the
+                     ///< session must be closed
   exception,         ///< the board responded with a Modbus exception
   write_refused,     ///< a command is invalid or out of range, or the read-back differs from the written
                      ///< value
-  overwritten,       ///< another client has written to the board since the last exchange
-  watchdog_tripped,  ///< the board's own watchdog holds the outputs at their safe value
-  closed_at_once,    ///< the board, or a device before it, accepted the connection and closed it before the
-                     ///< first response
+  overwritten,       ///< another client has written to the outputs since the last exchange
+  watchdog_tripped,  ///< the watchdog of the board has set the outputs to their safe value and holds this
+                     ///< value
+  closed_at_once,    ///< the board, or a gateway in front of the board, accepted the connection and closed it
+                     ///< before the first response
 };
 [[nodiscard]] const char* name_of(BusStatus status) noexcept;
 
-/// An I/O board. All functions are called from one thread: the bus thread, or the loop in virtual time.
+/// An I/O board. One thread calls all functions: the bus thread, or the control loop in virtual time.
 class Board {
  public:
   Board() = default;
@@ -43,8 +45,9 @@ class Board {
 
   [[nodiscard]] virtual std::size_t channels() const noexcept = 0;
 
-  /// Opens or reopens the session within `deadline`, and may block for this time. It is never called in a
-  /// tick. connect() does not change the outputs of the board; the first exchange() writes the safe value.
+  /// Opens or reopens the session within `deadline`, and may block until `deadline`. The control loop never
+  /// calls connect() in a tick. connect() does not change the outputs of the board; the first exchange()
+  /// writes the safe value.
   [[nodiscard]] virtual BusStatus connect(std::chrono::nanoseconds deadline) noexcept = 0;
 
   /// Writes one pressure per channel [kPa] and reads all channels within `deadline`. If the result is not
@@ -78,16 +81,17 @@ class Board {
   /// Returns true if the board sets its outputs to a safe value when the daemon stops sending requests.
   [[nodiscard]] virtual bool has_watchdog() const noexcept = 0;
 
-  /// Returns the shortest time after which the board sets an output to its safe value if no request feeds the
-  /// watchdog; 0 if the board has no watchdog.
+  /// Returns the shortest time without requests after which the watchdog of the board sets an output to its
+  /// safe value; 0 if the board has no watchdog.
   [[nodiscard]] virtual std::chrono::nanoseconds watchdog_time() const noexcept = 0;
 
-  /// Returns true if another client that only reads also feeds the watchdog. In this case, the outputs keep
-  /// their value after this program has ended, as long as the other client sends requests.
+  /// Returns true if the read requests of another client also feed the watchdog, so that the watchdog does
+  /// not trip. In this case, the outputs keep their value after this program has ended, as long as the other
+  /// client sends requests.
   [[nodiscard]] virtual bool fed_by_readers() const noexcept { return false; }
 
   /// Returns the number of clients that the board counted in the last successful exchange, including this
-  /// program; 0 if the board does not count them.
+  /// program; 0 if the board does not count clients.
   [[nodiscard]] virtual unsigned clients() const noexcept { return 0; }
 };
 

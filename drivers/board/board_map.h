@@ -1,7 +1,7 @@
 #pragma once
-// The contents of a board file (config/boards/*.yaml) as plain values: the registers of an I/O board and
-// their meaning. load_board_map() in rig/board_map_file.h reads the file. The Modbus board and the emulator
-// use the values. docs/reference/board-map.md describes the file.
+// Defines the contents of a board file (config/boards/*.yaml): the registers of an I/O board and their
+// meaning. load_board_map() in rig/board_map_file.h reads the file. The Modbus board and the emulator use the
+// values. docs/reference/board-map.md describes the file.
 
 #include <algorithm>
 #include <cstddef>
@@ -27,11 +27,11 @@ enum class WordOrder : std::uint8_t {
 };
 /// Returns the name of a word order in the board file.
 [[nodiscard]] std::string_view name_of(WordOrder order) noexcept;
-/// The unit of the quantity at a terminal. The "terminal" of a pressure generator is its air port, whose unit
-/// is kPa.
+/// The unit of the quantity at a terminal. A pressure generator has an air port as terminal, with the unit
+/// kPa.
 enum class ElectricalUnit : std::uint8_t { volt, milliampere, kilopascal };
 
-/// Returns how many registers a number of this kind has: 1 or 2.
+/// Returns the number of registers that a number of this kind occupies: 1 or 2.
 [[nodiscard]] constexpr std::uint16_t words_of(RegisterKind kind) noexcept {
   return kind == RegisterKind::uint16 || kind == RegisterKind::int16 ? 1 : 2;
 }
@@ -40,39 +40,39 @@ enum class ElectricalUnit : std::uint8_t { volt, milliampere, kilopascal };
 /// Returns the symbol of a unit: "V", "mA" or "kPa".
 [[nodiscard]] std::string_view name_of(ElectricalUnit unit) noexcept;
 
-/// Consecutive numbers of one kind. `address` is the address in the Modbus request, from 0. The loader of the
-/// board file has subtracted the file's address_base from it.
+/// Consecutive numbers of one kind. `address` is the address in the Modbus request: the address in the board
+/// file minus address_base of this file.
 struct RegisterBlock {
   std::uint8_t function = 0;  ///< function code for reading (1 to 4) or for writing (5, 6, 16)
   std::uint16_t address = 0;
-  std::uint16_t count = 0;  ///< quantity of numbers; each number has one or two registers
+  std::uint16_t count = 0;  ///< number of values in the block; each value occupies one or two registers
   RegisterKind kind = RegisterKind::uint16;
 
   [[nodiscard]] constexpr std::uint16_t registers() const noexcept {
     return static_cast<std::uint16_t>(count * words_of(kind));
   }
-  /// Returns the address of the number `index`. The result may exceed 65535; such an address does not exist,
-  /// and it does not wrap around to 0.
+  /// Returns the address of the number `index`. A result above 65535 means that the address does not exist;
+  /// the result does not wrap around to 0.
   [[nodiscard]] constexpr std::uint32_t address_of(std::size_t index) const noexcept {
     return static_cast<std::uint32_t>(address + index * words_of(kind));
   }
 };
 
-/// All input terminals or all output terminals of a module: their registers and the scaling of the raw
-/// numbers. `registers.count` is 0 if the module has no such terminals.
+/// The input terminals or the output terminals of a module: their registers and the scaling of the raw
+/// numbers. `registers.count` is 0 if the module has no terminals of this direction.
 struct TerminalBlock {
   RegisterBlock registers;
   ElectricalUnit unit = ElectricalUnit::volt;
   TwoPoints scaling;   ///< line from the raw number (x) to the value in `unit` (y)
-  double raw_min = 0;  ///< lower end of the converter's range; a command outside the range is limited to the
-                       ///< range
+  double raw_min = 0;  ///< lower end of the range of the converter; a command outside this range is limited
+                       ///< to the range
   double raw_max = 0;
   int bits = 0;                    ///< resolution over [raw_min, raw_max]; 0: no quantisation (float)
-  std::vector<double> error_raws;  ///< raw numbers of the inputs that are error codes and not values
+  std::vector<double> error_raws;  ///< raw numbers of the inputs that are error codes and not measured values
 };
 
-/// Status registers of the inputs, and the meaning of the numbers in them. A number without a meaning counts
-/// as a sensor error.
+/// Status registers of the inputs, and the meaning of the numbers in them. A number whose meaning the board
+/// file does not give counts as a sensor error.
 struct StatusBlock {
   RegisterBlock registers;
   std::vector<std::uint16_t> ok;
@@ -82,10 +82,12 @@ struct StatusBlock {
 
 /// Registers in which the board reports its outputs.
 struct ReadBack {
-  RegisterBlock registers;  ///< registers to read; their numbers have the kind and the scaling of the outputs
-  double tolerance_raw = 0;  ///< a larger difference from the written value means that the write was refused
-  /// Largest number of exchanges until the board reports a written value. Until then, the values that were
-  /// written before it are also accepted.
+  RegisterBlock registers;   ///< registers to read; the numbers in these registers have the kind and the
+                             ///< scaling of the outputs
+  double tolerance_raw = 0;  ///< largest difference between the reported and the written value [raw number];
+                             ///< a larger difference means that the board refused the write
+  /// Largest number of exchanges until the board reports a written value. During these exchanges, the values
+  /// of earlier writes are accepted too.
   std::uint32_t lag_exchanges = 0;
 };
 
@@ -94,14 +96,14 @@ struct FixedWrite {
   std::uint8_t function = 0;  ///< function code of the write: 5, 6 or 16
   std::uint16_t address = 0;
   std::uint16_t value = 0;  ///< value to write; for a coil 0 or 1
-  /// Value of every second write, for a heartbeat if the board expects a change of the value.
+  /// Value of every second write of a heartbeat, if the board expects that the value changes.
   std::optional<std::uint16_t> alternate{};
 };
 
-/// Describes the watchdog of the board, which acts when the daemon sends no requests.
+/// The watchdog of the board, which sets the outputs to their safe value if the daemon sends no requests.
 struct BoardWatchdog {
   enum class Kind : std::uint8_t {
-    none,                   ///< outputs keep their last value for an unlimited time
+    none,                   ///< no watchdog: the outputs keep their last value for an unlimited time
     communication_timeout,  ///< outputs go to the safe value timeout_s after the last request that feeds the
                             ///< watchdog
   };
@@ -114,31 +116,32 @@ struct BoardWatchdog {
   struct Tripped {
     std::uint8_t function = 0;  ///< function code 1 or 2 (coil, discrete input), or 3 or 4 (register)
     std::uint16_t address = 0;
-    std::uint16_t mask = 0xffff;  ///< the watchdog has tripped if (number & mask) is not 0 in any of `count`
-                                  ///< numbers
-    std::uint16_t count = 1;      ///< quantity of registers or bits, one per output
+    std::uint16_t mask = 0xffff;  ///< the watchdog has tripped if (number & mask) is not 0 for at least one
+                                  ///< of `count` numbers
+    std::uint16_t count = 1;      ///< number of registers or bits, one per output
   };
 
-  /// The register that contains the number of clients.
+  /// The register that contains the number of clients of the board.
   struct ClientCount {
     std::uint8_t function = 0;  ///< function code of the read: 3 or 4
     std::uint16_t address = 0;
   };
 
   Kind kind = Kind::none;
-  double timeout_s = 0;                 ///< time-out in the board, which `setup` or a tool of the vendor has
-                                        ///< set [s]
-  std::vector<double> safe_electrical;  ///< safe value of each output, in the outputs' unit
+  double timeout_s = 0;                 ///< time-out in the board [s]; `setup` or a tool of the vendor sets
+                                        ///< this time-out
+  std::vector<double> safe_electrical;  ///< safe value of each output, in the unit of the output
   Feed feed = Feed::any_request;
   std::vector<std::uint8_t> functions;
   std::optional<FixedWrite> feed_write;
   std::optional<Tripped> tripped;      ///< registers or bits in which the board reports that its watchdog has
                                        ///< tripped
-  std::vector<FixedWrite> clear;       ///< writes that end the tripped state, in this order; empty: any write
-                                       ///< ends it
-  std::optional<ClientCount> clients;  ///< register with the number of clients, including this program
+  std::vector<FixedWrite> clear;       ///< writes that end the tripped state of the watchdog, in this order;
+                                       ///< empty: any write ends this state
+  std::optional<ClientCount> clients;  ///< register with the number of clients of the board, including this
+                                       ///< program
 
-  /// Returns true if a client that only reads also feeds the watchdog.
+  /// Returns true if requests of a client that only reads also feed the watchdog.
   [[nodiscard]] bool fed_by_reading() const noexcept {
     constexpr std::uint8_t last_that_reads = 4;
     const bool reads = std::any_of(functions.begin(), functions.end(),
@@ -150,25 +153,25 @@ struct BoardWatchdog {
 /// The contents of a board file.
 struct BoardMap {
   std::string name;
-  std::string source;    ///< origin of the numbers in the file, in one line
-  int address_base = 0;  ///< number that the file gives to the first register; used in messages only
+  std::string source;    ///< origin of the register numbers in the file, in one line
+  int address_base = 0;  ///< number that the board file uses for the first register; used only in messages
   WordOrder word_order = WordOrder::high_first;
   TerminalBlock inputs;
   TerminalBlock outputs;
   /// Largest number of registers in one request of this board. The Modbus specification allows 125 for a
   /// read.
   std::uint16_t max_registers = 125;
-  /// True: the board supports function code 23, which writes the outputs and reads the inputs in one
-  /// transaction.
+  /// True if the board supports function code 23. A request with this function code writes the outputs and
+  /// reads the inputs in one transaction.
   bool has_fc23 = false;
-  /// Largest gap between two register blocks that one request may read too [registers]. The board must
-  /// support reading the registers in the gap.
+  /// Largest gap between two register blocks that one request may include [registers]. The board must permit
+  /// reading the registers in the gap.
   std::uint16_t readable_gap = 0;
   std::optional<StatusBlock> input_status;
   std::optional<ReadBack> read_back;
   BoardWatchdog watchdog;
-  /// Writes after a session was opened, in this order. If the board's watchdog has tripped, it is cleared
-  /// before these writes.
+  /// Writes that follow the opening of a session, in this order. A tripped watchdog is cleared before these
+  /// writes.
   std::vector<FixedWrite> setup;
 
   [[nodiscard]] bool has_inputs() const noexcept { return inputs.registers.count > 0; }

@@ -33,7 +33,7 @@ class Checker {
     scales(where, input);
   }
 
-  /// Checks the wiring of a temperature sensor. Several channels may share the sensor.
+  /// Checks the wiring of a temperature sensor. Several channels may share one temperature sensor.
   void thermometer(const ChannelWiring& channel, const InputWiring& input) {
     if (!thermometers_.emplace(input.module, input.input).second) {
       scales(of_channel(channel, "temperature"), input);

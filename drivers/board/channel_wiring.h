@@ -1,5 +1,6 @@
 #pragma once
-// The wiring of one finger to a board, as the rig file gives it: module, terminals and scaling.
+// Defines the wiring of one finger to a board, as the rig file gives this wiring: module, terminals and
+// scaling.
 
 #include <cstddef>
 #include <optional>
@@ -16,18 +17,20 @@ namespace softgrip::drivers {
 /// optoNCDT 1402: 3.75 mA).
 struct SensorErrorCode {
   double electrical = 0;  ///< electrical value in the unit of the input (V or mA)
-  double tolerance = 0;   ///< >= 0; largest difference from `electrical`, in the same unit
+  double tolerance = 0;   ///< >= 0; largest difference between a measured value and `electrical`, in the same
+                          ///< unit as `electrical`
 };
 
 /// A sensor on an input of the board.
 struct InputWiring {
-  std::size_t input = 0;                       ///< number of the input terminal, from 0
+  std::size_t input = 0;                       ///< number of the input terminal; the first terminal has the
+                                               ///< number 0
   ElectricalUnit unit = ElectricalUnit::volt;  ///< unit in the rig file; it must equal the unit of the
                                                ///< board's terminal
-  TwoPoints scaling;                           ///< x: V or mA, y: mm, kPa or degrees C; the slope may be
-                                               ///< positive or negative
-  double valid_min = 0;  ///< lower end of the range in which a reading is valid, in V or mA; both ends are
-                         ///< included
+  TwoPoints scaling;                           ///< line from the electrical value in V or mA (x) to mm, kPa
+                                               ///< or degrees C (y); the slope may be positive or negative
+  double valid_min = 0;  ///< lower end of the range in which a reading is valid, in V or mA; a reading at an
+                         ///< end of the range is valid
   double valid_max = 0;
   std::vector<SensorErrorCode> error_codes;
   std::size_t module = 0;  ///< index of the module, for a board with several modules
@@ -35,14 +38,14 @@ struct InputWiring {
 
 /// A valve on an output of the board.
 struct OutputWiring {
-  std::size_t output = 0;  ///< number of the output terminal, from 0
+  std::size_t output = 0;  ///< number of the output terminal; the first terminal has the number 0
   ElectricalUnit unit = ElectricalUnit::volt;
   TwoPoints scaling;       ///< line from the electrical value in V or mA (x) to the pressure in kPa (y)
   std::size_t module = 0;  ///< index of the module, for a board with several modules
 };
 
-/// One channel: a valve and a displacement sensor. Optional are a pressure monitor of the valve and a
-/// temperature sensor. Several channels may share a temperature sensor.
+/// One channel: a valve and a displacement sensor. A pressure monitor of the valve and a temperature sensor
+/// are optional. Several channels may share one temperature sensor.
 struct ChannelWiring {
   std::string name;
   OutputWiring valve;
@@ -54,7 +57,7 @@ struct ChannelWiring {
 /// One terminal of a module.
 struct Terminal {
   ElectricalUnit unit = ElectricalUnit::volt;
-  double lowest = 0;  ///< lower end of an output's range; not used for an input
+  double lowest = 0;  ///< lower end of the range of an output; not used for an input
   double highest = 0;
 };
 
@@ -66,9 +69,10 @@ struct ModuleTerminals {
 };
 [[nodiscard]] ModuleTerminals terminals_of(const BoardMap& map);
 
-/// Returns the errors of the wiring, one sentence each; empty if the board can be created. Each terminal must
-/// exist and have the right unit. Only temperature sensors may share a terminal. Each module must be used,
-/// the two points of a scaling must differ, and no validity range may be empty.
+/// Returns the errors of the wiring, one sentence each. The result is empty if the board can be created. Each
+/// terminal must exist and have the unit that the wiring states. Only temperature sensors may share a
+/// terminal. A channel must use each module. The two points of a scaling must differ. The lower end of a
+/// validity range must be below its upper end.
 [[nodiscard]] std::vector<std::string> wiring_problems(std::span<const ModuleTerminals> modules,
                                                        std::span<const ChannelWiring> wiring);
 /// Returns the errors of the wiring for a board that has only one module.

@@ -1,4 +1,4 @@
-// Returns the names of the drivers' enumeration values in board files, events and messages.
+// Defines the names that the enumeration values of drivers/ have in board files, events and messages.
 
 #include "drivers/board/board.h"
 #include "drivers/board/board_map.h"

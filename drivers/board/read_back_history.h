@@ -10,9 +10,9 @@
 
 namespace softgrip::drivers {
 
-/// The raw numbers that were written in the last exchanges of a session. The number of stored exchanges is
-/// one more than the number of exchanges by which the board's read-back may lag. The constructor is the only
-/// function that allocates memory.
+/// Stores the raw numbers that the last exchanges of a session wrote. The number of stored exchanges is one
+/// more than the number of exchanges by which the board's read-back may lag. Only the constructor allocates
+/// memory.
 class ReadBackHistory {
  public:
   ReadBackHistory(const ReadBack& rules, std::size_t channels)
@@ -21,18 +21,18 @@ class ReadBackHistory {
         channels_(channels),
         written_(depth_ * channels) {}
 
-  /// Discards the stored numbers at the start of a new session.
+  /// Discards the stored numbers. The caller calls this function at the start of a new session.
   void forget() noexcept { exchanges_ = 0; }
 
-  /// Stores the raw numbers that one exchange wrote, one per channel.
+  /// Stores the raw numbers that one exchange has written, one per channel.
   void note(std::span<const double> raws) noexcept {
     const std::size_t at = exchanges_++ % depth_ * channels_;
     for (std::size_t i = 0; i < channels_; ++i) written_[at + i] = raws[i];
   }
 
-  /// Returns true if `raw` differs from a stored number by at most the tolerance. At the start of a session,
-  /// all numbers except NaN are accepted, because the board may still report numbers of the last session. NaN
-  /// is never accepted.
+  /// Returns true if `raw` differs from one of the channel's stored numbers by at most the tolerance. At the
+  /// start of a session, every number except NaN is accepted, because the board may still report numbers of
+  /// the last session. NaN is never accepted.
   [[nodiscard]] bool accepts(std::size_t channel, double raw) const noexcept {
     if (exchanges_ < depth_) return !std::isnan(raw);
     for (std::size_t i = 0; i < depth_; ++i) {

@@ -12,8 +12,8 @@ bool is_high_first(WordOrder order) noexcept {
   return order == WordOrder::high_first || order == WordOrder::high_first_bytes_swapped;
 }
 
-/// Converts a register from the byte order of this machine to the byte order of the board. A second call
-/// converts the register back.
+/// Converts a register from the byte order of this machine to the byte order of the board. A second call with
+/// the result restores the original value.
 std::uint16_t ordered(std::uint16_t word, WordOrder order) noexcept {
   const bool swapped =
       order == WordOrder::high_first_bytes_swapped || order == WordOrder::low_first_bytes_swapped;

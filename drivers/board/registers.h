@@ -17,9 +17,9 @@ namespace softgrip::drivers {
 /// limited to the range of the kind. NaN is written as 0.
 void encode(double raw, RegisterKind kind, WordOrder order, std::span<std::uint16_t> words) noexcept;
 
-/// Returns the raw number that the terminal's converter gives for a value in V or mA. The value is scaled,
-/// limited to [raw_min, raw_max], quantised to `bits`, and rounded for integer kinds. The inputs of the
-/// emulator use this function.
+/// Returns the raw number into which the converter of a terminal converts a value in V or mA. The value is
+/// scaled, limited to [raw_min, raw_max], quantised to `bits`, and rounded for integer kinds. The emulator
+/// uses this function for its inputs.
 [[nodiscard]] double quantised_raw(const TerminalBlock& terminals, double electrical) noexcept;
 
 }  // namespace softgrip::drivers

@@ -10,7 +10,7 @@
 namespace softgrip::drivers {
 namespace {
 
-// Assumed round trips [s]: the upper ends of the usual ranges. The range is 0.02 to 0.15 ms on loopback
+// Assumed durations of a round trip [s]. Each is the upper end of a range: 0.02 to 0.15 ms on loopback
 // (measured), and 1 to 10 ms in a switched network (common figure, not measured).
 constexpr double assumed_loopback_s = 0.15e-3;
 constexpr double assumed_network_s = 10e-3;

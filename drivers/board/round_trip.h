@@ -1,5 +1,5 @@
 #pragma once
-// Measures the round trip of a request. Calculates the duration of an exchange from the measured round trips.
+// Measures the round trips of requests, and calculates the duration of an exchange from the measurements.
 
 #include <array>
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace softgrip::drivers {
 
-/// The durations of the first round trips (at most 32) after the session was opened.
+/// Stores the durations of the first round trips after a session was opened, at most 32.
 class RoundTrip {
  public:
   void reset() noexcept { count_ = 0; }
@@ -18,8 +18,8 @@ class RoundTrip {
     if (count_ < durations_.size()) durations_[count_++] = duration;
   }
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
-  /// median_s() returns the median, and slowest_s() the longest duration [s]; both return 0 without a
-  /// measurement.
+  /// median_s() returns the median of the stored durations [s]. slowest_s() returns the longest stored
+  /// duration [s]. Both return 0 if no duration is stored.
   [[nodiscard]] double median_s() const noexcept;
   [[nodiscard]] double slowest_s() const noexcept;
 
@@ -29,17 +29,17 @@ class RoundTrip {
 };
 
 /// Returns the duration of `transactions` consecutive round trips, and an explanation of the calculation. The
-/// calculation uses the measured median, because other load of this machine may delay single round trips. The
-/// explanation also gives the longest round trip. Without a measurement, the calculation uses an assumed
-/// round trip, and the explanation says this.
+/// calculation uses the measured median, because other programs on this machine may delay single round trips.
+/// The explanation also gives the longest round trip. Without a measurement, the calculation uses an assumed
+/// round trip, and the explanation states this assumption.
 [[nodiscard]] Board::Budget tcp_cost(std::size_t transactions, const std::string& plan,
                                      const std::string& host, const RoundTrip& measured);
 
 /// Returns a duration as text in milliseconds, for example "9.7 ms".
 [[nodiscard]] std::string milliseconds(double seconds);
 
-/// Returns the duration of an exchange over several links that are used one after the other. The explanation
-/// combines the explanations of the links and gives the highest possible rate.
+/// Returns the duration of an exchange that uses several links one after the other. The explanation combines
+/// the explanations of the links and gives the highest possible rate.
 [[nodiscard]] Board::Budget sum_of(std::span<const Board::Budget> costs);
 
 }  // namespace softgrip::drivers

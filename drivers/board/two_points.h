@@ -1,12 +1,12 @@
 #pragma once
-// A straight line through two calibration points. Every scaling in a rig file or board file is such a line.
-// The slope may be positive or negative.
+// Defines a straight line through two calibration points. Every scaling in a rig file or board file is a line
+// of this kind. The slope may be positive or negative.
 
 namespace softgrip::drivers {
 
 /// The line through (x0, y0) and (x1, y1). For example, {4, 85, 20, 15} describes a sensor with 4-20 mA whose
 /// reading decreases as the current increases. x0 and x1 must differ; x_at() also requires that y0 and y1
-/// differ. wiring_problems() and the loaders check this.
+/// differ. wiring_problems() and the loaders of the files check these conditions.
 struct TwoPoints {
   double x0 = 0;
   double y0 = 0;

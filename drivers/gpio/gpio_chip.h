@@ -8,9 +8,9 @@
 
 namespace softgrip::drivers {
 
-/// Returns the chips whose files are in the folder `devices`. Each chip has its address in sysfs (`sys`) as a
-/// word, and also its label if this user may open the chip. If a link leads to the file of a chip, the name
-/// of the link is a further word of the chip.
+/// Returns the GPIO chips whose files are in the folder `devices`. The words of a chip are the names by which
+/// a rig file can select it. These are its address in sysfs (`sys`), the names of links to its file, and its
+/// label if this user may open the chip.
 [[nodiscard]] std::vector<ComputerDevice> chips_in(const std::filesystem::path& devices = "/dev",
                                                    const std::filesystem::path& sys = "/sys");
 

@@ -1,5 +1,5 @@
-// Accesses the GPIO character device through libgpiod. Debian 12 has version 1.6 of the library, and Debian
-// 13 has version 2.x. libgpiod_1.h and libgpiod_2.h contain the code that differs between the versions.
+// Accesses the GPIO character device through libgpiod. Debian 12 has version 1.6 of this library, and Debian
+// 13 has version 2.x. libgpiod_1.h and libgpiod_2.h contain the code that differs between the two versions.
 
 #include <gpiod.h>
 #include <poll.h>
@@ -34,8 +34,8 @@ Failure refused(std::string message, std::string hint = {}) {
   return {Failure::Kind::refused, 0, std::move(message), std::move(hint)};
 }
 
-/// Returns the failure that occurs when a chip is opened or a line is requested, with a hint for the author
-/// of the rig file.
+/// Returns the description of a failure to open a chip or to request a line. The description contains a hint
+/// for the author of the rig file.
 Failure failed(const std::string& what, int error) {
   Failure failure{Failure::Kind::failed, 0, what + ": " + std::strerror(error), ""};
   if (error == EACCES || error == EPERM) {
@@ -46,7 +46,7 @@ Failure failed(const std::string& what, int error) {
   return failure;
 }
 
-/// Returns the files of the chips and the links to these files, in alphabetical order.
+/// Returns the paths of the chips' files and of the links to these files, in alphabetical order.
 std::vector<std::filesystem::path> chip_paths(const std::filesystem::path& devices) {
   std::vector<std::filesystem::path> paths;
   std::error_code error;
@@ -57,8 +57,8 @@ std::vector<std::filesystem::path> chip_paths(const std::filesystem::path& devic
   return paths;
 }
 
-/// Returns the chips with their words. If a chip could not be opened, sets `denied` to the errno of the last
-/// such chip.
+/// Returns the chips with the words by which a rig file can select them. If chips could not be opened, sets
+/// `denied` to the errno of the last failure.
 std::vector<ComputerDevice> look_at_chips(const std::filesystem::path& devices,
                                           const std::filesystem::path& sys, int& denied) {
   std::vector<ComputerDevice> chips;
@@ -97,7 +97,7 @@ tl::expected<Chip, Failure> open_chip(const std::filesystem::path& devices, cons
   return chip;
 }
 
-/// Returns the offsets of all lines of a chip that have this name.
+/// Returns the offsets of all lines of a chip that have the name `name`.
 std::vector<std::uint32_t> offsets_of(gpiod_chip* chip, const std::string& name) {
   std::vector<std::uint32_t> offsets;
   for (std::uint32_t offset = 0; offset < libgpiod::lines_of(chip); ++offset) {
@@ -148,7 +148,7 @@ tl::expected<LineFacts, Failure> find_line(gpiod_chip* chip, const GpioLineSetti
   return *facts;
 }
 
-/// Returns the failure for a refused request of a line. EINVAL, ENOTSUPP and similar errors mean that the
+/// Returns the description of a failed request of a line. EINVAL, ENOTSUPP and similar errors mean that the
 /// chip does not support the requested settings.
 Failure request_failure(const GpioLineSettings& settings, int error) {
   if (error == EBUSY) return failed("the line is in use", error);
@@ -175,7 +175,7 @@ class LibgpiodLines final : public GpioLines {
     bool edges = is_input(settings.role);
     auto line = std::make_unique<Line>(chip->get(), settings, facts->offset, edges);
     if (!line->requested() && edges && (errno == ENXIO || errno == EOPNOTSUPP || errno == EINVAL)) {
-      edges = false;  // the chip has no interrupts, so only the levels of its lines are read
+      edges = false;  // the chip has no interrupts, so the levels of its lines are read, and no edges
       line = std::make_unique<Line>(chip->get(), settings, facts->offset, edges);
     }
     if (!line->requested()) return tl::unexpected(request_failure(settings, errno));
@@ -226,8 +226,8 @@ class LibgpiodLines final : public GpioLines {
     return lines_[static_cast<std::size_t>(role)].get();
   }
 
-  std::vector<Chip> chips_;  // declared before the lines, because the lines must be destroyed before their
-                             // chips
+  std::vector<Chip> chips_;  // declared before the member with the lines, because the lines must be destroyed
+                             // before their chips
   std::array<std::unique_ptr<Line>, gpio_role_count> lines_;
   std::array<pollfd, gpio_role_count> polled_{};
   std::array<GpioRole, gpio_role_count> polled_roles_{};

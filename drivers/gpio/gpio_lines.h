@@ -1,7 +1,7 @@
 #pragma once
-// The interface for the digital lines of a rig: buttons, lamps and an enable output. daemon/panel/panel.h
-// uses the interface. drivers/gpio/gpio_libgpiod.cpp implements it with the GPIO character device, and the
-// tests have their own implementation.
+// Defines the interface for the digital lines of a rig: buttons, lamps and an enable output.
+// daemon/panel/panel.h uses the interface. drivers/gpio/gpio_libgpiod.cpp implements the interface with the
+// GPIO character device. The tests have an implementation of their own.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace softgrip::drivers {
 /// The purpose of a line. A rig has at most one line for each purpose.
 enum class GpioRole : std::uint8_t { emergency_stop, part_in_position, enable, ready_lamp, fault_lamp };
 inline constexpr std::size_t gpio_role_count = 5;
-/// Returns the name of a purpose in the rig file: "emergency_stop" ...
+/// Returns the name of a purpose in the rig file, for example "emergency_stop".
 [[nodiscard]] std::string_view name_of(GpioRole role) noexcept;
 [[nodiscard]] constexpr bool is_input(GpioRole role) noexcept {
   return role == GpioRole::emergency_stop || role == GpioRole::part_in_position;
@@ -32,9 +32,9 @@ enum class GpioBias : std::uint8_t { as_is, disabled, pull_up, pull_down };
 
 struct GpioLineSettings {
   GpioRole role = GpioRole::emergency_stop;
-  std::string chip;                     ///< a word that matches exactly one of chips_in()
-  std::string line;                     ///< name of the line; if it is empty, `offset` selects the line
-  std::optional<std::uint32_t> offset;  ///< number of the line in its chip, from 0
+  std::string chip;                     ///< a word of exactly one chip that chips_in() returns
+  std::string line;                     ///< name of the line; if the name is empty, `offset` selects the line
+  std::optional<std::uint32_t> offset;  ///< number of the line in its chip; the first line has the number 0
   bool active_low = false;              ///< true: a low level means active (pressed, in position, on)
   GpioBias bias = GpioBias::as_is;      ///< setting of the pull resistor; used for inputs only
 };
@@ -48,8 +48,9 @@ struct GpioEdge {
   Nanoseconds at = 0;  ///< time of the interrupt on MonotonicClock, measured by the kernel
 };
 
-/// The requested lines of a rig. Reading and writing do not allocate memory. All functions except write()
-/// must be called from one thread. A second thread or a signal handler may also call write().
+/// The digital lines of a rig, after a successful request. Reading and writing do not allocate memory. All
+/// functions except write() must be called from one thread. write() may also be called from a second thread
+/// or a signal handler.
 class GpioLines {
  public:
   GpioLines() = default;
@@ -57,40 +58,40 @@ class GpioLines {
   GpioLines& operator=(const GpioLines&) = delete;
   GpioLines(GpioLines&&) = delete;
   GpioLines& operator=(GpioLines&&) = delete;
-  /// Releases the lines. After that, the driver of the chip determines the level of an output.
+  /// Releases the lines. After the release, the driver of the chip determines the level of an output.
   virtual ~GpioLines() = default;
 
   /// Waits at most `timeout` for edges and stores them at the start of `edges`. The edges of one line are in
-  /// the order of time. Returns the number of edges; nothing if the chip failed. A failed chip never works
-  /// again.
+  /// the order of time. Returns the number of edges, or nothing if the chip has failed. After a failure, all
+  /// later calls fail too.
   [[nodiscard]] virtual std::optional<std::size_t> wait(Nanoseconds timeout,
                                                         std::span<GpioEdge> edges) noexcept = 0;
-  /// Returns the present logical level of an input; nothing if the chip failed.
+  /// Returns the present logical level of an input, or nothing if the chip has failed.
   [[nodiscard]] virtual std::optional<bool> read(GpioRole role) noexcept = 0;
-  /// Sets the logical level of an output. Returns false if the chip failed. If the rig has no line for
-  /// `role`, does nothing and returns true.
+  /// Sets the logical level of an output. Returns false if the chip has failed. If the rig has no line for
+  /// `role`, the function has no effect and returns true.
   virtual bool write(GpioRole role, bool active) noexcept = 0;
-  /// Returns true if all inputs of the rig report edges. A chip without interrupts reports levels only.
+  /// Returns true if all inputs of the rig report edges. A chip without interrupts reports only levels.
   [[nodiscard]] virtual bool sees_edges() const noexcept = 0;
 };
 
 /// The reason why the lines of a rig are not available.
 struct GpioFailure {
-  /// refused: the line does not exist or differs from the rig file. failed: the system did not permit the
-  /// request.
+  /// refused: the line does not exist, or its properties do not permit the settings in the rig file. failed:
+  /// the operating system did not permit the request.
   enum class Kind : std::uint8_t { refused, failed };
   Kind kind = Kind::refused;
-  std::size_t line = 0;  ///< index of the line in the settings of all lines
+  std::size_t line = 0;  ///< index of the line in the list of settings
   std::string message;
   std::string hint;
 };
 
-/// Requests all lines through libgpiod; the outputs become inactive. If one request fails, all lines are
-/// released.
+/// Requests all lines through libgpiod, and sets the outputs to their inactive level. If one request fails,
+/// all lines are released.
 [[nodiscard]] tl::expected<std::unique_ptr<GpioLines>, GpioFailure> open_gpio_lines(
     std::span<const GpioLineSettings> lines);
-/// Does the same as open_gpio_lines(), but with the chips' files in the folder `devices` and with sysfs at
-/// `sys`.
+/// Requests all lines as open_gpio_lines() does. The files of the chips are in the folder `devices`, and
+/// sysfs is at `sys`.
 [[nodiscard]] tl::expected<std::unique_ptr<GpioLines>, GpioFailure> open_gpio_lines_in(
     const std::filesystem::path& devices, const std::filesystem::path& sys,
     std::span<const GpioLineSettings> lines);

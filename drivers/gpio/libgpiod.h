@@ -1,6 +1,6 @@
 #pragma once
-// Definitions that are independent of the version of libgpiod. gpio_libgpiod.cpp includes libgpiod_1.h or
-// libgpiod_2.h, depending on the version of the installed library.
+// Defines what gpio_libgpiod.cpp needs from every version of libgpiod. gpio_libgpiod.cpp includes
+// libgpiod_1.h or libgpiod_2.h, depending on the version of the installed library.
 
 #include <gpiod.h>
 
@@ -30,7 +30,7 @@ struct LineFacts {
 struct CloseChip {
   void operator()(gpiod_chip* chip) const noexcept { gpiod_chip_close(chip); }
 };
-/// A GPIO chip. It is closed when this handle is destroyed.
+/// A handle of a GPIO chip. The chip is closed when the handle is destroyed.
 using Chip = std::unique_ptr<gpiod_chip, CloseChip>;
 
 }  // namespace softgrip::drivers::libgpiod

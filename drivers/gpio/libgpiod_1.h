@@ -53,7 +53,8 @@ inline int flags_of(const GpioLineSettings& settings) {
   return flags;
 }
 
-/// A line that was requested. In libgpiod 1.6, a line belongs to its chip, so the chip must remain open.
+/// A line after a successful request. In libgpiod 1.6, a line belongs to its chip. Therefore, the chip must
+/// remain open while the line is used.
 class Line {
  public:
   Line(gpiod_chip* chip, const GpioLineSettings& settings, std::uint32_t offset, bool edges) {
@@ -76,8 +77,8 @@ class Line {
   [[nodiscard]] bool set(bool active) const noexcept {
     return gpiod_line_set_value(line_.get(), active ? 1 : 0) == 0;
   }
-  /// Reads the waiting edges; returns nothing if reading fails. The caller must have found the descriptor
-  /// readable.
+  /// Reads the edges that the kernel has stored. Returns nothing if reading fails. The caller must first wait
+  /// until the descriptor is readable.
   [[nodiscard]] std::optional<std::size_t> edges(GpioRole role, std::span<GpioEdge> to) const noexcept {
     std::array<gpiod_line_event, edges_at_once> events{};
     const auto most = static_cast<unsigned>(std::min(to.size(), edges_at_once));

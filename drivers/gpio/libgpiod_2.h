@@ -65,8 +65,8 @@ inline gpiod_line_bias bias_of(GpioBias bias) {
   return GPIOD_LINE_BIAS_AS_IS;
 }
 
-/// A line that was requested. Each line has its own request, so that a failure of a request concerns only one
-/// line.
+/// A line after a successful request. Each line has a request of its own. Therefore, a failed request affects
+/// only one line.
 class Line {
  public:
   Line(gpiod_chip* chip, const GpioLineSettings& settings, std::uint32_t offset, bool edges)
@@ -99,8 +99,8 @@ class Line {
     return gpiod_line_request_set_value(request_.get(), offset_,
                                         active ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE) == 0;
   }
-  /// Reads the waiting edges; returns nothing if reading fails. The caller must have found the descriptor
-  /// readable.
+  /// Reads the edges that the kernel has stored. Returns nothing if reading fails. The caller must first wait
+  /// until the descriptor is readable.
   [[nodiscard]] std::optional<std::size_t> edges(GpioRole role, std::span<GpioEdge> to) const noexcept {
     const std::size_t most = std::min(to.size(), edges_at_once);
     const int count = gpiod_line_request_read_edge_events(request_.get(), buffer_.get(), most);

@@ -11,7 +11,7 @@
 namespace softgrip::drivers {
 namespace {
 
-// Space for the text of a number. Some drivers append a line break to the number.
+// Space for the text of a number [bytes], including the line break that some drivers append to the number.
 constexpr std::size_t longest_text = 64;
 
 }  // namespace

@@ -1,13 +1,13 @@
 #pragma once
-// One attribute of an industrial I/O device. An attribute is a text file through which the kernel gives
-// access to the device.
+// Accesses one attribute of an industrial I/O device. An attribute is a text file through which the kernel
+// gives access to the device.
 
 #include <optional>
 #include <string>
 
 namespace softgrip::drivers {
 
-/// An attribute whose file stays open. Therefore, each read() or write() needs only one system call and
+/// Keeps the file of an attribute open. Therefore, each read() or write() needs only one system call and
 /// allocates no memory.
 class IioAttribute {
  public:
@@ -18,15 +18,16 @@ class IioAttribute {
   IioAttribute& operator=(IioAttribute&& other) noexcept;
   ~IioAttribute();
 
-  /// Opens the attribute for reading or for writing. Returns 0, or errno after a failure.
+  /// Opens the attribute for writing if `writable` is true, otherwise for reading. Returns 0 on success, and
+  /// errno after a failure.
   [[nodiscard]] int open(const std::string& path, bool writable) noexcept;
   void close() noexcept;
   [[nodiscard]] bool is_open() const noexcept { return descriptor_ >= 0; }
 
-  /// Returns the present number; nothing after an error. After an error, errno is the reason, or 0 if the
-  /// text of the attribute is not a number.
+  /// Returns the present number of the attribute, or nothing after an error. After an error, errno contains
+  /// the reason; errno is 0 if the text of the attribute is not a number.
   [[nodiscard]] std::optional<double> read() const noexcept;
-  /// Writes a whole number. Returns 0, or errno after a failure.
+  /// Writes a whole number to the attribute. Returns 0 on success, and errno after a failure.
   [[nodiscard]] int write(long value) const noexcept;
 
  private:

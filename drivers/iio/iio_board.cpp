@@ -24,9 +24,9 @@ constexpr int probes = 5;
 constexpr const char* stays_off_text =
     "this attribute stays 1 after 0 was written, so the output remains switched off";
 
-/// Returns the name and the place of the converter, which must not change while a rig runs. Returns an empty
-/// text if the rig file names the converter by its label or serial number. The label or the serial number
-/// already identifies the converter.
+/// Returns the name and the bus address of the converter, which must not change while a rig runs. Returns an
+/// empty text if the rig file selects the converter by its label or serial number, because these already
+/// identify the converter.
 std::string identity_behind(const std::string& word, const ComputerDevice& device) {
   const bool says_which = device.has("label", word) || device.has("serial number", word);
   return says_which ? std::string{} : identity_of(device);
@@ -46,9 +46,9 @@ struct IioBoard::Parts {
     double offset = 0;  // number that is added to the raw number
     std::string powerdown_path;
     IioAttribute powerdown;
-    IioAttribute wake;  // powerdown attribute of the output, which is open for writing
+    IioAttribute wake;  // powerdown attribute of the output, open for writing
     bool is_off = false;
-    bool stays_off = false;  // true: an earlier attempt to switch the output on had no effect
+    bool stays_off = false;  // true: an earlier attempt to switch on the output had no effect
   };
 
   explicit Parts(const IioSettings& given)
@@ -58,7 +58,8 @@ struct IioBoard::Parts {
   }
 
   IioSettings settings;
-  std::vector<IioTerminal> written;  // terminals that are written: the outputs, followed by the heartbeat
+  std::vector<IioTerminal> written;  // terminals that each exchange writes: the outputs, followed by the
+                                     // heartbeat
   std::vector<Converter> inputs;
   std::vector<Converter> outputs;  // one converter per terminal of `written`
   bool beats_second = false;
@@ -70,8 +71,8 @@ struct IioBoard::Parts {
     std::snprintf(detail.data(), detail.size(), "%s: %s", what.c_str(), why);
     return status;
   }
-  /// Ends the session after a failure of the converter. The cause of the failure is not the number that was
-  /// written.
+  /// Ends the session after an error of the converter. The caller has excluded the written number as the
+  /// cause of the error.
   BusStatus lost(const Converter& converter, int error) noexcept {
     open = false;
     return say(BusStatus::disconnected, converter.name, error != 0 ? text_of_errno(error) : "no number");
@@ -115,13 +116,13 @@ BusStatus IioBoard::Parts::attach(const Devices& there, const IioTerminal& termi
   return open_number(folder, terminal.channel, output, converter);
 }
 
-/// Opens the attribute of the converter's raw number and reads its scaling.
+/// Opens the attribute that contains the raw number of a channel, and reads the scaling of this number.
 BusStatus IioBoard::Parts::open_number(const std::filesystem::path& folder, const std::string& channel,
                                        bool output, Converter& converter) {
   const std::string stem = (output ? "out_" : "in_") + channel;
   converter.path = (folder / (stem + "_raw")).string();
   int error = converter.raw.open(converter.path, output);
-  // Some drivers give the number only in mV, mA or kPa, and not as a raw number.
+  // Some drivers have no raw number; their number is already in mV, mA or kPa.
   const bool processed =
       error == ENOENT && !output && converter.raw.open((folder / (stem + "_input")).string(), false) == 0;
   if (error != 0 && !processed) return say(BusStatus::disconnected, converter.path, text_of_errno(error));
@@ -189,7 +190,7 @@ BusStatus IioBoard::Parts::attach_all() {
   return status;
 }
 
-/// Reads each input several times and measures the duration of a read. budget() needs this duration.
+/// Reads each input several times to measure the duration of a read, which budget() needs.
 BusStatus IioBoard::Parts::probe(Nanoseconds deadline) noexcept {
   reads.reset();
   for (int i = 0; i < probes; ++i) {
@@ -214,7 +215,7 @@ BusStatus IioBoard::Parts::switch_on(Converter& converter) noexcept {
              error != 0 ? text_of_errno(error) : stays_off_text);
 }
 
-/// Switches on all outputs that are off. This function is called after all numbers were written, because
+/// Switches on all outputs that are off. The caller must have written the numbers of all outputs, because
 /// several outputs may share one powerdown attribute.
 BusStatus IioBoard::Parts::switch_all_on() noexcept {
   for (Converter& converter : outputs) {
@@ -332,7 +333,7 @@ BusStatus IioBoard::exchange(std::span<const double> commands_kpa, std::span<Rea
   if (const BusStatus status = parts.beat(); status != BusStatus::ok) return status;
   if (written == BusStatus::ok) written = parts.switch_all_on();
   if (written == BusStatus::disconnected) return written;
-  // If one read fails, none of the caller's readings changes.
+  // The new readings are stored here first. If one read fails, the readings of the caller remain unchanged.
   std::array<Reading, most_channels> fresh{};
   for (std::size_t i = 0; i < readings.size(); ++i) {
     fresh[i] = readings[i];
@@ -380,7 +381,8 @@ Board::Budget IioBoard::budget() const {
   for (const ChannelWiring& channel : parts.settings.wiring)
     reads += 1U + (channel.pressure.has_value() ? 1U : 0U) + (channel.temperature.has_value() ? 1U : 0U);
   const std::size_t writes = parts.settings.wiring.size() + (parts.settings.heartbeat ? 1U : 0U);
-  // Measuring a write would change an output. Therefore, a write is assumed to take as long as a conversion.
+  // The duration of a write is not measured, because a measurement would change an output. Instead, a write
+  // is assumed to take as long as a read.
   const double each_s = parts.reads.median_s();
   Budget cost;
   cost.exchange_s = static_cast<double>(reads + writes) * each_s;

@@ -1,6 +1,6 @@
 #pragma once
-// A board that consists of converters of this computer. It uses the industrial I/O attributes in sysfs. The
-// kernel documents them in Documentation/ABI/testing/sysfs-bus-iio.
+// Implements a board that consists of A/D and D/A converters of this computer. The class uses the industrial
+// I/O attributes in sysfs, which the Linux kernel documents in Documentation/ABI/testing/sysfs-bus-iio.
 
 #include <cstddef>
 #include <memory>
@@ -12,22 +12,22 @@
 namespace softgrip::drivers {
 
 /// One exchange writes the raw numbers of all wired outputs, and then reads the raw numbers of all wired
-/// inputs. Each number needs one system call on a descriptor that connect() opened. connect() also reads
-/// scales and offsets: V = (raw + offset) * scale / 1000; mA and kPa = (raw + offset) * scale. If an input
-/// has no raw number, its processed number in mV, mA or kPa is used.
+/// inputs. Each read or write of a number is one system call on a descriptor that connect() opened. connect()
+/// also reads scales and offsets: V = (raw + offset) * scale / 1000; mA and kPa = (raw + offset) * scale. If
+/// an input has no raw number, its processed number in mV, mA or kPa is used.
 ///
 /// A conversion happens inside a system call and cannot be interrupted. Therefore, the deadline is checked
-/// after the reads of each channel. The only watchdog is the external circuit of a heartbeat. Without this
-/// circuit, the outputs keep their last value when the daemon stops.
+/// after the reads of each channel. The only possible watchdog is an external circuit that monitors a
+/// heartbeat output. Without this circuit, the outputs keep their last value when the daemon stops.
 ///
 /// If the `powerdown` attribute of an output is 1, the first exchange writes the number and then switches the
 /// output on. In the opposite order, the output would have an old value for a short time. connect() fails if
 /// the process may not switch the output on, or if an earlier attempt to switch it on had no effect.
 ///
 /// connect() fails if the word for a converter does not match exactly one converter, or if two terminals are
-/// the same channel. In later sessions, each word must lead to the same converter as before, because another
-/// converter with the same name could otherwise receive the commands. Words that are a label or a serial
-/// number are not checked in this way.
+/// the same channel. In later sessions, each word must match the converter of the first session. Otherwise,
+/// another converter with the same name could receive the commands. A word that is a label or a serial number
+/// is not checked in later sessions.
 class IioBoard final : public Board {
  public:
   explicit IioBoard(const IioSettings& settings);

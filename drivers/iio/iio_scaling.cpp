@@ -15,8 +15,9 @@ double per_unit(std::string_view channel) noexcept {
   return unit_of_channel(channel) == ElectricalUnit::volt ? 1e-3 : 1;
 }
 
-/// Returns the number in the attribute `what` of one channel, or in the attribute `what` that all channels of
-/// this kind share. If neither attribute exists, returns `otherwise`.
+/// Returns the number in the attribute `what` of one channel. If this channel has no such attribute, returns
+/// the number in the attribute `what` that all channels of this type share. If neither attribute exists,
+/// returns `otherwise`.
 double shared_number(const std::filesystem::path& folder, const std::string& direction,
                      const std::string& channel, const std::string& what, double otherwise) {
   for (const std::string& whose : {channel, type_of(channel)}) {

@@ -12,12 +12,12 @@ struct IioScaling {
   double offset = 0;  ///< number that is added to the raw number
 };
 
-/// Reads the scaling of a channel's raw number. Attributes that all channels of this kind share are used for
-/// a channel without its own attributes.
+/// Reads the scaling of a channel's raw number. For a channel without attributes of its own, reads the
+/// attributes that all channels of this type share.
 [[nodiscard]] IioScaling scaling_of(const std::filesystem::path& folder, const std::string& channel,
                                     bool output);
 
-/// Returns the scaling of a channel that gives its number in mV, mA or kPa.
+/// Returns the scaling of a channel whose attribute contains the number in mV, mA or kPa.
 [[nodiscard]] IioScaling scaling_of_processed(const std::string& channel) noexcept;
 
 }  // namespace softgrip::drivers

@@ -1,6 +1,6 @@
 #pragma once
-// Settings of a board that consists of converters of this computer (iio_board.h), and the units of its
-// channels.
+// Defines the settings of a board that consists of converters of this computer (iio_board.h), and the units
+// of its channels.
 
 #include <cstddef>
 #include <optional>
@@ -15,13 +15,14 @@ namespace softgrip::drivers {
 /// One channel of a converter. `channel` is, for example, "voltage0", "current2", or "voltage0-voltage1" for
 /// a differential channel.
 struct IioTerminal {
-  std::string device;  ///< a word that matches exactly one of converters_in()
+  std::string device;  ///< a word of exactly one converter that converters_in() returns
   std::string channel;
-  long raw_max = 0;  ///< for outputs: largest raw number of the converter; the smallest raw number is 0
+  long raw_max = 0;  ///< for outputs: largest raw number that the converter accepts; the smallest raw number
+                     ///< is 0
 };
 
-/// An output that each exchange changes, as a heartbeat. An external circuit switches off the supply of the
-/// valves if the output has not changed for `timeout_s`.
+/// A heartbeat output, whose value each exchange changes. An external circuit switches off the supply of the
+/// valves if the value has not changed for `timeout_s`.
 struct IioHeartbeat {
   IioTerminal terminal;
   long first = 0;        ///< raw number of the first, third, fifth ... write
@@ -29,7 +30,7 @@ struct IioHeartbeat {
   double timeout_s = 0;  ///< time-out of the external circuit [s]
 };
 
-/// Largest number of channels; the controller has the same limit.
+/// Largest number of channels of a board; equal to the largest number of channels of the controller.
 inline constexpr std::size_t most_channels = 16;
 
 struct IioSettings {
@@ -40,8 +41,8 @@ struct IioSettings {
   std::vector<ChannelWiring> wiring;
 };
 
-/// Returns the unit of a channel according to its name; nothing if the channel is not a voltage, current or
-/// pressure.
+/// Returns the unit that follows from the name of a channel; nothing if the channel is not a voltage, current
+/// or pressure.
 [[nodiscard]] std::optional<ElectricalUnit> unit_of_channel(std::string_view channel) noexcept;
 /// Returns the terminals of an industrial I/O board with their units. The ranges in the result are unlimited,
 /// because the actual ranges are unknown until the converters are open.

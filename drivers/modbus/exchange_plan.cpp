@@ -25,9 +25,9 @@ std::uint32_t most_readable(const BoardMap& map, std::uint8_t function) {
   return is_bits(function) ? max_read_bits : std::min(max_read_registers, map.max_registers);
 }
 
-/// Adds the smallest possible number of ranges that contain the numbers `indices` of a block. No number is
-/// divided between two ranges. The registers between the numbers belong to the same block, so the board
-/// supports reading them.
+/// Adds ranges that contain the numbers `indices` of a block, and as few ranges as possible. No number is
+/// divided between two ranges. A range may include numbers that are not in `indices`, because the board can
+/// read all registers of the block.
 void cover(const BoardMap& map, const RegisterBlock& block, std::vector<std::size_t> indices,
            std::vector<Range>& ranges) {
   std::sort(indices.begin(), indices.end());
@@ -46,7 +46,7 @@ void cover(const BoardMap& map, const RegisterBlock& block, std::vector<std::siz
   if (open) ranges.push_back(*open);
 }
 
-/// Returns how many registers in [begin, end) belong to no block of the map that `function` can read.
+/// Returns the number of registers in [begin, end) that are in no register block that `function` can read.
 std::uint32_t undeclared(const BoardMap& map, std::uint8_t function, std::uint32_t begin, std::uint32_t end) {
   std::vector<RegisterBlock> blocks;
   if (map.has_inputs()) blocks.push_back(map.inputs.registers);
@@ -114,8 +114,8 @@ std::vector<std::size_t> wired_outputs(const std::vector<ChannelWiring>& wiring,
   return outputs;
 }
 
-/// Returns the reads of one exchange: the wired inputs and, if the module has wired outputs, also the
-/// registers for read-back, watchdog and number of clients.
+/// Returns the reads of one exchange. The reads contain the wired inputs. If the module has wired outputs,
+/// the reads also contain the registers for read-back, watchdog and number of clients.
 std::vector<ReadStep> plan_reads(const BoardMap& map, const std::vector<std::size_t>& inputs,
                                  const std::vector<std::size_t>& outputs) {
   std::vector<Range> ranges;
@@ -138,8 +138,8 @@ std::vector<ReadStep> plan_reads(const BoardMap& map, const std::vector<std::siz
   return merged(map, std::move(ranges));
 }
 
-/// Plans one write for each group of adjacent outputs. The encoded outputs are in the order of their
-/// terminals.
+/// Plans one write for each group of adjacent wired outputs. The registers of the outputs are in the order of
+/// the terminals.
 void plan_writes(const BoardMap& map, const std::vector<ChannelWiring>& wiring, std::size_t module,
                  ExchangePlan& plan) {
   std::vector<std::size_t> order;

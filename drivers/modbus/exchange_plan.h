@@ -1,6 +1,6 @@
 #pragma once
 // Plans the transactions of one exchange, and the position of each channel's numbers in the replies. The plan
-// is computed once from board map and wiring. An exchange only executes the transactions of the plan.
+// is computed once from board map and wiring. Each exchange executes the transactions of this plan.
 
 #include <cstddef>
 #include <cstdint>
@@ -33,8 +33,8 @@ struct WriteStep {
   bool operator==(const WriteStep&) const = default;
 };
 
-/// The position of a number in the replies: index of the read, and index of the register (or bit) in the
-/// reply to this read.
+/// The position of a number in the replies of an exchange. The position consists of the index of the read,
+/// and the index of the register or bit in the reply to this read.
 struct Slot {
   std::size_t step = 0;
   std::size_t offset = 0;
@@ -42,11 +42,11 @@ struct Slot {
   bool operator==(const Slot&) const = default;
 };
 
-/// The positions of one channel's numbers in the requests and replies. A member is empty if this part of the
-/// channel is not wired to the module.
+/// The positions of one channel's numbers in the requests and replies. A member is empty if its terminal is
+/// not on this module.
 struct ChannelSlots {
-  std::optional<std::size_t> output_word;  ///< index of the channel's first register, counted like
-                                           ///< WriteStep::first_word
+  std::optional<std::size_t> output_word;  ///< index of the channel's first register among all registers that
+                                           ///< the exchange writes
   std::optional<Slot> displacement;
   std::optional<Slot> displacement_status;
   std::optional<Slot> pressure;
@@ -69,16 +69,16 @@ struct ExchangePlan {
   /// `sampled_at` of the readings.
   std::size_t sampling_read = 0;
 
-  /// Returns the number of round trips of one exchange. The write that feeds the watchdog is not included.
+  /// Returns the number of round trips of one exchange, without the write that feeds the watchdog.
   [[nodiscard]] std::size_t transactions() const noexcept {
     return writes.size() + reads.size() - (combined_read.has_value() ? 1 : 0);
   }
 };
 
 /// Returns the plan with the smallest number of transactions that the map allows for the channels of
-/// `module`. Only wired outputs are written. If two wired outputs are not adjacent, they need two writes,
-/// because the terminal between them may drive an unknown device. wiring_problems() must have returned no
-/// problem.
+/// `module`. Only wired outputs are written. Two wired outputs that are not adjacent need two writes, because
+/// a terminal between them may drive an unknown device. The caller must have checked the wiring with
+/// wiring_problems().
 [[nodiscard]] ExchangePlan plan_exchange(const BoardMap& map, const std::vector<ChannelWiring>& wiring,
                                          std::size_t module = 0);
 

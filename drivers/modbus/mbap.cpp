@@ -5,8 +5,7 @@
 namespace softgrip::drivers {
 namespace {
 
-/// Returns the first defect of the header in the bytes that have been received so far; `none` if there is no
-/// defect.
+/// Returns the first defect in the received part of the header; `none` if this part has no defect.
 ReplyDefect header_defect(std::span<const std::uint8_t> bytes, std::size_t pdu_size,
                           std::uint16_t transaction, std::uint8_t unit) noexcept {
   if (bytes.size() >= 2 && word_at(bytes, 0) != transaction) return ReplyDefect::transaction;

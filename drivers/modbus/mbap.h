@@ -1,6 +1,6 @@
 #pragma once
-// Frames of Modbus TCP: the MBAP header before requests and responses. The format is described in MODBUS
-// Messaging on TCP/IP Implementation Guide V1.0b, 3.1.3.
+// Builds and checks the frames of Modbus TCP, which consist of the MBAP header and a PDU. Source of the
+// format: MODBUS Messaging on TCP/IP Implementation Guide V1.0b, 3.1.3.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace softgrip::drivers {
 
-/// Size of the header [bytes]. It consists of transaction id, protocol id and length, with two bytes each,
-/// and the unit id.
+/// Size of the MBAP header [bytes]. The header consists of transaction id, protocol id and length, with two
+/// bytes each, and the unit id with one byte.
 inline constexpr std::size_t mbap_size = 7;
 inline constexpr std::size_t mbap_unit = 6;  ///< index of the unit id in the frame
 
-/// Writes the header for the PDU (function code and data) of `pdu_size` bytes that begins at
-/// frame[mbap_size]. Returns the size of the frame.
+/// Writes the MBAP header for the PDU (function code and data) that begins at frame[mbap_size] and has
+/// `pdu_size` bytes. Returns the size of the frame.
 std::size_t put_mbap(std::span<std::uint8_t> frame, std::size_t pdu_size, std::uint16_t transaction,
                      std::uint8_t unit) noexcept;
 
@@ -26,9 +26,9 @@ std::size_t put_mbap(std::span<std::uint8_t> frame, std::size_t pdu_size, std::u
 [[nodiscard]] std::size_t build_request(const ModbusRequest& request, std::uint16_t transaction,
                                         std::uint8_t unit, Frame& frame) noexcept;
 
-/// Checks `bytes`, which are all bytes received since the request was sent. `incomplete` means that `bytes`
-/// are a correct beginning of the response. Each byte is checked when it arrives. Therefore, a wrong header
-/// is detected before the rest of the response arrives.
+/// Checks `bytes`, which are all bytes received since the request was sent. The state `incomplete` means that
+/// `bytes` are a correct beginning of the response. Therefore, a wrong header is detected before the rest of
+/// the response arrives.
 [[nodiscard]] ModbusReply parse_reply(std::span<const std::uint8_t> bytes, const ModbusRequest& request,
                                       std::uint16_t transaction, std::uint8_t unit) noexcept;
 

@@ -42,7 +42,7 @@ struct ModbusBoard::Parts {
       return module.settings().link == link && module.drives_outputs();
     });
   }
-  /// Returns true if all links to modules with outputs are open.
+  /// Returns true if every link to a module with outputs is open.
   [[nodiscard]] bool is_open() const noexcept {
     for (std::size_t link = 0; link < links.size(); ++link) {
       if (drives_outputs(link) && !links[link]->is_open()) return false;
@@ -74,11 +74,11 @@ struct ModbusBoard::Parts {
   void fill(std::span<Reading> readings) const noexcept;
 };
 
-/// Opens all links, and then waits until all links have settled. In this way, the settle times of the links
+/// Opens all links, and then waits until all links have settled. Therefore, the settle times of the links
 /// overlap.
 ///
-/// A link without outputs may remain closed. In that case, each exchange writes the commands, and fails when
-/// it reads from this link.
+/// A link without outputs may remain closed. With a closed link, each exchange still writes the commands, and
+/// fails when it reads from the closed link.
 BusStatus ModbusBoard::Parts::open(Nanoseconds deadline) noexcept {
   close();
   const auto each_link = [&](BusStatus (ModbusLink::*step)(Nanoseconds) noexcept) {
@@ -101,9 +101,9 @@ BusStatus ModbusBoard::Parts::open(Nanoseconds deadline) noexcept {
   return measured ? BusStatus::ok : probe(deadline);
 }
 
-/// Measures the round trips in the first session only. Later sessions must begin with writing the outputs.
-/// Other requests would feed the board's watchdog while the outputs still have the values from before the
-/// failure.
+/// Measures the round trips only in the first session. A later session must begin with a write of the
+/// outputs. Any other request would feed the board's watchdog while the outputs have the values of the
+/// previous session.
 BusStatus ModbusBoard::Parts::probe(Nanoseconds deadline) noexcept {
   for (const auto& link : links) link->forget_measurements();
   const Nanoseconds start = monotonic_now();
@@ -132,7 +132,7 @@ BusStatus ModbusBoard::Parts::encode(std::span<const double> commands_kpa) noexc
   return result;
 }
 
-/// Reads and checks those modules that must be read before they are written in this exchange.
+/// Reads and checks the modules that this exchange must read before it writes them.
 BusStatus ModbusBoard::Parts::look_first(Nanoseconds deadline) noexcept {
   for (ModbusModule& module : modules) {
     module.begin_exchange();
@@ -207,7 +207,8 @@ BusStatus ModbusBoard::exchange(std::span<const double> commands_kpa, std::span<
   if (commands_kpa.size() != channels() || readings.size() != channels()) {
     return parts.say(BusStatus::write_refused, "the commands, readings and channels differ in number");
   }
-  // detail() still returns the reason why the session ended, which is more useful than "disconnected".
+  // detail() keeps the reason for the end of the session, because this reason is more useful than
+  // "disconnected".
   if (!parts.is_open()) return BusStatus::disconnected;
   for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
     if (std::isfinite(commands_kpa[i])) continue;

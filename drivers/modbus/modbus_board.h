@@ -1,5 +1,6 @@
 #pragma once
-// A board of one or more Modbus modules on network hosts or a serial line. A board map describes each module.
+// Implements a board that consists of one or more Modbus modules on network hosts or a serial line. A board
+// map describes each module.
 
 #include <memory>
 #include <string>
@@ -15,9 +16,9 @@ struct ModbusSettings {
   std::vector<ModbusModuleSettings> modules;
   std::vector<ChannelWiring> wiring;  ///< wiring of the channels, one entry per channel; problems_of() must
                                       ///< be empty
-  /// Largest number of reads per module by which connect() measures the round trips for budget(). The
-  /// measurement takes at most about a quarter of the deadline. If the number is 0, there is no measurement,
-  /// and budget() uses an assumed round trip.
+  /// Largest number of reads per module with which connect() measures the round trips for budget(). The
+  /// measurement takes at most about a quarter of the time until the deadline of connect(). If the number is
+  /// 0, connect() measures nothing, and budget() uses an assumed round trip.
   int probes = 9;
 };
 
@@ -25,14 +26,14 @@ struct ModbusSettings {
 [[nodiscard]] std::vector<std::string> problems_of(const ModbusSettings& settings);
 
 /// One exchange first writes the outputs of all modules, if possible with one write per module (function code
-/// 16 or 23). After that, it reads the inputs and the status, read-back and watchdog registers of the maps
-/// with as few reads as possible. Because all writes come before the reads, a failure of a module without
-/// outputs does not prevent the writes to the other modules.
+/// 16 or 23). After the writes, the exchange reads the inputs and the registers for status, read-back and
+/// watchdog, with as few reads as possible. Because all writes precede the reads, a failure of a module
+/// without outputs does not prevent the writes to the other modules.
 ///
-/// `deadline` is a time of CLOCK_BOOTTIME. It limits the complete exchange, also if a reply arrives in parts.
-/// After a time-out, an error of the connection or an unexpected reply, all links are closed. Therefore, a
-/// late or duplicated reply cannot be taken for the response to a later request. After this, exchange()
-/// returns `disconnected` until connect() has opened new links.
+/// `deadline` is a time of CLOCK_BOOTTIME. The complete exchange must end before this time, also if a reply
+/// arrives in parts. After a time-out, an error of the connection or an unexpected reply, all links are
+/// closed. Therefore, a late or duplicated reply cannot be taken for the response to a later request.
+/// exchange() then returns `disconnected` until connect() has opened new links.
 ///
 /// A tripped watchdog is cleared only in the first exchange after connect(). This exchange writes the
 /// commands, clears the watchdog, writes the commands a second time and reads. If the watchdog trips after

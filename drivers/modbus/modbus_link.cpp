@@ -26,8 +26,8 @@ namespace {
 static_assert(MODBUS_MAX_ADU_LENGTH <= max_frame);
 
 // After an incomplete reply, libmodbus does not report the number of received bytes. Therefore, the buffer is
-// filled with this value before each reception. Bytes at the end of the buffer that still have this value
-// count as not received.
+// filled with this value before each reception. The bytes at the end of the buffer that have this value after
+// the reception count as not received.
 constexpr std::uint8_t filler = 0xff;
 
 Descriptor selectable_descriptor() noexcept {
@@ -40,8 +40,8 @@ std::span<const std::uint8_t> without_filler(std::span<const std::uint8_t> bytes
   return bytes;
 }
 
-/// Sets the response time-out of libmodbus. The byte time-out of libmodbus is 0, so the response time-out
-/// limits the duration of the complete reply.
+/// Sets the response time-out of libmodbus. The byte time-out of libmodbus is set to 0. Therefore, the
+/// response time-out limits the duration of the complete reply.
 void set_deadline(modbus_t* context, Nanoseconds left) noexcept {
   const auto microseconds = static_cast<std::uint64_t>((left + 999) / 1000);
   ::modbus_set_response_timeout(context, static_cast<std::uint32_t>(microseconds / 1'000'000),
@@ -86,8 +86,8 @@ BusStatus ModbusLink::settle(Nanoseconds deadline) noexcept {
   return drain(opened_at_ + settle_, deadline, "waiting until the board has settled");
 }
 
-/// Discards all received bytes until the time `until`. If the link fails before this time, closes the link
-/// and returns the status of the failure.
+/// Discards all bytes that arrive until the time `until`. If the link fails before this time, the function
+/// closes the link and returns the status of the failure.
 BusStatus ModbusLink::drain(Nanoseconds until, Nanoseconds deadline, const char* what) noexcept {
   while (monotonic_now() < until) {
     if (monotonic_now() >= deadline) return fail(BusStatus::timed_out, what, "the deadline passed");
@@ -101,9 +101,9 @@ BusStatus ModbusLink::drain(Nanoseconds until, Nanoseconds deadline, const char*
   return BusStatus::ok;
 }
 
-/// A board that already serves its largest number of clients may accept a connection and close it at once. If
-/// this happens before the first response, the status is `closed_at_once`. It means that cable and address
-/// are right.
+/// Closes the link after the board or gateway has closed the connection. A board that already serves its
+/// largest number of clients may accept a connection and close it at once. If the connection ends before the
+/// first response, the status is `closed_at_once`. This status shows that cable and address are right.
 BusStatus ModbusLink::ended(const char* what) noexcept {
   if (!on_network_) return fail(BusStatus::disconnected, what, "the serial device no longer exists");
   if (answered_) return fail(BusStatus::disconnected, what, "the board or gateway closed the connection");
@@ -178,13 +178,13 @@ BusStatus ModbusLink::ask(std::uint8_t unit, const ModbusRequest& request, Nanos
   return conclude(reply, error, unit, request);
 }
 
-/// Sends the request. Repeats it as long as no byte of a response arrives.
+/// Sends the request, and repeats the request until a byte of a response arrives or the deadline passes.
 BusStatus ModbusLink::send_until_heard(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept {
   first_asked_at_ = monotonic_now();
   for (repeats_ = 0;; ++repeats_) {
     asked_at_ = monotonic_now();
-    // If the process was paused, the board's watchdog may have vented the fingers. A request from the time
-    // before the pause would move them. Therefore, a request must not be sent after its deadline.
+    // A request must not be sent after its deadline. If the process was paused, the board's watchdog may have
+    // vented the fingers. An old request would then move the fingers.
     if (asked_at_ >= deadline)
       return fail(BusStatus::timed_out, "before sending the request", "the deadline passed");
     if (const BusStatus status = send(frame, deadline); status != BusStatus::ok) return status;
@@ -197,10 +197,10 @@ BusStatus ModbusLink::send_until_heard(std::span<const std::uint8_t> frame, Nano
   }
 }
 
-/// Stores that each repetition of the last request may still get a response of its own. If responses have a
-/// transaction id, such a late response is recognised when it arrives. Without a transaction id, it could be
-/// taken for the response to the next request. In this case, the next request is delayed until the late
-/// responses should have arrived.
+/// Stores that each repetition of the last request may still get a response of its own. A late response with
+/// a transaction id is recognised when it arrives. A late response without a transaction id could be taken
+/// for the response to the next request. Therefore, without transaction ids, the next request is delayed
+/// until the late responses should have arrived.
 void ModbusLink::expect_more_answers() noexcept {
   stale_ = repeats_;
   const bool quiet = repeats_ > 0 && !numbers_answers();
@@ -224,8 +224,8 @@ ModbusLink::Received ModbusLink::hear(std::span<std::uint8_t> buffer, std::uint8
   return {judge(bytes, unit, request, asked), error, bytes};
 }
 
-/// Returns the checked response. Sets `error` to whole_frame if the frame is complete, otherwise to the
-/// reason why it is incomplete.
+/// Receives a response and checks it. Sets `error` to whole_frame if the frame is complete, otherwise to the
+/// reason why the frame is incomplete.
 ModbusReply ModbusLink::receive(std::uint8_t unit, const ModbusRequest& request,
                                 std::span<const std::uint8_t> asked, Nanoseconds deadline,
                                 int& error) noexcept {
@@ -237,12 +237,12 @@ ModbusReply ModbusLink::receive(std::uint8_t unit, const ModbusRequest& request,
     if (old) --stale_;
   }
   error = heard.error;
-  // After a request that was repeated, further bytes may be the second response.
+  // After a repeated request, bytes that follow the first response may be a second response.
   const bool alone = repeats_ > 0 || !is_answer(heard.reply) || drop_strays();
   return alone ? heard.reply : defective(ReplyDefect::trailing);
 }
 
-/// Discards bytes after the response. Returns false if these bytes may be another response.
+/// Discards the bytes that follow the response. Returns false if these bytes may be a second response.
 bool ModbusLink::drop_strays() noexcept {
   int waiting = 0;
   if (::ioctl(descriptor(), FIONREAD, &waiting) != 0 || waiting <= 0) return true;
@@ -252,7 +252,7 @@ bool ModbusLink::drop_strays() noexcept {
          ::read(descriptor(), strays.data(), count) == static_cast<ssize_t>(count);
 }
 
-/// Closes the link after an incomplete reply. Returns the status that belongs to the reason `error`.
+/// Closes the link after an incomplete reply. Returns the status that corresponds to the reason `error`.
 BusStatus ModbusLink::name_failure(int error) noexcept {
   const bool began = !without_filler(incoming_).empty();
   const char* const what = began ? "waiting for the rest of the reply" : "waiting for the reply";

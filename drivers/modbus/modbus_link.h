@@ -1,6 +1,6 @@
 #pragma once
-// A link to Modbus modules. It sends one request at a time. If a response is not clearly the response to the
-// request, the link is closed.
+// Implements a link to Modbus modules. The link sends one request at a time. If received bytes are not
+// clearly the response to this request, the link is closed.
 
 #include <array>
 #include <cstddef>
@@ -20,16 +20,18 @@ struct _modbus;  // NOLINT(bugprone-reserved-identifier): the name in libmodbus
 
 namespace softgrip::drivers {
 
-/// Base class of the links. libmodbus receives the responses on a network, and opens and sends on a serial
-/// line. This class adds three properties. Each wait ends at a time of CLOCK_BOOTTIME [ns], not after a pause
-/// between two bytes. Functions of this project check a received frame before its contents are used. Bytes
-/// after a frame are detected. docs/explanation/libraries.md gives the reasons.
+/// Base class of the links. libmodbus receives the responses on a network. On a serial line, libmodbus opens
+/// the device and sends the requests. This class adds three properties. Each wait ends at a time of
+/// CLOCK_BOOTTIME [ns], and not after a pause between two bytes. Functions of this project check a received
+/// frame before its contents are used. Bytes after a frame are detected. docs/explanation/libraries.md gives
+/// the reasons.
 ///
-/// If a request is repeated, the same frame is sent, so the same output values are written. The repetition is
-/// sent within the deadline of the exchange and does not extend this deadline.
+/// A repeated request is an identical frame, so it writes the same output values as the first frame. The
+/// repetition is sent within the deadline of the exchange and does not extend this deadline.
 ///
 /// The constructors, open() of a serial line, cost() and describe() allocate memory; all other functions do
-/// not. No function throws exceptions or resolves names. LinkHabits determines if requests are repeated.
+/// not. No function throws exceptions or resolves host names. LinkHabits::repeat_after_s determines if
+/// requests are repeated.
 class ModbusLink {
  public:
   ModbusLink(const ModbusLink&) = delete;
@@ -46,50 +48,51 @@ class ModbusLink {
   [[nodiscard]] bool is_open() const noexcept { return descriptor() >= 0; }
 
   /// Sends a request and waits for the response. After the results `ok` and `exception`, the link remains
-  /// open. After any other result it is closed, so that a late or duplicated reply cannot be taken for the
-  /// response to a later request.
+  /// open. After any other result, the link is closed. As a result, a late or duplicated reply cannot be
+  /// taken for the response to a later request.
   [[nodiscard]] BusStatus ask(std::uint8_t unit, const ModbusRequest& request, Nanoseconds deadline) noexcept;
   /// Returns the data of the last successful ask(): bits or registers, high byte first. The data are valid
   /// until the next ask().
   [[nodiscard]] std::span<const std::uint8_t> data() const noexcept { return data_; }
   /// Returns the exception code if the last ask() returned `exception`; otherwise 0.
   [[nodiscard]] unsigned exception_code() const noexcept { return exception_code_; }
-  /// Returns the reason of the last failure as text.
+  /// Returns a text that gives the reason of the last failure.
   [[nodiscard]] const char* detail() const noexcept { return detail_.data(); }
 
-  /// forget_measurements() deletes the measurements for cost(). keep_measurement() adds the round trip of the
-  /// last ask() to them.
+  /// forget_measurements() deletes the measured round trips for cost(). keep_measurement() adds the round
+  /// trip of the last ask() to the measurements.
   void forget_measurements() noexcept { measured_.reset(); }
   void keep_measurement() noexcept { measured_.add(answer_time(last_round_trip_)); }
-  /// Returns the duration of `transactions` that are executed one after the other, and the calculation as
-  /// text. The text contains `plan`, a description of the transactions.
+  /// Returns the duration of `transactions` if they are executed one after the other, with an explanation of
+  /// the calculation. The explanation contains `plan`, a description of the transactions.
   [[nodiscard]] virtual Board::Budget cost(std::span<const TransactionSize> transactions,
                                            const std::string& plan) const = 0;
   /// Returns the address of the link as text, for example "127.0.0.1:502" or "/dev/ttyUSB0 (115200 8N1)".
   [[nodiscard]] virtual std::string describe() const = 0;
 
  protected:
-  /// Takes the ownership of a libmodbus context. If `context` is null, open() fails.
+  /// Creates a closed link that owns the libmodbus context `context`. If `context` is null, open() fails.
   ModbusLink(_modbus* context, const LinkHabits& habits, bool on_network) noexcept;
 
   [[nodiscard]] _modbus* context() const noexcept { return context_; }
   [[nodiscard]] int descriptor() const noexcept;
-  /// Stores the reason why a link cannot be opened, closes the link, and returns `status`.
+  /// Stores the reason for a failure of the link, closes the link, and returns `status`.
   BusStatus refuse(BusStatus status, const char* what, const char* why) noexcept;
-  /// Does the same as refuse(), for a link on which a response may still arrive.
+  /// Closes the link and returns `status`, as refuse() does. In addition, stores that a response may arrive
+  /// on this link later.
   BusStatus fail(BusStatus status, const char* what, const char* why) noexcept;
   BusStatus wait_until_ready(short events, Nanoseconds deadline, const char* what) noexcept;
   /// Reads the available bytes of a link that is ready for reading.
   BusStatus read_some(std::span<std::uint8_t> bytes, const char* what, std::size_t& got) noexcept;
-  /// Closes the link, because the other end has closed it.
+  /// Closes the link, because the board or gateway has closed the connection.
   BusStatus ended(const char* what) noexcept;
   [[nodiscard]] const RoundTrip& measured() const noexcept { return measured_; }
 
-  /// Reason that detail() returns if bytes arrive before a request is sent.
+  /// Text that detail() returns if bytes have arrived although no request was waiting for a response.
   static constexpr const char* unasked = "unexpected bytes: a late or repeated reply";
 
-  /// A response that was checked. `error` is whole_frame, or the errno that explains why the frame is
-  /// incomplete.
+  /// A checked response. `error` is whole_frame for a complete frame. For an incomplete frame, `error` is the
+  /// errno that gives the reason.
   struct Received {
     ModbusReply reply;
     int error = 0;
@@ -97,7 +100,7 @@ class ModbusLink {
   };
   static constexpr int whole_frame = 0;
 
-  Descriptor held_;               ///< descriptor that is closed together with the link
+  Descriptor held_;               ///< descriptor of the link, which is closed together with the link
   Nanoseconds heard_at_ = 0;      ///< time at which bytes were last received
   bool answer_may_come_ = false;  ///< true: a response to a request of the last session may still arrive
 
@@ -106,29 +109,30 @@ class ModbusLink {
   /// Writes the frame of a request. Returns the size of the frame; 0 for a request that reply_pdu_size()
   /// refuses.
   virtual std::size_t build(std::uint8_t unit, const ModbusRequest& request, Frame& frame) noexcept = 0;
-  /// Waits until a request may be sent.
+  /// Waits until the link permits to send a request.
   virtual BusStatus before_asking(Nanoseconds) noexcept { return BusStatus::ok; }
   virtual BusStatus send(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept = 0;
-  /// Checks all bytes that were received since the request `asked` was sent.
+  /// Checks `bytes`, which are all bytes that were received since the request `asked` was sent.
   [[nodiscard]] virtual ModbusReply judge(std::span<const std::uint8_t> bytes, std::uint8_t unit,
                                           const ModbusRequest& request,
                                           std::span<const std::uint8_t> asked) const noexcept = 0;
   /// Receives a response with libmodbus into `buffer`, which the caller has filled with the filler value.
   virtual Received hear(std::span<std::uint8_t> buffer, std::uint8_t unit, const ModbusRequest& request,
                         std::span<const std::uint8_t> asked, Nanoseconds deadline) noexcept;
-  /// Returns the time that the wire needs to transmit this number of bytes after send() [ns].
+  /// Returns the time for which the serial line still transmits a frame after send() has returned [ns]. The
+  /// argument is the number of bytes in the frame. Returns 0 for a network.
   [[nodiscard]] virtual Nanoseconds sending_time(std::size_t) const noexcept { return 0; }
-  /// numbers_answers() returns true if a response contains the transaction id of its request.
-  /// answers_previous() returns true if the bytes begin with the transaction id of the request before the
-  /// present one.
+  /// numbers_answers() returns true if each response contains the transaction id of its request.
+  /// answers_previous() returns true if the bytes begin with the transaction id of the previous request.
   [[nodiscard]] virtual bool numbers_answers() const noexcept { return false; }
   [[nodiscard]] virtual bool answers_previous(std::span<const std::uint8_t>) const noexcept { return false; }
-  /// Returns how many bytes before or after a response are discarded at most. This number is smaller than the
-  /// shortest response, so the discarded bytes cannot be the response to another request.
+  /// Returns the largest number of bytes before or after a response that are discarded. The number is smaller
+  /// than the size of the shortest response. Therefore, the discarded bytes cannot be the response to another
+  /// request.
   [[nodiscard]] virtual std::size_t most_stray() const noexcept { return 0; }
   /// Returns the index of the unit id in a frame.
   [[nodiscard]] virtual std::size_t unit_place() const noexcept = 0;
-  /// Returns the part of a round trip that is stored as a measurement for cost().
+  /// Returns the part of a measured round trip that cost() uses.
   [[nodiscard]] virtual Nanoseconds answer_time(Nanoseconds round_trip) const noexcept { return round_trip; }
 
   BusStatus send_until_heard(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept;
@@ -147,14 +151,16 @@ class ModbusLink {
   Nanoseconds settle_;
   Nanoseconds repeat_after_;
   Nanoseconds opened_at_ = 0;
-  bool answered_ = false;  ///< true: the other end has responded since the link was opened
+  bool answered_ = false;  ///< true: a module has responded since the link was opened
   Nanoseconds first_asked_at_ = 0;
   Nanoseconds asked_at_ = 0;
   unsigned repeats_ = 0;         ///< number of repetitions of the last request
-  unsigned stale_ = 0;           ///< number of late responses to the previous request that may still arrive
-  Nanoseconds quiet_until_ = 0;  ///< end of the time in which these late responses may arrive
-  /// A reserved descriptor below 1024 for the link. It is needed because libmodbus waits with select(), which
-  /// does not accept descriptors above 1023.
+  unsigned stale_ = 0;           ///< number of late responses to repetitions of the previous request that may
+                                 ///< still arrive
+  Nanoseconds quiet_until_ = 0;  ///< end of the time in which late responses to the previous request may
+                                 ///< arrive
+  /// A descriptor below 1024 that is reserved for the link. libmodbus waits with select(), which does not
+  /// accept descriptors above 1023.
   Descriptor place_;
   Frame outgoing_{};
   Frame incoming_{};

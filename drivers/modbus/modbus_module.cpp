@@ -15,7 +15,7 @@
 namespace softgrip::drivers {
 namespace {
 
-/// Every 8th exchange reads before it writes; see begin_exchange().
+/// Every 8th exchange reads the outputs before it writes them; see ModbusModule::begin_exchange().
 constexpr std::uint32_t reads_first_every = 8;
 
 ModbusRequest request_of(const FixedWrite& write) noexcept {
@@ -108,8 +108,8 @@ BusStatus ModbusModule::write_outputs(Nanoseconds deadline) noexcept {
   return BusStatus::ok;
 }
 
-/// Returns the status of a failed write. While its watchdog holds the outputs, a board may respond to writes
-/// with an exception. In this case, the status is `watchdog_tripped`.
+/// Returns the status of a failed write. While the watchdog of a board holds the outputs, the board may
+/// respond to writes with an exception. In this case, the status is `watchdog_tripped`.
 BusStatus ModbusModule::name_refusal(BusStatus status, Nanoseconds deadline) noexcept {
   if (status != BusStatus::exception || !plan_.tripped.has_value()) return status;
   const char* const refusal = detail_;
@@ -122,9 +122,9 @@ BusStatus ModbusModule::name_refusal(BusStatus status, Nanoseconds deadline) noe
 }
 
 /// Writes the outputs for the first time in a session, and clears a tripped watchdog. The commands are
-/// written before the watchdog is cleared, so that a board that accepts these writes continues with the
-/// present commands. Some boards ignore or refuse writes while the watchdog is tripped; for them, a second
-/// write follows at once.
+/// written before the watchdog is cleared. As a result, a board that accepts this write continues with the
+/// present commands. Some boards ignore or refuse writes while the watchdog is tripped. Therefore, a second
+/// write follows directly after the watchdog was cleared.
 BusStatus ModbusModule::first_write(Nanoseconds deadline) noexcept {
   const BusStatus written = write_outputs(deadline);
   if (written != BusStatus::ok && written != BusStatus::exception) return written;
@@ -159,8 +159,8 @@ BusStatus ModbusModule::set_up(Nanoseconds deadline) noexcept {
   accepted_.forget();
   if (settings_.map.setup.empty()) return BusStatus::ok;
   if (clear_due_ && plan_.tripped.has_value()) {
-    // The setup may end the tripped state of the watchdog, and the outputs would then return to their last
-    // values. Therefore, the setup is delayed if the watchdog has tripped.
+    // If the watchdog has tripped, the setup is delayed. Otherwise, a write of the setup could end the
+    // tripped state, and the outputs would return to their last values.
     const BusStatus status = read_step(plan_.tripped->step, deadline);
     if (status != BusStatus::ok) return status;
     setup_due_ = is_tripped();
@@ -208,7 +208,7 @@ BusStatus ModbusModule::write(Nanoseconds deadline) noexcept {
   return feed(*settings_.map.watchdog.feed_write, deadline);
 }
 
-/// Writes the value that feeds the watchdog. If the heartbeat has two values, the next value is used after
+/// Writes the value that feeds the watchdog. A heartbeat with two values changes to the other value after
 /// each confirmed write.
 BusStatus ModbusModule::feed(FixedWrite write, Nanoseconds deadline) noexcept {
   if (alternate_due_) write.value = write.alternate.value_or(write.value);
@@ -278,8 +278,8 @@ BusStatus ModbusModule::check() noexcept {
       status = fail(BusStatus::write_refused, "channel '%s': the output reads back as raw %g", i, raw);
   }
   if (status != BusStatus::ok) return status;
-  // If this exchange reads first, it writes after this check. Therefore, the next exchange must accept these
-  // values.
+  // An exchange that reads first writes the requested values after this check. Therefore, the next exchange
+  // must accept these values.
   if (reads_first_) accepted_.note(requested_raws_);
   confirmed_ = !reads_first_;
   return BusStatus::ok;
@@ -298,8 +298,8 @@ void ModbusModule::fill(std::size_t channel, Reading& reading) const noexcept {
   if (slots.displacement.has_value()) {
     const JudgedInput displacement =
         input(wiring.displacement, *slots.displacement, slots.displacement_status);
-    // If the board delivered no value, the last displacement is kept and marked as invalid. NaN is not used,
-    // because the controller cannot process it.
+    // If the board delivered no value, the reading keeps the last displacement and is marked as invalid. The
+    // displacement is not set to NaN, because the controller cannot process NaN.
     if (std::isfinite(displacement.physical)) reading.displacement_mm = displacement.physical;
     reading.validity = displacement.validity;
     reading.sampled_at = sampled_at_;

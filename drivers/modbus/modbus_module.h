@@ -1,5 +1,6 @@
 #pragma once
-// One Modbus module on a link. The class sends the requests of an exchange and evaluates the responses.
+// Exchanges commands and readings with one Modbus module: sends the requests of an exchange over a link and
+// evaluates the responses.
 
 #include <array>
 #include <cstdint>
@@ -19,60 +20,61 @@
 namespace softgrip::drivers {
 
 struct ModbusModuleSettings {
-  std::string name;  ///< name in messages, if the board has several modules
+  std::string name;  ///< name of the module in messages, if the board has several modules
   BoardMap map;
   std::uint8_t unit = 1;  ///< unit id of the module; a response with another unit id is refused
   std::size_t link = 0;   ///< index of the link to the module
 };
 
-/// One module of a board. It stores the values that the last exchange wrote and read. The constructor and
-/// transactions() allocate memory; all other functions do not.
+/// One Modbus module of a board, with the values that the last exchange wrote and read. Only the constructor
+/// and transactions() allocate memory.
 class ModbusModule {
  public:
-  /// `link` must exist longer than the module. `index` is the number of the module in the wiring.
+  /// Creates the object for the module `index` of the wiring. `link` must exist longer than this object.
   ModbusModule(ModbusModuleSettings settings, std::size_t index, const std::vector<ChannelWiring>& wiring,
                ModbusLink& link);
 
   [[nodiscard]] const ModbusModuleSettings& settings() const noexcept { return settings_; }
   [[nodiscard]] const ExchangePlan& plan() const noexcept { return plan_; }
   [[nodiscard]] bool drives_outputs() const noexcept { return !plan_.writes.empty(); }
-  /// Returns the number of clients that the module reported in the last read; 0 if it does not count clients.
+  /// Returns the number of clients that the module reported in the last read; 0 if the module does not count
+  /// clients.
   [[nodiscard]] unsigned clients() const noexcept;
 
-  /// Prepares the module for a new session after the link was opened: writes the setup of the map. If the
-  /// watchdog has tripped, the setup is written later, after the watchdog has been cleared.
+  /// Prepares the module for a new session after the link was opened: writes the setup of the board map. If
+  /// the watchdog has tripped, the setup is written only after the watchdog has been cleared.
   [[nodiscard]] BusStatus set_up(Nanoseconds deadline) noexcept;
-  /// Sends one request that changes nothing, to measure the link. If the plan has no read, returns `ok` at
-  /// once.
+  /// Sends one read of the plan, to measure the duration of a round trip. If the plan has no read, returns
+  /// `ok` at once.
   [[nodiscard]] BusStatus probe(Nanoseconds deadline) noexcept;
 
-  /// Encodes the commands for write(). If a command is outside the range of its output, it is limited to the
-  /// range, and the function returns `write_refused`.
+  /// Encodes the commands for write(). A command outside the range of its output is limited to this range,
+  /// and the function returns `write_refused`.
   [[nodiscard]] BusStatus encode(std::span<const double> commands_kpa) noexcept;
   /// Writes the outputs and feeds the watchdog. The first call in a session also clears a tripped watchdog.
   [[nodiscard]] BusStatus write(Nanoseconds deadline) noexcept;
-  /// Decides if this exchange reads before it writes; reads_first() returns the decision. Every 8th exchange
-  /// reads first. In this way, it detects values that another client has written since the last exchange,
-  /// before it overwrites them. The exchange reads first only if the last exchange read back the values that
-  /// it had written. Otherwise, an output that did not take its value would look like a write of another
-  /// client.
+  /// Decides if this exchange reads the outputs before it writes them; reads_first() returns the decision.
+  /// Every 8th exchange reads first. Such an exchange detects values that another client has written since
+  /// the last exchange, before it overwrites these values. The exchange reads first only if the last exchange
+  /// read back the values that it had written. Otherwise, an output that had refused its value would look
+  /// like a write of another client.
   void begin_exchange() noexcept;
   [[nodiscard]] bool reads_first() const noexcept { return reads_first_; }
 
-  /// Performs the reads of the plan that write() has not performed.
+  /// Performs the reads of the plan, without those that write() has already performed.
   [[nodiscard]] BusStatus read(Nanoseconds deadline) noexcept;
-  /// Checks the outputs that the board reports. If an output differs from the written value, returns
-  /// `overwritten` if the exchange read first, and `write_refused` if it did not. After `write_refused`,
-  /// found_kpa() returns the reported outputs.
+  /// Compares the outputs that the board reports with the written values. If an output differs, the result is
+  /// `overwritten` in an exchange that reads first, and `write_refused` in any other exchange. After
+  /// `write_refused`, found_kpa() returns the reported outputs.
   [[nodiscard]] BusStatus check() noexcept;
-  /// Returns the output of a channel that the board reported [kPa]. Returns NaN if the channel is not wired
-  /// to the module, or if the output has the written value.
+  /// Returns the output of a channel that the board reported [kPa]. Returns NaN if the channel has no output
+  /// on this module, or if the output has the written value.
   [[nodiscard]] double found_kpa(std::size_t channel) const noexcept { return found_kpa_[channel]; }
   void forget_found() noexcept;
   /// Copies the values of a channel that the module has read into the reading of this channel.
   void fill(std::size_t channel, Reading& reading) const noexcept;
 
-  /// Returns the reason of the last failure.
+  /// Returns a text that gives the reason of the last failure.
   [[nodiscard]] const char* detail() const noexcept { return detail_; }
   /// Returns all requests of one exchange in the order in which they are sent.
   [[nodiscard]] std::vector<TransactionSize> transactions() const;
@@ -102,8 +104,8 @@ class ModbusModule {
   ExchangePlan plan_;
   ModbusLink& link_;
   std::vector<std::uint16_t> output_words_;
-  std::vector<double> requested_raws_;  ///< for each output, the value that was written, after rounding and
-                                        ///< limiting
+  std::vector<double> requested_raws_;  ///< for each output, the raw number that was written, after limiting
+                                        ///< and rounding
   ReadBackHistory accepted_;
   std::vector<double> found_kpa_;
   std::vector<std::vector<std::uint16_t>> replies_;  ///< one reply per read of the plan; a bit is stored as 0
@@ -115,8 +117,8 @@ class ModbusModule {
   bool reads_first_ = false;
   bool alternate_due_ = false;  ///< true: the next write of the heartbeat has the alternate value
   bool clear_due_ = false;      ///< true: the session is new, so a tripped watchdog may be cleared
-  bool setup_due_ = false;      ///< true: the watchdog had tripped when the session was opened, so the setup
-                                ///< must still be written
+  bool setup_due_ = false;      ///< true: the setup must still be written, because the watchdog had tripped
+                                ///< when the session was opened
   std::array<char, 200> own_detail_{};
   const char* detail_ = "";
 };

@@ -11,8 +11,9 @@ bool reads(std::uint8_t function) noexcept {
   return function <= MODBUS_FC_READ_INPUT_REGISTERS || function == MODBUS_FC_WRITE_AND_READ_REGISTERS;
 }
 
-/// Returns true if a reply confirms a write. The reply must contain the address, and the value (for one
-/// value) or the number of values (for several values).
+/// Returns true if a reply confirms a write. The reply must repeat the address of the request. The reply to a
+/// write of one value must also repeat this value. The reply to a write of several values must also repeat
+/// their number.
 bool echoes(std::span<const std::uint8_t> pdu, const ModbusRequest& request) noexcept {
   std::uint16_t value = 0;
   switch (request.function) {

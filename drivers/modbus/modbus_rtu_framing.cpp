@@ -15,8 +15,8 @@
 
 namespace softgrip::drivers {
 
-/// Discards the bytes of the previous session, because a module may still send a response. Such a response
-/// may be as long as the longest frame. Returns after a silence on the line.
+/// Discards late bytes of the previous session, because a module may still send a response to an old request.
+/// Such a response may have the size of the longest frame. Returns after a silence on the line.
 BusStatus ModbusRtuFraming::listen(Nanoseconds usual, Nanoseconds deadline) noexcept {
   heard_at_ = monotonic_now();
   if (!answer_may_come_) return BusStatus::ok;
@@ -61,7 +61,7 @@ BusStatus ModbusRtuFraming::before_asking(Nanoseconds deadline) noexcept {
 }
 
 /// Receives a response. Up to max_stray_bytes stray bytes may precede the response. Each read requests only
-/// as many bytes as are missing until the earliest possible end of a response.
+/// the number of bytes that are missing until the earliest possible end of the response.
 ModbusLink::Received ModbusRtuFraming::hear(std::span<std::uint8_t> buffer, std::uint8_t unit,
                                             const ModbusRequest& request, std::span<const std::uint8_t> asked,
                                             Nanoseconds deadline) noexcept {

@@ -1,5 +1,5 @@
 #pragma once
-// Link with Modbus RTU framing, on a serial line or on a TCP connection to a serial server.
+// Implements a link with Modbus RTU framing, on a serial line or on a TCP connection to a serial server.
 
 #include <cstdint>
 #include <span>
@@ -10,19 +10,19 @@
 namespace softgrip::drivers {
 
 /// RTU has no transaction id, so the bytes of a response do not show to which request the response belongs.
-/// Therefore, a request is sent only after the silence of the specification. If unexpected bytes arrive
-/// before a request, the link is closed. If there are fewer bytes than in the shortest response, the bytes
-/// are discarded. After a failure, a new link first listens for as long as a late response may take.
-/// libmodbus has none of these functions. It also does not find a response after stray bytes, so this class
-/// receives without libmodbus.
+/// Therefore, a request is sent only after the silence of the specification. Bytes that arrive before a
+/// request are discarded if they are fewer than the bytes of the shortest response. Otherwise, the link is
+/// closed. After a failure, a new link first listens for the time that a late response may take. libmodbus
+/// has none of these functions. libmodbus also does not find a response that follows stray bytes. Therefore,
+/// this class receives without libmodbus.
 class ModbusRtuFraming : public ModbusLink {
  protected:
   ModbusRtuFraming(_modbus* context, const LinkHabits& habits, bool on_network, Nanoseconds character,
                    Nanoseconds silence) noexcept
       : ModbusLink(context, habits, on_network), character_(character), silence_(silence) {}
 
-  /// Discards late responses after a link was opened. `usual` is the response time of a module [ns]. It does
-  /// not include the transmission time and the silence.
+  /// Discards late responses after a link was opened. `usual` is the response time of a module, without the
+  /// transmission time and without the silence [ns].
   BusStatus listen(Nanoseconds usual, Nanoseconds deadline) noexcept;
   [[nodiscard]] Nanoseconds character() const noexcept { return character_; }
   [[nodiscard]] Nanoseconds silence() const noexcept { return silence_; }

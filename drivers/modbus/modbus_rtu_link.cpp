@@ -72,8 +72,8 @@ BusStatus ModbusRtuLink::take_echo(std::span<const std::uint8_t> frame, Nanoseco
   return BusStatus::ok;
 }
 
-/// Returns the response time of module and adapter, without the transmission time and without one silence. A
-/// module recognises the end of a request by the silence, and responds after the silence.
+/// Returns the response time of module and adapter: the round trip minus the transmission time and one
+/// silence. The silence is subtracted, because a module recognises the end of a request by the silence.
 Nanoseconds ModbusRtuLink::answer_time(Nanoseconds round_trip) const noexcept {
   const auto bytes = static_cast<Nanoseconds>(last_size().request + last_size().reply + 2 * rtu_overhead);
   return std::max<Nanoseconds>(0, round_trip - bytes * character() - silence());

@@ -1,5 +1,5 @@
 #pragma once
-// Link to Modbus RTU modules on a serial line.
+// Implements a link to Modbus RTU modules on a serial line.
 
 #include <array>
 #include <cstdint>
@@ -11,9 +11,9 @@
 
 namespace softgrip::drivers {
 
-/// Link to the modules on a serial line. open() opens the device by its name, so that it also finds an
-/// adapter that was unplugged and connected again. open() allocates memory for this search. It fails for a
-/// name that udev gave to several adapters.
+/// Link to the modules on a serial line. open() opens the device by its name. Therefore, open() also finds an
+/// adapter that was unplugged and connected again. open() allocates memory for this search, and fails if udev
+/// gave the name to several adapters.
 class ModbusRtuLink final : public ModbusRtuFraming {
  public:
   explicit ModbusRtuLink(SerialLine line);

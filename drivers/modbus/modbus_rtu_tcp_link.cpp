@@ -16,7 +16,8 @@ constexpr Nanoseconds slow_character = 1'041'667;
 
 }  // namespace
 
-// libmodbus receives an open socket. Therefore, it never opens the device "/dev/null" of this context.
+// libmodbus gets a socket that is already open. Therefore, libmodbus never opens the device "/dev/null" of
+// this context.
 ModbusRtuTcpLink::ModbusRtuTcpLink(TcpAddress address)
     : ModbusRtuFraming(::modbus_new_rtu("/dev/null", 9600, 'N', 8, 1), address.habits, true, slow_character,
                        nanoseconds(address.silence_s)),

@@ -1,5 +1,5 @@
 #pragma once
-// Modbus RTU over a TCP connection to a serial server.
+// Implements Modbus RTU over a TCP connection to a serial server.
 
 #include <span>
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace softgrip::drivers {
 
-/// Link to the modules on the serial line of a serial server. The server may deliver a late response into the
-/// next connection. Therefore, after a failure, a new connection first listens for such a response, as on a
-/// serial line.
+/// Link to the modules on the serial line of a serial server. The server may deliver a late response of one
+/// connection into the next connection. Therefore, after a failure, the new connection first listens for late
+/// responses, as a link on a serial line does.
 class ModbusRtuTcpLink final : public ModbusRtuFraming {
  public:
   /// Creates a closed link. If the host is not a numeric address, open() fails and reports this.

@@ -12,7 +12,8 @@
 
 namespace softgrip::drivers {
 
-// libmodbus receives an open socket. Therefore, it does not use the address in this context.
+// libmodbus gets a socket that is already open. Therefore, libmodbus does not use the address in this
+// context.
 ModbusTcpLink::ModbusTcpLink(TcpAddress address)
     : ModbusLink(::modbus_new_tcp("127.0.0.1", 1), address.habits, true), address_(std::move(address)) {}
 
@@ -27,8 +28,8 @@ std::size_t ModbusTcpLink::build(std::uint8_t unit, const ModbusRequest& request
   return build_request(request, ++transaction_, unit, frame);
 }
 
-/// For a gateway without transaction ids, fails if bytes of a late response have already arrived. After the
-/// request is sent, such a response would look like the response to this request.
+/// Fails for a gateway without transaction ids if bytes of a late response have already arrived. After the
+/// next request is sent, the late response would look like the response to this request.
 BusStatus ModbusTcpLink::before_asking(Nanoseconds) noexcept {
   pollfd socket{.fd = descriptor(), .events = POLLIN, .revents = 0};
   if (address_.numbered || ::poll(&socket, 1, 0) == 0) return BusStatus::ok;

@@ -1,5 +1,5 @@
 #pragma once
-// One TCP connection to a Modbus server.
+// Implements a link over one TCP connection to a Modbus server.
 
 #include <cstdint>
 #include <span>
@@ -10,11 +10,11 @@
 
 namespace softgrip::drivers {
 
-/// Connects within a deadline to an IPv4 or IPv6 address, and gives each request its own transaction id.
-/// libmodbus cannot do this: raw requests of version 3.1.6 always have the transaction id 0. If all ids were
-/// equal, a repeated reply could be taken for the response to the next request. This risk remains for a
-/// gateway that does not return the id (TcpAddress::numbered is false). The late responses of such a gateway
-/// are detected only if they arrive before the next request is sent.
+/// Connects within a deadline to an IPv4 or IPv6 address, and gives each request its own transaction id. The
+/// raw requests of libmodbus 3.1.6 always have the transaction id 0, so this class sets the id itself. If all
+/// ids were equal, a repeated reply could be taken for the response to the next request. This risk remains
+/// for a gateway that does not return the id (TcpAddress::numbered is false). The late responses of such a
+/// gateway are detected only if they arrive before the next request is sent.
 class ModbusTcpLink final : public ModbusLink {
  public:
   /// Creates a closed link. If the host is not a numeric address, open() fails and reports this.

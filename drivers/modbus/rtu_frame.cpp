@@ -47,8 +47,8 @@ ModbusReply parse_rtu_reply(std::span<const std::uint8_t> bytes, const ModbusReq
   if (bytes[0] != unit) return defective(ReplyDefect::unit);
   const ModbusReply reply = parse_pdu(bytes.subspan(1), request);
   if (reply.state == ModbusReply::State::incomplete) return reply;
-  // If the bytes are equal to the request, the line returns its own bytes (echo). For the function codes 5
-  // and 6, an echo equals a correct response, so it cannot be detected.
+  // If the received bytes are equal to the request, the serial line returns the sent bytes (echo). For the
+  // function codes 5 and 6, an echo is equal to a correct response and cannot be detected.
   if (reply.state == ModbusReply::State::defective) {
     return bytes.size() > 4 && begins_with(bytes, asked.first(std::min(asked.size(), bytes.size())))
                ? defective(ReplyDefect::own_echo)

@@ -1,7 +1,7 @@
 #pragma once
-// Frames of Modbus RTU on serial lines: the unit id precedes the PDU (function code and data), and the CRC
-// follows it. A silence ends a frame. Source: MODBUS over Serial Line, Specification and Implementation Guide
-// V1.02, 2.5.1.
+// Builds and checks the frames of Modbus RTU on serial lines. A frame consists of the unit id, the PDU
+// (function code and data) and the CRC. A silence ends a frame. Source: MODBUS over Serial Line,
+// Specification and Implementation Guide V1.02, 2.5.1.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,21 +12,21 @@
 
 namespace softgrip::drivers {
 
-/// Longest frame on a serial line [bytes].
+/// Largest size of a frame on a serial line [bytes].
 inline constexpr std::size_t max_rtu_frame = 1 + max_pdu + 2;
 /// Size of the framing: unit id and CRC [bytes].
 inline constexpr std::size_t rtu_overhead = 3;
 
-/// Largest number of stray bytes that are discarded. It is one byte less than the size of the shortest
-/// response, which is an exception.
+/// Largest number of stray bytes that are discarded. The number is one byte smaller than the shortest
+/// response, which is an exception response.
 inline constexpr std::size_t max_stray_bytes = rtu_overhead + exception_pdu_size - 1;
 
-/// Returns the CRC-16 of the specification: polynomial 0xA001 (reflected), start value 0xFFFF. The frame
-/// contains its low byte first.
+/// Returns the CRC-16 of the Modbus specification: polynomial 0xA001 (reflected), start value 0xFFFF. A frame
+/// contains the low byte of the CRC first.
 [[nodiscard]] std::uint16_t crc16(std::span<const std::uint8_t> bytes) noexcept;
 
-/// Writes the unit id before and the CRC after the PDU of `pdu_size` bytes that begins at frame[1]. Returns
-/// the size of the frame.
+/// Adds the unit id and the CRC to a PDU that begins at frame[1] and has `pdu_size` bytes. Returns the size
+/// of the frame.
 std::size_t put_rtu_ends(std::span<std::uint8_t> frame, std::size_t pdu_size, std::uint8_t unit) noexcept;
 
 /// Returns true if the frame ends with the CRC of the bytes before it.
@@ -37,9 +37,9 @@ std::size_t put_rtu_ends(std::span<std::uint8_t> frame, std::size_t pdu_size, st
 [[nodiscard]] std::size_t build_rtu_request(const ModbusRequest& request, std::uint8_t unit,
                                             Frame& frame) noexcept;
 
-/// Checks `bytes`, which are all bytes received since the frame `asked` was sent. `incomplete` means that
-/// `bytes` are a correct beginning of the response. Therefore, a wrong byte is detected before the rest of
-/// the response arrives.
+/// Checks `bytes`, which are all bytes received since the frame `asked` was sent. The state `incomplete`
+/// means that `bytes` are a correct beginning of the response. Therefore, a wrong byte is detected before the
+/// rest of the response arrives.
 [[nodiscard]] ModbusReply parse_rtu_reply(std::span<const std::uint8_t> bytes, const ModbusRequest& request,
                                           std::uint8_t unit, std::span<const std::uint8_t> asked) noexcept;
 

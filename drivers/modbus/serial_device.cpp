@@ -10,8 +10,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* serial_device = "serial device";
 
-/// Returns the names of the files in a folder of `root`, in alphabetical order. Names that begin with a dot
-/// are left out.
+/// Returns the names of the files in the folder `folder` of `root`, in alphabetical order. Names that begin
+/// with a dot are left out.
 std::vector<std::string> names_in(const fs::path& root, const std::string& folder) {
   std::vector<std::string> names;
   std::error_code error;
@@ -23,8 +23,8 @@ std::vector<std::string> names_in(const fs::path& root, const std::string& folde
   return names;
 }
 
-/// Returns the name of the folder that udev creates for a link in /run/udev/links. The function
-/// udev_node_escape_path() of systemd forms this name.
+/// Returns the name of the folder that udev creates in /run/udev/links for the link `link`. The function
+/// udev_node_escape_path() of systemd forms the name in this way.
 std::string escaped(const std::string& link) {
   std::string text;
   for (const char c : link) {
@@ -39,7 +39,8 @@ std::string escaped(const std::string& link) {
   return text;
 }
 
-/// Returns the device at `node`. Its words are the names of its port (links in /dev/serial/by-path).
+/// Returns the device with the file `node`. The words of the device are the names of its port (links in
+/// /dev/serial/by-path).
 ComputerDevice on_port(const fs::path& root, const std::string& node) {
   ComputerDevice device{node, {}, {}};
   std::error_code error;
@@ -51,8 +52,8 @@ ComputerDevice on_port(const fs::path& root, const std::string& node) {
   return device;
 }
 
-/// Returns the devices to which udev gave this link. udev has a folder for the link. In this folder, each
-/// device has an entry such as "c188:0", which leads to "PRIORITY:/dev/ttyUSB0".
+/// Returns the devices to which udev gave the link `link`. udev has a folder for each link. In this folder,
+/// each device has an entry such as "c188:0", which leads to "PRIORITY:/dev/ttyUSB0".
 std::vector<ComputerDevice> claimants(const fs::path& root, const std::string& link) {
   const std::string folder = "run/udev/links/" + escaped(link);
   std::vector<ComputerDevice> found;

@@ -1,6 +1,7 @@
 #include "drivers/modbus/serial_port.h"
 
-#include <asm/termbits.h>  // for struct termios2; <termios.h> cannot be included together with this header
+#include <asm/termbits.h>  // defines struct termios2; <termios.h> cannot be included together with this
+                           // header
 #include <fcntl.h>
 #include <modbus/modbus.h>
 #include <sys/file.h>
@@ -42,7 +43,7 @@ tcflag_t line_flags(const SerialLine& line) noexcept {
   return flags;
 }
 
-/// Returns true if the device really has the baud rate and the format of `line`.
+/// Returns true if the settings of the device contain the baud rate and the format of `line`.
 bool keeps_to(int descriptor, const SerialLine& line) noexcept {
   termios2 settings{};  // struct in which the baud rate is a number
   if (::ioctl(descriptor, TCGETS2, &settings) != 0) return false;

@@ -1,5 +1,5 @@
 #pragma once
-// Opens serial devices with the settings of a line, and calculates the timing of the line.
+// Opens serial devices with the settings of a serial line, and calculates the timing of this line.
 
 #include <cstddef>
 #include <optional>
@@ -17,7 +17,8 @@ namespace softgrip::drivers {
 /// The reason why a serial device could not be opened.
 struct SerialFailure {
   const char* what = nullptr;  ///< action that failed; null: the device is open
-  int error = 0;               ///< errno; 0: the device accepted the settings, but does not have them
+  int error = 0;               ///< errno of the failed action; 0: the device accepted the settings without
+                               ///< applying all of them
 };
 
 /// Creates a libmodbus context for the line. The caller must free the context. Returns null if libmodbus
@@ -25,18 +26,18 @@ struct SerialFailure {
 [[nodiscard]] _modbus* new_context(const SerialLine& line);
 
 /// Locks, opens and configures the device with libmodbus, without blocking. The lock excludes other processes
-/// while `master` is open. Two Modbus clients on one line would read each other's responses and change the
-/// settings. After the configuration, the function reads the settings back. The reason is that libmodbus uses
-/// 9600 baud for an unknown rate, and that tcsetattr() succeeds even if it could apply only some settings.
-/// The format of a pseudo-terminal is not checked, because a pseudo-terminal has no wire. The function does
-/// not allocate memory.
+/// while `master` is open. Without the lock, two Modbus clients on one line would read each other's responses
+/// and change the settings. After the configuration, the function reads the settings of the device and
+/// compares them with `line`. This check is needed, because libmodbus uses 9600 baud for an unknown rate, and
+/// because tcsetattr() succeeds even if it could apply only some settings. The format of a pseudo-terminal is
+/// not checked, because a pseudo-terminal has no wire. The function does not allocate memory.
 [[nodiscard]] SerialFailure open_serial(_modbus* context, const SerialLine& line,
                                         Descriptor& master) noexcept;
 
 /// Returns the duration of one character, including its start, parity and stop bits [s].
 [[nodiscard]] double character_s(const SerialLine& line) noexcept;
-/// Returns the silence before and after a frame [s]. If the settings of the line give a silence, returns this
-/// value, otherwise the value of the specification.
+/// Returns the silence before and after a frame [s]: the silence in the settings of the line if they give
+/// one, otherwise the silence of the Modbus specification.
 [[nodiscard]] double silence_s(const SerialLine& line) noexcept;
 /// Sets parity and stop bits from the text "8N1", "8E1", "8O1", "8N2" or "8E2". Returns false for any other
 /// text.
@@ -46,13 +47,13 @@ struct SerialFailure {
 /// Returns the settings of the line as text, for example "115200 8N1".
 [[nodiscard]] std::string format_of(const SerialLine& line);
 
-/// Time for which the driver of a USB adapter collects bytes before it passes them on.
+/// Time for which the driver of a USB adapter collects received bytes before it delivers them.
 struct AdapterLatency {
   double seconds = 0;
   std::string path;  ///< file that contains the latency in milliseconds
 };
-/// Returns the latency of a device. Returns nothing if the device is not connected now, or has no such
-/// setting. `sys` is the path of sysfs.
+/// Returns the adapter latency of a device. Returns nothing if the device is not connected now, or if its
+/// driver has no latency setting. `sys` is the path of sysfs.
 [[nodiscard]] std::optional<AdapterLatency> adapter_latency(const std::string& device,
                                                             const std::string& sys = "/sys");
 

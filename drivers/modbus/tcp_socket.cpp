@@ -15,21 +15,21 @@
 namespace softgrip::drivers {
 namespace {
 
-// During an exchange, the deadline detects that the other end no longer responds. At other times, these
-// options make the kernel close the connection to an end that does not respond.
+// During an exchange, the deadline detects that the other end of the connection no longer responds. Between
+// exchanges, these options let the kernel close a connection whose other end no longer responds.
 constexpr int keepalive_idle_s = 2;
 constexpr int keepalive_interval_s = 1;
 constexpr int keepalive_probes = 3;
 constexpr unsigned user_timeout_ms = 3000;
 
 void set_option(int socket, int level, int name, int value) noexcept {
-  // Without these options, a connection is slower, or a dead connection is detected later. Therefore, an
-  // error is ignored.
+  // An error is ignored, because the connection works without these options. Without the options, the
+  // connection is slower, or its failure is detected later.
   (void)::setsockopt(socket, level, name, &value, sizeof value);
 }
 
-/// Converts the host and port to `address`. Returns the size of `address`; 0 if the host is not a numeric
-/// address.
+/// Converts the host and the port of `from` to a socket address. Returns the size of the socket address; 0 if
+/// the host is not a numeric address.
 socklen_t parse_address(const TcpAddress& from, sockaddr_storage& address) noexcept {
   sockaddr_in v4{.sin_family = AF_INET, .sin_port = htons(from.port), .sin_addr = {}, .sin_zero = {}};
   sockaddr_in6 v6{};
@@ -44,8 +44,9 @@ socklen_t parse_address(const TcpAddress& from, sockaddr_storage& address) noexc
   return sizeof v6;
 }
 
-/// Returns true if a socket is connected to itself. This can happen on a port of this machine on which no
-/// program listens, if the kernel chooses the same port as the local port.
+/// Returns true if a socket is connected to itself. This can happen if no program listens on the port of this
+/// machine to which the socket connects. The kernel may then choose this port as the local port of the
+/// socket.
 bool talks_to_itself(int socket) noexcept {
   sockaddr_storage local{};
   sockaddr_storage peer{};
@@ -94,8 +95,8 @@ TcpConnection connect_tcp(const TcpAddress& to, Nanoseconds deadline) noexcept {
 }
 
 int send_whole(int socket, std::span<const std::uint8_t> frame) noexcept {
-  // Only one request is sent at a time. Therefore, a socket that does not accept 260 bytes at once is
-  // blocked.
+  // Only one request is sent at a time, and a request has at most 260 bytes. A socket that does not accept a
+  // request at once is therefore blocked.
   const ssize_t sent = ::send(socket, frame.data(), frame.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   if (sent == static_cast<ssize_t>(frame.size())) return 0;
   return sent < 0 ? errno : ENOBUFS;

@@ -1,5 +1,6 @@
 #pragma once
-// Connects to a host within a deadline, and sends frames without waiting. No function allocates memory.
+// Connects to a host within a deadline, and sends frames without waiting. No function of this file allocates
+// memory.
 
 #include <cstdint>
 #include <span>
@@ -21,9 +22,9 @@ struct TcpConnection {
 /// CLOCK_BOOTTIME [ns].
 [[nodiscard]] TcpConnection connect_tcp(const TcpAddress& to, Nanoseconds deadline) noexcept;
 
-/// Sends a frame. Returns 0 if the frame was sent completely, otherwise the errno.
+/// Sends a frame. Returns 0 if the complete frame was sent, otherwise the errno.
 [[nodiscard]] int send_whole(int socket, std::span<const std::uint8_t> frame) noexcept;
-/// Returns true if an errno means that the other end has closed the connection.
+/// Returns true if the errno `error` means that the peer has closed the connection.
 [[nodiscard]] bool is_closed(int error) noexcept;
 
 }  // namespace softgrip::drivers

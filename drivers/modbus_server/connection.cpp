@@ -9,8 +9,8 @@
 namespace softgrip::modbus {
 namespace {
 
-// Largest number of parts of replies in the queue. If a client does not read its replies, the queue exceeds
-// this number, and the client is disconnected.
+// Largest number of parts of replies in the queue of one client. If a client does not read its replies, the
+// queue exceeds this number, and the server disconnects the client.
 constexpr std::size_t max_outgoing = 1024;
 
 bool would_block(int error) {

@@ -1,6 +1,6 @@
 #pragma once
-// The registers of a Modbus server, and its responses to requests without framing. The responses follow
-// MODBUS Application Protocol Specification V1.1b3, sections 6.3, 6.4, 6.6, 6.12, 6.17 and 7.
+// Implements the registers of a Modbus server, and the responses to requests without framing. The responses
+// follow MODBUS Application Protocol Specification V1.1b3, sections 6.3, 6.4, 6.6, 6.12, 6.17 and 7.
 
 #include <cstdint>
 #include <map>
@@ -12,12 +12,12 @@
 
 namespace softgrip::modbus {
 
-/// Returns the reply that reports an exception.
+/// Returns the reply that reports the exception `code` for a request with the function code `function`.
 [[nodiscard]] Bytes exception_reply(std::uint8_t function, std::uint8_t code);
 
-/// A set of registers. A request for an undefined address causes an exception. The value 0 is not returned,
-/// so that a client with a wrong address detects its error. There are two tables: holding registers and input
-/// registers. As in the ADAM-6000, the read functions of both tables can read an address that only one table
+/// The registers of a server, in two tables: holding registers and input registers. A request for an
+/// undefined address gets an exception and not the value 0, so that a client with a wrong address detects its
+/// error. As in the ADAM-6000, the read functions of both tables can read an address that only one table
 /// contains.
 class Registers {
  public:
@@ -63,7 +63,7 @@ class Registers {
   Answer read_write(std::span<const std::uint8_t> pdu);
   [[nodiscard]] std::optional<std::uint16_t> value_of(std::size_t address, bool holding) const;
   [[nodiscard]] bool writable(std::uint16_t first, std::size_t count) const;
-  /// Appends the values of registers to `pdu`. Returns false if one of the addresses does not exist.
+  /// Appends the values of registers to `pdu`. Returns false if one of the registers does not exist.
   bool append_values(Bytes& pdu, std::uint16_t first, std::size_t count, bool holding) const;
   void store(std::uint16_t first, std::span<const std::uint8_t> data);
 

@@ -13,16 +13,16 @@ namespace {
 using drivers::mbap_size;
 using drivers::rtu_overhead;
 
-// Largest number of received bytes that wait to be processed. If a client exceeds this number, its connection
-// is closed. Complete requests are removed after each reception, so a correct client never reaches this
-// number.
+// Largest number of received bytes of one client that wait to be processed. If more bytes wait, the
+// connection is closed. Complete requests are removed after each reception, so a correct client never reaches
+// this number.
 constexpr std::size_t max_pending = 16 * drivers::max_frame;
 
 constexpr std::chrono::milliseconds no_lump{100};
 
-/// Returns the size of the serial frame at the start of `bytes`; 0 if the size is not known yet. If no board
-/// of this project supports the function code, returns the number of all bytes, so that the server can
-/// respond with an exception.
+/// Returns the size of the serial frame at the start of `bytes`; 0 if too few bytes have arrived to determine
+/// the size. For a function code that no board of this project supports, returns the number of all bytes, so
+/// that the server can respond with an exception.
 std::size_t rtu_request_size(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < 2) return 0;
   constexpr std::size_t crc_size = 2;

@@ -31,12 +31,13 @@ struct Request {
 class RequestStream {
  public:
   void append(std::span<const std::uint8_t> bytes);
-  /// Removes the next complete request and returns it; returns nothing if there is none.
+  /// Removes the next complete request from the waiting bytes and returns it. Returns nothing if no complete
+  /// request has arrived.
   [[nodiscard]] std::optional<Request> next();
-  /// Returns true after an invalid header. The end of the invalid request is unknown, so the connection must
-  /// be closed.
+  /// Returns true if a request had an invalid header. The end of this request is unknown, so the connection
+  /// must be closed.
   [[nodiscard]] bool broken() const noexcept { return broken_; }
-  /// Returns true if an incomplete request has arrived.
+  /// Returns true if the beginning of a request has arrived, but not its end.
   [[nodiscard]] bool half() const noexcept { return !pending_.empty(); }
 
  private:
@@ -45,14 +46,15 @@ class RequestStream {
 };
 
 /// Divides the bytes of a serial line into requests. In the specification, a silence of 3.5 characters ends a
-/// frame. On a busy machine, bytes arrive in groups. Therefore, this class determines the end of a frame from
-/// the length that the function code implies. Bytes that arrive after a silence of more than 100 ms begin a
-/// new frame.
+/// frame. On a busy machine, bytes arrive in groups, so silences are not reliable. Therefore, this class
+/// determines the end of a frame from the length that the function code implies. Bytes that arrive after a
+/// silence of more than 100 ms begin a new frame.
 class RtuRequestStream {
  public:
   void append(std::span<const std::uint8_t> bytes, Clock::time_point now);
-  /// Removes the next complete request and returns it; returns nothing if there is none. A frame with a wrong
-  /// checksum is discarded together with all other waiting bytes, and the server does not respond to it.
+  /// Removes the next complete request from the waiting bytes and returns it. Returns nothing if no complete
+  /// request has arrived. A frame with a wrong checksum is discarded together with all other waiting bytes,
+  /// and the server does not respond to this frame.
   [[nodiscard]] std::optional<Request> next();
 
  private:
@@ -60,7 +62,7 @@ class RtuRequestStream {
   Clock::time_point last_byte_;
 };
 
-/// Returns a complete frame that contains the PDU of a reply. On a serial line, `transaction` is not used.
+/// Returns a complete frame with the PDU of a reply. `transaction` is used only for Modbus TCP.
 [[nodiscard]] Bytes frame_on(Wire wire, std::uint16_t transaction, std::uint8_t unit,
                              std::span<const std::uint8_t> pdu);
 

@@ -1,4 +1,4 @@
-// Runs a controller with the simulated board: closed_loop MODEL.yaml tracks a sine with feedforward and PID
+// Runs a controller with the simulated board. `closed_loop MODEL.yaml` tracks a sine with feedforward and PID
 // at 200 Hz. The simulated sensor has noise. The program prints the root mean square error of the last cycle
 // of the sine.
 
@@ -29,7 +29,7 @@ int main(int count, char** arguments) try {
   settings.limits.pressure_max_kpa = 80;
   settings.pid.kp_kpa_per_mm = 2.7;
   settings.pid.ki_kpa_per_mm_s = 13;
-  settings.extra_latency_s = 0.005;  // a command reaches the board in the next exchange
+  settings.extra_latency_s = 0.005;  // a command reaches the board one period (0.005 s) after its computation
   softgrip::Controller controller(settings);
   softgrip::Reference reference;
   reference.start(1, 0);         // the clock of the board starts at 1 s

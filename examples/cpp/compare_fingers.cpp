@@ -1,5 +1,5 @@
-// Compares two fingers: compare_fingers LOG_A LOG_B fits the same model structure to one log of each finger.
-// It prints the parameters whose 95 % intervals do not overlap.
+// Compares two fingers. `compare_fingers LOG_A LOG_B` fits the same model structure to one log of each
+// finger. The program prints the parameters whose 95 % intervals for the two fingers do not overlap.
 
 #include <cstdio>
 #include <exception>

@@ -1,6 +1,6 @@
-// Diagnoses a finger from a file of another program. diagnose_csv FILE [REPORT.html] converts the file with
-// the column roles that `softgrip import` proposes, fits the default model structure, and names the causes of
-// the model error.
+// Diagnoses a finger from a file of another program. `diagnose_csv FILE [REPORT.html]` converts the file with
+// the column roles that `softgrip import` proposes. The program then fits the default model structure and
+// prints the causes of the model error.
 
 #include <cstdio>
 #include <exception>

@@ -1,6 +1,6 @@
-// Grips and waits for the result: grip_and_wait SOCKET SEQUENCE sends requests to softgripd
-// (docs/reference/socket-api.md). Exit code 1: the gripper holds nothing. Each line of the socket is a JSON
-// object; a larger program should parse the lines with a JSON library.
+// Grips a part and waits for the grip result. `grip_and_wait SOCKET SEQUENCE` sends requests to softgripd
+// (docs/reference/socket-api.md). The exit code 1 means that the gripper holds no part. Each line that
+// softgripd sends is a JSON object; a larger program should parse the lines with a JSON library.
 
 #include <sys/socket.h>
 #include <sys/un.h>

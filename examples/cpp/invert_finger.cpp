@@ -1,5 +1,6 @@
-// Inverts the model of a finger. invert_finger MODEL.yaml computes the pressure command for a sine of the
-// displacement and simulates the finger with this command. It prints the largest tracking error after 3 s.
+// Inverts the model of a finger. `invert_finger MODEL.yaml` computes the pressure command for a sine of the
+// displacement and simulates the finger with this command. The program prints the largest tracking error that
+// occurs after 3 s.
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +18,8 @@ int main(int count, char** arguments) try {
   }
   const softgrip::Model model = softgrip::Model::load(arguments[1]);
 
-  // 20 s at 200 Hz: a sine between 4 and 8 mm with a period of 10 s. The finger needs some time to reach the
-  // first value.
+  // Computes the reference: 20 s at 200 Hz of a sine between 4 and 8 mm with a period of 10 s. The finger
+  // starts at rest and needs some time to reach the first value of the sine.
   std::vector<double> time_s, wanted;
   for (int i = 0; i <= 4000; ++i) {
     time_s.push_back(i / 200.0);
@@ -28,7 +29,7 @@ int main(int count, char** arguments) try {
   limits.pressure_max_kpa = 80;
   const softgrip::Inverse inverse = model.inverse(time_s, wanted, limits);
 
-  // A board holds each command until it receives the next one.
+  // The simulation holds each command until the next command, as a board does.
   softgrip::SimulateOptions held;
   held.held = true;
   const std::vector<double> moved = model.simulate(time_s, inverse.pressure_kpa, held);

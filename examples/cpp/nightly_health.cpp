@@ -1,6 +1,7 @@
-// Checks the health of all fingers every night. nightly_health RECORDINGS BASELINE OUT prints the health of
-// each finger and writes a page per finger into the folder OUT. OUT also stores the indicators, so that no
-// recording is read twice. Exit code 1: an alarm of a finger is active.
+// Checks the health of all fingers; run this program once per night. `nightly_health RECORDINGS BASELINE OUT`
+// prints the health of each finger and writes a page per finger into the folder OUT. The program also stores
+// the indicators in OUT, so that it reads each recording only once. The exit code 1 means that an alarm of a
+// finger is active.
 
 #include <cstdio>
 #include <exception>

@@ -1,4 +1,4 @@
-// Simulates a finger: simulate_finger MODEL.yaml prints time, pressure and displacement as CSV.
+// Simulates a finger. `simulate_finger MODEL.yaml` prints time, pressure and displacement as CSV.
 
 #include <cmath>
 #include <cstdio>
@@ -15,7 +15,7 @@ int main(int count, char** arguments) try {
   }
   const softgrip::Model model = softgrip::Model::load(arguments[1]);
 
-  // 20 s at 100 Hz: a sine from 0 to 60 kPa with a period of 5 s.
+  // Computes the pressure command: 20 s at 100 Hz of a sine from 0 to 60 kPa with a period of 5 s.
   std::vector<double> time_s, pressure_kpa;
   for (int i = 0; i <= 2000; ++i) {
     time_s.push_back(i / 100.0);

@@ -1,4 +1,5 @@
-"""Runs a controller with the simulated board: closed_loop.py MODEL.yaml tracks a sine with feedforward and PID at 200 Hz."""
+"""Runs a controller with the simulated board. `closed_loop.py MODEL.yaml` tracks a sine with feedforward and PID at 200
+Hz."""
 
 import math
 import sys
@@ -13,7 +14,7 @@ def main(model_file: str) -> None:
     board = softgrip.SimulatedBoard([softgrip.SimulatedFinger(model, noise=0.03)], TICK)
     controller = softgrip.Controller(
         model, softgrip.Limits(pressure_max=80), softgrip.PidSettings(kp=2.7, ki=13),
-        extra_latency=TICK, tick=TICK)  # a command reaches the board in the next exchange
+        extra_latency=TICK, tick=TICK)  # a command reaches the board one period after its computation
     reference = softgrip.Reference(0, start=1)  # the clock of the board starts at 1 s
     reference.ramp_to(6, duration=3)
     reference.sine(mean=9, amplitude=3, frequency=0.1, cycles=3)

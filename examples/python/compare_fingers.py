@@ -1,4 +1,4 @@
-"""Compares two fingers by the 95 % intervals of their parameters: compare_fingers.py LOG_A LOG_B"""
+"""Compares two fingers by the 95 % intervals of their parameters. Usage: compare_fingers.py LOG_A LOG_B"""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Diagnoses a finger from a file of another program: diagnose_csv.py FILE [REPORT.html]"""
+"""Diagnoses a finger from a file of another program. Usage: diagnose_csv.py FILE [REPORT.html]"""
 
 import sys
 

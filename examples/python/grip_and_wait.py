@@ -1,4 +1,5 @@
-"""Grips and waits for the result: grip_and_wait.py [SOCKET] [SEQUENCE]. Exit code 1: the gripper holds nothing."""
+"""Grips a part and waits for the grip result: grip_and_wait.py [SOCKET] [SEQUENCE]. Exit code 1: the gripper holds no
+part."""
 
 import sys
 from typing import Optional
@@ -7,9 +8,9 @@ import softgrip
 
 
 def main(socket: Optional[str] = None, sequence: str = "pick_stone") -> int:
-    # At the end of the block, also after an exception, the sequence is stopped if it still runs.
+    # At its end, also after an exception, the block stops the sequence if the sequence still runs.
     with softgrip.Gripper(socket, name="grip_and_wait") as gripper:
-        gripper.check(sequence)  # checks the sequence as a start does, but moves nothing
+        gripper.check(sequence)  # checks the sequence as a start does, but does not start it
         gripper.start(sequence)
         try:
             result = gripper.wait_until(softgrip.Result.HOLDING, timeout_s=60)

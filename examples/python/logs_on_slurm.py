@@ -1,7 +1,7 @@
 """Identifies many logs with the workflow of softgrip, on Slurm or on this machine: logs_on_slurm.py OUT LOG... [--local]
 
-The workflow (workflows/run.py in the source of softgrip, WORKFLOW) continues after an interruption with the unfinished logs.
-This script writes the table of the workflow and collects the results.
+The workflow is workflows/run.py in the source of softgrip (WORKFLOW). After an interruption, the workflow continues
+with the unfinished logs. This script writes the table of the workflow and collects the results.
 """
 
 import csv

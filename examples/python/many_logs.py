@@ -1,4 +1,5 @@
-"""Identifies many logs in parallel, one process per processor core: many_logs.py LOG... prints a line for each log."""
+"""Identifies many logs in parallel with one process per processor core. `many_logs.py LOG...` prints a line for each
+log."""
 
 import sys
 from concurrent.futures import ProcessPoolExecutor

@@ -1,6 +1,8 @@
-"""Checks the health of all fingers every night: nightly_health.py RECORDINGS BASELINE OUT. Exit code 1: an alarm is active.
+"""Checks the health of all fingers; run it once per night: nightly_health.py RECORDINGS BASELINE OUT. Exit code 1: an
+alarm is active.
 
-The folder OUT stores the indicators of each recording, so that no recording is read twice. It also gets a page per finger.
+The program stores the indicators of each recording in the folder OUT, so that it reads each recording only once. It
+also writes a page per finger into this folder.
 """
 
 import pathlib
@@ -12,7 +14,7 @@ import softgrip
 def main(recordings: str, baseline: str, out: str) -> int:
     folder = pathlib.Path(out)
     folder.mkdir(parents=True, exist_ok=True)
-    notes = folder / "notes.yaml"  # maintenance records: {date: 2026-11-03, finger: left, action: finger replaced}
+    notes = folder / "notes.yaml"  # records such as {date: 2026-11-03, finger: left, action: finger replaced}
     health = softgrip.health(recordings, baseline, notes=notes if notes.exists() else None,
                              scores=folder / "health-scores.jsonl")
     for finger in health.fingers:

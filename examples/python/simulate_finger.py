@@ -1,4 +1,4 @@
-"""Simulates a finger: simulate_finger.py MODEL.yaml [OUT.csv] prints the range of its readings and writes a log."""
+"""Simulates a finger. `simulate_finger.py MODEL.yaml [OUT.csv]` prints the range of the readings and writes a log."""
 
 import sys
 

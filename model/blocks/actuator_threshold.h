@@ -6,7 +6,8 @@
 
 namespace softgrip::model {
 
-/// For the threshold p0: q = p - p0 above p0, q = 0 between 0 and p0, and q = p below 0.
+/// Converts the pressure p to the pressure q above the threshold p0. q = p - p0 for p above p0, q = 0 for p
+/// between 0 and p0, and q = p for p below 0.
 template <class T>
 class ActuatorThreshold {
  public:
@@ -25,8 +26,8 @@ class ActuatorThreshold {
   template <class Next>
   void step(const Segment<T>& in, const Surroundings&, Next&& next) {
     const auto pass = [&](const Segment<T>& piece) {
-      // The map has three zones. In each zone, the output is either a shifted pressure, zero, or the
-      // unchanged pressure.
+      // The map from the input pressure p to the output pressure q has three zones: q is p minus the
+      // threshold, 0, or p.
       const double middle = 0.5 * (value_of(piece.begin) + value_of(piece.end));
       const T begin = output_;
       output_ = map(piece.end);

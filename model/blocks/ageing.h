@@ -6,8 +6,8 @@
 
 namespace softgrip::model {
 
-/// Multiplies y by 1 + a t, limited to positive values. t is the time since the start of the measurement
-/// campaign.
+/// Multiplies the displacement y by 1 + a t. positive_gain() limits this factor to positive values. a is the
+/// relative change of the gain per time, and t is the time since the start of the measurement campaign.
 template <class T>
 class Ageing : public SurroundingsGain<Ageing<T>, T> {
  public:

@@ -6,8 +6,9 @@
 
 namespace softgrip::model {
 
-/// Makes the chain's Bouc-Wen element asymmetric: in one direction, it saturates faster or follows the
-/// pressure more closely than in the other direction. bouc_wen.h names the source of the equation.
+/// Makes the chain's Bouc-Wen element asymmetric. In one direction of the pressure, the element then
+/// saturates faster, or follows the pressure more closely, than in the opposite direction. bouc_wen.h names
+/// the source of the equation.
 template <class T>
 class AsymmetricBoucWen : public BoucWenPart<T> {
  public:

@@ -1,13 +1,13 @@
 #pragma once
-// Models the lag of the regulator and the tube as first order, with different time constants for filling and
-// venting.
+// Models the lag of the regulator and the tube as a first-order lag with different time constants for filling
+// and venting.
 
 #include "model/block.h"
 #include "model/two_way_lag.h"
 
 namespace softgrip::model {
 
-/// TwoWayLag describes the equation.
+/// Makes the pressure follow the command with a lag. TwoWayLag (model/two_way_lag.h) describes the equation.
 template <class T>
 class AsymmetricValveLag {
  public:

@@ -6,8 +6,9 @@
 
 namespace softgrip::model {
 
-/// The measured point follows the actuator. It moves when the gap, half the backlash on either side, is
-/// closed.
+/// Converts the motion of the actuator to the motion of the measured point. The measured point moves only
+/// while the gap between actuator and measured point is closed. In the middle position, the gap on each side
+/// is half of the backlash.
 template <class T>
 class Backlash {
  public:

@@ -24,25 +24,25 @@
 
 namespace softgrip::model {
 
-/// Deviations of the parameters of bouc_wen. They are added for loading and subtracted for unloading. A value
-/// of 0 has no effect.
+/// Deviations of the parameters of bouc_wen for an asymmetric loop. Each deviation is added for loading and
+/// subtracted for unloading. A deviation of 0 has no effect.
 template <class T>
 struct BoucWenSkew {
   T delta_per_kpa{0.0};    ///< deviation of the parameter gamma
   T epsilon_per_kpa{0.0};  ///< deviation of the parameter eta
-  T beta_share{0.0};       ///< deviation of the parameter beta, divided by beta
+  T beta_share{0.0};       ///< deviation of the parameter beta, as a share of beta
 };
 
-/// Parameters by which the loop changes at high pressure rates.
+/// Parameters that determine how the hysteresis loop changes with the pressure rate.
 template <class T>
 struct BoucWenRate {
   T share{0.0};           ///< largest relative change of the loop width or of eta
   T half_kpa_per_s{1.0};  ///< pressure rate at which half of the largest change is reached
-  T settling_s{1.0};      ///< time constant by which the pressure rate is averaged
+  T settling_s{1.0};      ///< time constant of the filter that averages the pressure rate
 };
 
-/// The averaged pressure rate r, with settling r' = |p'| - r. Also the change of a parameter that depends on
-/// r.
+/// Computes the averaged pressure rate r, and the change of a parameter that depends on r. The equation of r
+/// is settling r' = |p'| - r with the pressure p.
 template <class T>
 class AveragedRate {
  public:
@@ -52,8 +52,8 @@ class AveragedRate {
   void reset() { kpa_per_s_ = T(0.0); }
   void step(const T& change_kpa, const T& duration_s) { kpa_per_s_ = after(change_kpa, duration_s); }
 
-  /// Returns r after `duration_s`. r relaxes towards |p'|. A jump of the pressure increases r by the size of
-  /// the jump divided by the settling time.
+  /// Returns the averaged pressure rate r after `duration_s`. r relaxes towards the present rate |p'|. A jump
+  /// of the pressure increases r by the size of the jump divided by settling_s.
   template <class U>
   [[nodiscard]] U after(const U& change_kpa, const T& duration_s) const {
     const T z = duration_s * settling_per_s_;
@@ -61,8 +61,8 @@ class AveragedRate {
     return kpa_per_s_ + (size * settling_per_s_ - z * kpa_per_s_) * phi1(T(-z));
   }
 
-  /// Returns the change of the parameter `base` at a pressure rate. It is 0 at rest. If the rate is far above
-  /// half_kpa_per_s, it is `base` times BoucWenRate::share.
+  /// Returns the change of the parameter value `base` at a pressure rate. The change is 0 at rest. At rates
+  /// far above half_kpa_per_s, the change approaches `base` times BoucWenRate::share.
   template <class U>
   [[nodiscard]] U share_of(const T& base, const U& kpa_per_s) const {
     return base * rate_.share * (kpa_per_s / (kpa_per_s + rate_.half_kpa_per_s));
@@ -75,12 +75,13 @@ class AveragedRate {
   T kpa_per_s_{0.0};
 };
 
-/// Between the zeros of h, dh/dp is linear in h for exponent 1. The equation is integrated in closed form,
-/// which is exact for any step size. In a monotone step, h changes its sign at most once. For other
-/// exponents, the classical Runge-Kutta method is used in sub-steps of the pressure. The relative change of
-/// the slope in a sub-step is below 1/100 (local error about 1e-11 of h). Sub-steps end where h is zero. This
-/// pressure is an integral over h, computed by Gauss-Legendre quadrature. The error of the mean of a segment
-/// is of the fourth order in the pressure change of the segment (1e-7 mm at 0.5 kPa).
+/// Integrates the Bouc-Wen equation. For exponent 1, dh/dp is linear in h between two zeros of h. In this
+/// case, the equation is integrated in closed form, which is exact for any step size. In a monotone step, h
+/// changes its sign at most once. For other exponents, the classical Runge-Kutta method is used in sub-steps
+/// of the pressure. The relative change of the slope in a sub-step is below 1/100 (local error about 1e-11 of
+/// h). A sub-step ends where h is zero. The pressure at this point is an integral over h, which is computed
+/// by Gauss-Legendre quadrature. The error of the mean of a segment is of the fourth order in the pressure
+/// change of the segment (1e-7 mm at 0.5 kPa).
 ///
 /// gamma and eta have the unit 1/(kPa mm^(exponent-1)). The names of the parameters contain the unit for
 /// exponent 1, which is 1/kPa.
@@ -121,10 +122,10 @@ class BoucWen {
                                      : std::string_view{};
   }
 
-  /// Gives loading and unloading different parameters. `skew` is added for loading and subtracted for
-  /// unloading. `delta_per_kpa` is limited to +-eta and +-(gamma + eta), and the saturation rates are limited
-  /// to values that keep h bounded. Beyond these limits, h would grow while the pressure returns. Call skew()
-  /// once for each AsymmetricBoucWen block.
+  /// Gives loading and unloading different parameters. The deviations in `skew` are added for loading and
+  /// subtracted for unloading. `delta_per_kpa` is limited to +-eta and +-(gamma + eta). The saturation rates
+  /// are limited to values that keep h bounded. Beyond these limits, h would grow while the pressure returns.
+  /// Call skew() once for each AsymmetricBoucWen block.
   void skew(const BoucWenSkew<T>& skew) {
     const T eta = (growing_[0] - shrinking_[0]) * 0.5;
     const T most = value_of(eta) < value_of(growing_[0]) ? eta : growing_[0];
@@ -138,22 +139,25 @@ class BoucWen {
     growing_ = {not_below(growing_[0] - skew.epsilon_per_kpa, 0.0),
                 not_below(growing_[1] + skew.epsilon_per_kpa, 0.0)};
     shrinking_ = {shrinking_[0] + skew.epsilon_per_kpa, shrinking_[1] - skew.epsilon_per_kpa};
-    // If h has saturated in one direction of the pressure, it must decrease in the other direction.
+    // After the hysteretic state h has saturated in one direction of the pressure, h must decrease when the
+    // pressure reverses.
     for (const std::size_t way : {0U, 1U}) {
       const T bound = growing_[1 - way] * beta_[way] / beta_[1 - way];
       if (value_of(shrinking_[way]) > value_of(bound)) shrinking_[way] = bound;
     }
   }
 
-  /// Makes the loop wider by up to `rate.share` of its width, at pressure rates far above
-  /// `rate.half_kpa_per_s`. The result is exact at the end of a straight segment.
+  /// Makes the loop wider as the pressure rate increases. At rates far above `rate.half_kpa_per_s`, the
+  /// additional width approaches `rate.share` times the width. The result is exact at the end of a straight
+  /// segment.
   void widen(const BoucWenRate<T>& rate) {
     follows_rate_ = true;
     widening_ = AveragedRate<T>(rate);
   }
 
-  /// Increases eta by up to `rate.share` of its value at pressure rates far above `rate.half_kpa_per_s`.
-  /// During a segment, eta keeps the value that it has at the beginning of the segment.
+  /// Increases the parameter eta with the pressure rate. At rates far above `rate.half_kpa_per_s`, the
+  /// increase approaches `rate.share` times eta. During a segment, eta keeps the value that it has at the
+  /// beginning of the segment.
   void saturate_earlier(const BoucWenRate<T>& rate) {
     follows_rate_ = true;
     saturation_ = AveragedRate<T>(rate);
@@ -175,7 +179,8 @@ class BoucWen {
   [[nodiscard]] T output() const { return output_; }
   /// Returns the hysteretic state h [mm].
   [[nodiscard]] const T& hysteresis_mm() const { return hysteresis_; }
-  /// Returns dh/dp at the present state, for a rising or falling pressure [mm/kPa].
+  /// Returns the slope dh/dp of the hysteretic state h over the pressure p, at the present state [mm/kPa].
+  /// The slope is that for a rising pressure if `rising` is true, otherwise for a falling pressure.
   [[nodiscard]] T slope(bool rising) const { return slope_at(hysteresis_, rising ? 1.0 : -1.0); }
   [[nodiscard]] const T& alpha_mm_per_kpa() const { return alpha_; }
   /// Returns the larger of the two values of beta for loading and for unloading.
@@ -192,8 +197,9 @@ class BoucWen {
     hysteresis_ = moved(change, direction);
     pressure_ = in.end;
     direction_ = direction;
-    // The mean of h over the segment is the mean of the cubic that has the values and slopes of h at the ends
-    // of the segment. A correction for the curvature of p is added.
+    // Computes the mean of the hysteretic state h over the segment as the mean of a cubic. This cubic has the
+    // values and slopes of h at the ends of the segment. A correction for the curvature of p over time is
+    // added.
     const T slope_before = slope_at(before, direction);
     const T slope_after = slope_at(hysteresis_, direction);
     const T off_middle = in.mean - (in.begin + in.end) * 0.5;
@@ -224,8 +230,8 @@ class BoucWen {
   }
 
  private:
-  // Returns +1 if the pressure rises and -1 if it falls. If the value of the change is zero, returns the last
-  // direction, because such a change can still have derivatives.
+  // Returns +1 if the pressure rises and -1 if the pressure falls. If the value of the change is zero,
+  // returns the last direction, because a change with the value zero can have derivatives.
   template <class U>
   [[nodiscard]] double direction_of(const U& change) const {
     const double value = value_of(change);
@@ -236,8 +242,8 @@ class BoucWen {
 
   static T not_below(const T& value, double bound) { return value_of(value) < bound ? T(bound) : value; }
 
-  // Returns gamma + eta s + (delta + epsilon s) sgn(p') for the state h and the direction of the pressure.
-  // For h = 0, s is +1.
+  // Returns gamma + eta s + (delta + epsilon s) sgn(p') for the hysteretic state h and the direction of the
+  // pressure p, where s = sgn(p' h). For h = 0, s is +1.
   [[nodiscard]] T rate(double h, double direction) const {
     const std::size_t way = direction > 0.0 ? 1 : 0;
     const bool grows = h * direction >= 0.0;
@@ -245,7 +251,7 @@ class BoucWen {
     return grows ? T(growing_[way] + more_eta_) : T(shrinking_[way] - more_eta_);
   }
 
-  // Returns |h|^n, where n is the exponent.
+  // Returns |h|^n, where h is the hysteretic state and n the exponent of the model.
   template <class U>
   [[nodiscard]] U power(const U& h) const {
     const U magnitude = value_of(h) < 0.0 ? U(-h) : h;
@@ -265,13 +271,15 @@ class BoucWen {
     return beta(direction) - rate(value_of(h), direction) * power(h);
   }
 
-  // Returns the state after a monotone change of the pressure.
+  // Returns the hysteretic state h after a monotone change of the pressure.
   template <class U>
   [[nodiscard]] U moved(const U& change, double direction) const {
     return exponent_ == 1 ? moved_linear(change, direction) : moved_in_steps(change, direction);
   }
 
-  // Solves dh/dp = beta - k h, where k = sgn(h) (gamma + eta s) is constant for h above 0 and for h below 0.
+  // Returns the hysteretic state h after a pressure change, for exponent 1. Solves dh/dp = beta - k h with k
+  // = sgn(h) (gamma + eta s) and s = sgn(p' h). k has one constant value for h above 0, and another for h
+  // below 0.
   template <class U>
   [[nodiscard]] U moved_linear(const U& change, double direction) const {
     const double h0 = value_of(hysteresis_);
@@ -305,8 +313,8 @@ class BoucWen {
     return h;
   }
 
-  // Returns the number of sub-steps. In each sub-step, the relative change of the slope, n k |h|^(n-1) dp, is
-  // below 1/100, and h changes by at most 1/40 of its saturation value.
+  // Returns the number of sub-steps for a pressure change. In each sub-step, the relative change of the slope
+  // dh/dp, n k |h|^(n-1) dp, is below 1/100, and h changes by at most 1/40 of its saturation value.
   [[nodiscard]] int steps_for(double change_kpa, double direction) const {
     constexpr int most = 100000;
     const double beta = value_of(this->beta(direction));
@@ -334,8 +342,9 @@ class BoucWen {
     return h + change * (s1 + 2.0 * s2 + 2.0 * s3 + s4) * (1.0 / 6.0);
   }
 
-  // Returns the pressure change that reduces h to zero: the integral of dv / (beta - k v^n) over v from 0 to
-  // |h|, by Gauss-Legendre quadrature with five points.
+  // Returns the pressure change that reduces the hysteretic state h to zero, for the equation dh/dp = beta -
+  // k |h|^n. The result is the integral of dv / (beta - k v^n) over v from 0 to |h|, by Gauss-Legendre
+  // quadrature with five points.
   template <class U>
   [[nodiscard]] U to_zero(const U& h, const T& gain, const T& k) const {
     constexpr std::array<double, 5> nodes{0.04691007703066800, 0.2307653449471585, 0.5, 0.7692346550528415,
@@ -357,8 +366,8 @@ class BoucWen {
   int exponent_;
   double direction_ = 1.0;
   bool follows_rate_ = false;
-  AveragedRate<T> widening_;    // for the width of the loop
-  AveragedRate<T> saturation_;  // for eta
+  AveragedRate<T> widening_;    // averaged pressure rate that determines the width of the loop
+  AveragedRate<T> saturation_;  // averaged pressure rate that determines eta
   T eta_{0.0};
   T more_eta_{0.0};
   T hysteresis_{0.0};
@@ -368,7 +377,7 @@ class BoucWen {
 
 /// Base class of the blocks that modify the chain's Bouc-Wen element. Each of these blocks declares `void
 /// shape(BoucWen<T>&) const`. The chain calls this function once after all blocks are constructed. These
-/// blocks do not add to the displacement themselves. If the chain has no bouc_wen, they have no effect.
+/// blocks add no displacement of their own. If the chain has no bouc_wen, these blocks have no effect.
 template <class T>
 class BoucWenPart {
  public:

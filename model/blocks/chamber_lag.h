@@ -1,12 +1,14 @@
 #pragma once
-// Models the lag between the pressure sensor and the chamber of the finger as first order.
+// Models the pressure in the chamber of the finger, which follows the pressure at the pressure sensor with a
+// first-order lag.
 
 #include "model/block.h"
 #include "model/two_way_lag.h"
 
 namespace softgrip::model {
 
-/// TwoWayLag describes the equation.
+/// Makes the pressure in the chamber follow the pressure at the sensor with a lag. TwoWayLag
+/// (model/two_way_lag.h) describes the equation.
 template <class T>
 class ChamberLag {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// Models a nonlinear relation between the sum of the elements and the displacement.
+// Models a nonlinear relation between the sum of the elements' outputs and the displacement.
 
 #include "model/block.h"
 #include "model/characteristic_map.h"
@@ -7,7 +7,8 @@
 
 namespace softgrip::model {
 
-/// CharacteristicMap describes the equation. The map is monotone for every value of the curvature.
+/// Maps the sum of the elements' outputs to the displacement. CharacteristicMap (model/characteristic_map.h)
+/// describes the equation. The map is monotone for every value of the curvature.
 template <class T>
 class Characteristic {
  public:

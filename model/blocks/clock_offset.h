@@ -5,8 +5,9 @@
 
 namespace softgrip::model {
 
-/// z = y + lead dy/dt, with the slope of y in the last sample. A straight motion is extrapolated by `lead`,
-/// which is exact between two corners of the motion. A corner appears `lead` too late.
+/// Computes the reading z = y + lead dy/dt from the displacement y, with the slope of y in the last sample.
+/// This extrapolates the motion by the time `lead`, which is exact between two corners of a piecewise linear
+/// motion. A corner of the motion appears in z by the time `lead` too late.
 template <class T>
 class ClockOffset {
  public:

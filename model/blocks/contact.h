@@ -6,7 +6,8 @@
 
 namespace softgrip::model {
 
-/// z = y up to the position. Beyond the position, the further motion is divided by 1 + stiffening.
+/// Computes the displacement z of a finger with contact from the free displacement y. z = y up to the
+/// position of the contact. Beyond this position, the additional motion is divided by 1 + stiffening.
 template <class T>
 class Contact {
  public:

@@ -6,11 +6,12 @@
 
 namespace softgrip::model {
 
-/// A generalised play (Krasnosel'skii and Pokrovskii, Systems with Hysteresis, 1989, chapter 2). The state c
-/// is constant between two envelopes. The lower envelope moves c upwards, and the upper envelope moves c
-/// downwards. With x = p/range, the upper envelope is the line x, and the lower envelope is x/(1 + bend (1 -
-/// x)). For x outside [0, 1], the envelopes are equal and the block adds nothing. The mean of the envelopes
-/// is subtracted, so that the gain of the model does not change. The block is rate independent.
+/// Implements a generalised play operator (Krasnosel'skii and Pokrovskii, Systems with Hysteresis, 1989,
+/// chapter 2). The state c is constant while it is between two envelopes. The lower envelope moves c upwards,
+/// and the upper envelope moves c downwards. With x = p/range, the upper envelope is the line x, and the
+/// lower envelope is x/(1 + bend (1 - x)). For x outside [0, 1], the envelopes are equal and the block adds
+/// no displacement. The mean of the envelopes is subtracted, so that the gain of the model does not change.
+/// The block is rate independent.
 template <class T>
 class CrescentHysteresis {
  public:
@@ -35,7 +36,7 @@ class CrescentHysteresis {
   }
   [[nodiscard]] T output() const { return output_; }
 
-  // Computes the mean by Simpson's rule, for a pressure p that changes linearly.
+  // Computes the mean of the output by Simpson's rule, for a pressure that changes linearly over the segment.
   Segment<T> step(const Segment<T>& in, const Surroundings&) {
     const T begin = output_;
     const T half = (in.begin + in.end) * 0.5 / range_kpa_, end = in.end / range_kpa_;

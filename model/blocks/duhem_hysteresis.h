@@ -7,10 +7,11 @@
 
 namespace softgrip::model {
 
-/// A Duhem operator with the state z. While the pressure falls, z approaches the unloading length. While the
-/// pressure rises, z decays over the loading length. z is rate independent, and zero on the first loading. If
-/// the two lengths are equal, the settled loop is point symmetric, as the loop of Bouc-Wen is. If the lengths
-/// differ, the loop is not symmetric. The solution is exact for any step size.
+/// Implements a Duhem operator with the state z [kPa]. While the pressure falls, z approaches the unloading
+/// length. While the pressure rises, z decays over the loading length. Both lengths are pressure changes
+/// [kPa]. z is rate independent, and zero on the first loading. If the two lengths are equal, the settled
+/// loop is point symmetric, as the loop of Bouc-Wen is. If the lengths differ, the loop is not symmetric. The
+/// solution is exact for any step size.
 template <class T>
 class DuhemHysteresis {
  public:
@@ -47,7 +48,8 @@ class DuhemHysteresis {
     wound_kpa_ = moved(change, falling_);
     pressure_ = in.end;
     output_ = gain_ * wound_kpa_;
-    // Computes the mean of the cubic that has the values and slopes of z at the ends of the segment.
+    // Computes the mean of the state z over the segment as the mean of a cubic. This cubic has the values and
+    // slopes of z at the ends of the segment.
     const T size = falling_ ? T(-change) : change;
     const T bow =
         size * (falling_ ? unloading_per_kpa_ : loading_per_kpa_) * (wound_kpa_ - before) * (1.0 / 12.0);
@@ -67,8 +69,8 @@ class DuhemHysteresis {
     return value < 0.0 || (value == 0.0 && falling_);
   }
 
-  // Returns z after a monotone change: dz/d|p| = 1 - z/unloading while p falls, and -z/loading while it
-  // rises.
+  // Returns the state z of the operator after a monotone change of the pressure p: dz/d|p| = 1 - z/unloading
+  // while p falls, and dz/d|p| = -z/loading while p rises.
   template <class U>
   [[nodiscard]] U moved(const U& change, bool falling) const {
     const T& per_kpa = falling ? unloading_per_kpa_ : loading_per_kpa_;

@@ -1,5 +1,6 @@
 #pragma once
-// Models the oscillation of the mass of finger and load on the stiffness of the actuator.
+// Models the oscillation of a spring-mass system: the mass of finger and load, and the stiffness of the
+// actuator.
 
 #include <cmath>
 #include <numbers>
@@ -8,8 +9,9 @@
 
 namespace softgrip::model {
 
-/// z'' + 2 d w z' + w^2 z = w^2 y with w = 2 pi / period. The solution is exact if the displacement y is a
-/// parabola over each segment. With period 0, the displacement is passed on unchanged.
+/// Solves z'' + 2 d w z' + w^2 z = w^2 y with w = 2 pi / period, where y is the input and z the output. The
+/// solution is exact if y is a parabola over each segment. d is the damping ratio. With period 0, the block
+/// passes y on unchanged.
 template <class T>
 class Inertia {
  public:
@@ -45,7 +47,7 @@ class Inertia {
     const T begin = output_;
     const T speed = speed_;
     advance(in);
-    // The mean of z is obtained by integrating the equation over the segment.
+    // The mean of the output z follows from the integral of the differential equation over the segment.
     const T left = (speed_ - speed) + 2.0 * damping_ * omega_ * (output_ - begin);
     next(Segment<T>{in.duration_s, begin, output_, in.mean - left / (omega_ * omega_ * in.duration_s)});
   }
@@ -61,7 +63,7 @@ class Inertia {
     const T& dt = in.duration_s;
     const T bend = value_of(omega_) * value_of(dt) < 1e-6
                        ? T(0.0)
-                       : in.bend();  // in short segments, the bend is only rounding error
+                       : in.bend();  // in short segments, the computed curvature is only rounding error
     const T c = -bend / (dt * dt);
     const T b = (in.end - in.begin + bend) / dt - 4.0 * damping_ * c / omega_;
     const T a = in.begin - 2.0 * damping_ * b / omega_ - 2.0 * c / (omega_ * omega_);

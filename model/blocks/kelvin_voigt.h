@@ -1,5 +1,6 @@
 #pragma once
-// Models Kelvin-Voigt creep with any number of branches in series with a spring:
+// Models Kelvin-Voigt creep with any number of branches in series with a spring. The transfer function from
+// the pressure p to the displacement VE is:
 //   VE(s)/p(s) = 1/k0 + sum_i 1/(c_i s + k_i)
 
 #include <cstddef>
@@ -11,8 +12,9 @@
 
 namespace softgrip::model {
 
-/// The solution is exact for a piecewise parabolic pressure and any duration. A branch with k_i = 0 is a pure
-/// dashpot, so it has no static gain.
+/// Computes the displacement of the spring and the branches. The solution is exact for a piecewise parabolic
+/// pressure and any duration. A branch with k_i = 0 is a pure dashpot, so its displacement has no limit under
+/// a constant pressure.
 template <class T>
 class KelvinVoigt {
  public:

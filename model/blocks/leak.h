@@ -1,13 +1,13 @@
 #pragma once
-// Models the pressure drop between valve and finger that the flow through a leak at the finger causes. The
-// drop also exists while the pressure is constant.
+// Models the pressure drop between valve and finger. The flow through a leak at the finger causes this drop,
+// which also exists while the pressure is constant.
 
 #include "model/block.h"
 #include "model/line_loss.h"
 
 namespace softgrip::model {
 
-/// LineLoss describes the equation.
+/// Computes the pressure at the finger. LineLoss (model/line_loss.h) describes the equation.
 template <class T>
 class Leak {
  public:
@@ -30,8 +30,9 @@ class Leak {
   void step(const Segment<T>& in, const Surroundings&, Next&& next) {
     const T begin = output_;
     output_ = loss_.behind(in.end);
-    // The map is replaced by the straight line between its values at the two ends of the segment. This is
-    // sufficient, because only the preceding lag makes the pressure curved within a sample.
+    // The pressure at the finger is approximated by a straight line between its values at the two ends of the
+    // segment. This approximation is sufficient, because only the preceding lag makes the pressure nonlinear
+    // in time within a sample.
     const T middle = (begin + output_) * 0.5;
     const double way = value_of(in.end) - value_of(in.begin);
     const T slope = way != 0.0 ? T((output_ - begin) / (in.end - in.begin)) : T(1.0);

@@ -9,8 +9,8 @@
 
 namespace softgrip::model {
 
-/// Shifts a random share of the readings by +`size` or -`size`; the sign is random. For a step of zero
-/// duration, no random number is used.
+/// Shifts a random share of the readings by +`size` or -`size`; the sign is random. A step of zero duration
+/// uses no random number.
 template <class T>
 class Outliers {
  public:

@@ -8,8 +8,9 @@
 
 namespace softgrip::model {
 
-/// z = y + s sin(2 pi f t) + c cos(2 pi f t), where t is the time since the start of the measurement
-/// campaign. The amplitude is sqrt(s^2 + c^2).
+/// Computes the reading z = y + s sin(2 pi f t) + c cos(2 pi f t) from the displacement y. The parameters are
+/// s, c and the frequency f. t is the time since the start of the measurement campaign. The amplitude is
+/// sqrt(s^2 + c^2).
 template <class T>
 class PeriodicDisturbance {
  public:

@@ -13,12 +13,12 @@
 
 namespace softgrip::model {
 
-/// y += w1 play_r1(p) + w2 play_r2(p) + ... A play with threshold 0 is the elastic gain. The block is rate
-/// independent. If no weight is negative, y rises with the pressure and has an inverse. If the finger was
-/// loaded before, the operators start in the positions to which the earlier load moved them. In this case,
-/// the first loading is not steeper than later loadings, and y is 0 in the initial state. If the envelopes
-/// are nonlinear (see EnvelopeMap), the plays are generalised plays. The loops are then wider at pressures
-/// where the envelopes are steeper.
+/// Adds w1 play_r1(p) + w2 play_r2(p) + ... to the displacement y. A play with threshold 0 is the elastic
+/// gain. The block is rate independent. If all weights are 0 or positive, y rises with the pressure and has
+/// an inverse. If the finger was loaded before the log, the operators start in the positions to which the
+/// earlier load moved them. In this case, the first loading is not steeper than later loadings, and y is 0 in
+/// the initial state. If the envelopes are nonlinear (see EnvelopeMap), the plays are generalised plays. The
+/// loops are then wider at pressures where the envelopes are steeper.
 template <class T>
 class PrandtlIshlinskii {
  public:
@@ -98,7 +98,7 @@ class PrandtlIshlinskii {
     T weight;
   };
 
-  /// Steps all operators and returns the displacement.
+  /// Advances all operators by one segment and returns the displacement of the block.
   /// @param in  pressure after the envelope map.
   Segment<T> moved(const Segment<T>& in) {
     const T begin = output_;
@@ -117,7 +117,7 @@ class PrandtlIshlinskii {
   T trained_kpa_;
   EnvelopeMap<T> envelopes_;
   std::vector<Operator> operators_;
-  T untouched_{0.0};  ///< sum of the operators at zero pressure after the earlier load of the finger
+  T untouched_{0.0};  ///< weighted sum of the operators at zero pressure after the earlier load of the finger
   T output_{0.0};
 };
 

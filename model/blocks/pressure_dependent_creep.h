@@ -11,9 +11,11 @@
 
 namespace softgrip::model {
 
-/// Kelvin-Voigt branches that creep only above their threshold pressure (hinge): tau x' = c max(p - hinge, 0)
-/// - x. The solution is exact if the pressure is straight and does not pass a hinge within the segment. In
-/// all other cases, the pressure above the hinge is approximated by a parabola with the exact mean.
+/// Computes the displacement of Kelvin-Voigt branches that creep only above their threshold pressure (hinge):
+/// tau x' = c max(p - hinge, 0) - x, with the displacement x, the pressure p, the compliance c and the time
+/// constant tau. The solution is exact if the pressure is straight and does not pass a hinge within the
+/// segment. In all other cases, the pressure above the hinge is approximated by a parabola with the exact
+/// mean.
 template <class T>
 class PressureDependentCreep {
  public:
@@ -99,14 +101,15 @@ class PressureDependentCreep {
   static U above(const U& pressure, const T& hinge) {
     return value_of(pressure) >= value_of(hinge) ? U(pressure - hinge) : U(0.0);
   }
-  /// Returns the mean pressure above the hinge while the pressure changes linearly from `begin` to `end`.
+  /// Returns the mean over a segment of the pressure above the hinge, max(p - hinge, 0). The pressure changes
+  /// linearly from `begin` to `end`.
   template <class U>
   static U mean_above(const T& begin, const U& end, const T& hinge) {
     const U first(above(begin, hinge)), last = above(end, hinge);
     const bool begins = value_of(begin) >= value_of(hinge), ends = value_of(end) >= value_of(hinge);
     if (begins == ends) return (first + last) * 0.5;
-    // The part of the pressure above the hinge is a triangle. The height of the triangle is the pressure
-    // above the hinge at one end of the segment; at the other end, the pressure is below the hinge.
+    // Over time, the pressure above the hinge is a triangle, because the pressure is below the hinge at one
+    // end of the segment. The height of the triangle is the pressure above the hinge at the opposite end.
     const U height = begins ? first : last;
     return height * height * 0.5 / (begins ? U(begin - end) : U(end - begin));
   }

@@ -8,7 +8,7 @@
 
 namespace softgrip::model {
 
-/// RegulatedPressure describes the equations.
+/// Computes the regulated pressure. RegulatedPressure (model/regulated_pressure.h) describes the equations.
 template <class T>
 class PressureRegulator {
  public:

@@ -6,7 +6,7 @@
 
 namespace softgrip::model {
 
-/// The pressure is p = min(command, limit).
+/// Computes the pressure p = min(command, limit).
 template <class T>
 class PressureSaturation {
  public:

@@ -5,7 +5,7 @@
 
 namespace softgrip::model {
 
-/// p = scale u, where u is the command.
+/// Computes the pressure p = scale u from the command u.
 template <class T>
 class PressureScale {
  public:

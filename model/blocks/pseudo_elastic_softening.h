@@ -1,5 +1,6 @@
 #pragma once
-// Models a material that is softer at pressures below the largest pressure so far (Mullins effect).
+// Models a material that is softer at pressures below the largest pressure that it has had so far (Mullins
+// effect).
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +10,13 @@
 
 namespace softgrip::model {
 
-/// Pseudo-elasticity (Ogden and Roxburgh, Proc. R. Soc. A 455, 1999; with the hyperbolic tangent of Dorfmann
-/// and Ogden, Int. J. Solids Struct. 41, 2004). The driving pressure q replaces the stored energy. While the
-/// pressure p is the largest so far, q = p. Otherwise p = q/(1 + s m tanh((m - q)/range)), where m is the
-/// largest pressure so far. All later unloading and loading follows one curve, which joins the first loading
-/// at m. q rises with p for all parameter values. The block stores m over the whole measurement campaign:
-/// rest() keeps m, and only reset() clears m.
+/// Implements pseudo-elasticity (Ogden and Roxburgh, Proc. R. Soc. A 455, 1999; with the hyperbolic tangent
+/// of Dorfmann and Ogden, Int. J. Solids Struct. 41, 2004). The driving pressure q, which is the output of
+/// the block, takes the place of the stored energy. While the pressure p is the largest so far, q = p.
+/// Otherwise p = q/(1 + s m tanh((m - q)/range)), where m is the largest pressure so far; s and `range` are
+/// parameters. After the first loading, unloading and reloading follow one curve, which meets the curve of
+/// the first loading at m. q rises with p for all parameter values. The block stores m over the whole
+/// measurement campaign: rest() keeps m, and only reset() clears m.
 template <class T>
 class PseudoElasticSoftening {
  public:
@@ -65,8 +67,8 @@ class PseudoElasticSoftening {
   }
 
  private:
-  /// Returns q at the pressure `p` for a constant m. The last Newton step uses the type U, so that the result
-  /// has derivatives.
+  /// Returns the driving pressure q at the pressure `p` for a constant largest pressure m. The last Newton
+  /// step uses the type U, so that the result has derivatives.
   template <class U>
   [[nodiscard]] U map(const U& p) const {
     const double pressure = value_of(p), largest = value_of(largest_kpa_);
@@ -78,9 +80,10 @@ class PseudoElasticSoftening {
     return from + (p * (1.0 + share) - from) * (1.0 / slope(from, pressure, largest));
   }
 
-  /// Returns q by Newton's method in the interval from p to m, which contains the root. The iteration starts
-  /// at the present output. If a step leaves the interval, bisection replaces the step. The result has half
-  /// of the digits of a double. The last Newton step in map() gives the other digits.
+  /// Returns the driving pressure q by Newton's method in the interval from the pressure p to the largest
+  /// pressure m, which contains q. The iteration starts at the present output. If a step leaves the interval,
+  /// bisection replaces the step. The result is accurate to half of the digits of a double. The last Newton
+  /// step in map() makes the remaining digits accurate.
   [[nodiscard]] double solved(double pressure, double largest) const {
     double low = pressure, high = largest, q = std::clamp(value_of(output_), low, high);
     const double strength = value_of(softening_per_kpa_) * largest, range = value_of(range_kpa_);
@@ -96,7 +99,8 @@ class PseudoElasticSoftening {
     return q;
   }
 
-  /// Returns the derivative of q - p (1 + s m tanh((m - q)/range)) with respect to q; at least 1 for p >= 0.
+  /// Returns the derivative of q - p (1 + s m tanh((m - q)/range)) with respect to q. The derivative is at
+  /// least 1 for p >= 0.
   [[nodiscard]] double slope(double q, double pressure, double largest) const {
     const double range = value_of(range_kpa_), t = hyperbolic_tangent((largest - q) / range);
     return 1 + pressure * value_of(softening_per_kpa_) * largest * (1 - t * t) / range;
@@ -110,7 +114,8 @@ class PseudoElasticSoftening {
     return -e / (2.0 + e);
   }
 
-  // Computes the mean of the softening by Simpson's rule, for a pressure p that changes linearly.
+  // Computes the mean of the added pressure by Simpson's rule, for a pressure that changes linearly over the
+  // segment.
   template <class Next>
   void below(const Segment<T>& in, Next&& next) {
     const T begin = output_, halfway = (in.begin + in.end) * 0.5;

@@ -7,8 +7,8 @@
 
 namespace softgrip::model {
 
-/// Rounds to the nearest multiple of the step. The derivatives of the displacement do not change. The
-/// derivative of the rounding itself is 0 almost everywhere, so a fit could not use it.
+/// Rounds the reading to the nearest multiple of the step, but keeps the derivatives of the unrounded
+/// reading. The derivative of the rounding itself is 0 almost everywhere, so a fit could not use it.
 template <class T>
 class Quantisation {
  public:

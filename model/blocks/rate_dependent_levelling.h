@@ -1,13 +1,13 @@
 #pragma once
-// Models an earlier saturation of the chain's Bouc-Wen element at high pressure rates.
+// Models a Bouc-Wen element that saturates earlier at high pressure rates.
 
 #include "model/block.h"
 #include "model/blocks/bouc_wen.h"
 
 namespace softgrip::model {
 
-/// Increases eta of the chain's Bouc-Wen element with the pressure rate, so that h saturates earlier (see
-/// bouc_wen.h).
+/// Increases eta of the chain's Bouc-Wen element with the pressure rate, so that its hysteretic state
+/// saturates earlier (see bouc_wen.h).
 template <class T>
 class RateDependentLevelling : public BoucWenPart<T> {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// Models a loop width of the chain's Bouc-Wen element that grows with the pressure rate.
+// Models a Bouc-Wen element whose hysteresis loop becomes wider as the pressure rate increases.
 
 #include "model/block.h"
 #include "model/blocks/bouc_wen.h"

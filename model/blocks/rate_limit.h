@@ -1,5 +1,5 @@
 #pragma once
-// The pressure changes at a limited rate, because the port or the pump supplies a limited flow.
+// Models a pressure whose rate of change is limited, because the port or the pump supplies a limited flow.
 
 #include <cmath>
 
@@ -7,9 +7,10 @@
 
 namespace softgrip::model {
 
-/// The pressure p follows the command u with -1 / venting_s_per_kpa <= p' <= 1 / filling_s_per_kpa. Exact for
-/// a linear input: the segment is divided where the pressure reaches the command. If a parameter is 0, the
-/// pressure is not limited in the direction of this parameter.
+/// Computes the pressure p that follows the command u with -1 / venting_s_per_kpa <= p' <= 1 /
+/// filling_s_per_kpa. The solution is exact for a linear command, because the segment is divided where the
+/// pressure reaches the command. If a parameter is 0, the rate is not limited in the direction of this
+/// parameter.
 template <class T>
 class RateLimit {
  public:
@@ -42,18 +43,21 @@ class RateLimit {
     if (value_of(meeting_s) <= least_s) return follow(in, next);
     if (value_of(in.duration_s - meeting_s) <= least_s) return go(in.duration_s, s_per_kpa, next);
     go(meeting_s, s_per_kpa, next);
-    // The time of the meeting is that of the straight line between the ends of the input. A parabola would
-    // start at another pressure, and its mean could lie outside the range of the segment.
+    // `meeting_s` was computed for the straight line between the ends of the input. Therefore, the rest of
+    // the input is also treated as straight. A parabola would start at a pressure that differs from the
+    // output, and its mean could lie outside the range of the segment.
     follow(Segment<T>::straight(in.duration_s - meeting_s, output_, in.end), next);
   }
 
  private:
-  /// A meeting within this share of the duration from either end of a segment does not divide the segment.
+  /// If the pressure reaches the command within this share of the duration from either end of a segment, the
+  /// segment is not divided.
   static constexpr double least_share = 1e-6;
 
   /// Returns the time from the start of the segment [s] at which the output reaches an input that is linear
   /// in time. If the output does not reach the input within the segment, returns the duration of the segment.
-  /// `gap` is input minus output at the start of the segment [kPa]. The gap changes at this rate [kPa/s]:
+  /// `gap` is input minus output at the start of the segment [kPa]. The gap changes at the following rate
+  /// [kPa/s]:
   ///
   ///     slope of the input - 1 / s_per_kpa
   static T meeting(const Segment<T>& in, const T& gap, const T& s_per_kpa) {
@@ -64,7 +68,7 @@ class RateLimit {
     return value_of(meeting_s) < value_of(in.duration_s) ? meeting_s : in.duration_s;
   }
 
-  /// Moves the output at the largest rate.
+  /// Moves the output at the largest permitted rate for `duration_s`.
   template <class Next>
   void go(const T& duration_s, const T& s_per_kpa, Next&& next) {
     const T begin = output_;
@@ -72,7 +76,8 @@ class RateLimit {
     next(Segment<T>::straight(duration_s, begin, output_));
   }
 
-  /// Follows an input that begins at the output, or moves the output at the largest rate.
+  /// Moves the output with an input that starts at the output. If the input changes faster than the limit
+  /// permits, the output moves at the largest permitted rate.
   template <class Next>
   void follow(const Segment<T>& in, Next&& next) {
     const T rise = in.end - output_;

@@ -1,15 +1,17 @@
 #pragma once
-// Models a loop width that grows with the pressure rate, by a friction force that relaxes.
+// Models a hysteresis loop whose width grows with the pressure rate, because the friction force relaxes over
+// time.
 
 #include "model/block.h"
 #include "model/exponential.h"
 
 namespace softgrip::model {
 
-/// Dahl's friction with relaxation: z' = p' - z (|p'|/width + 1/tau), y -= gain z. At pressure rates far
-/// above width/tau, the block is a hysteresis with this width. At rates far below width/tau, it is a viscous
-/// branch, whose loop becomes smaller at lower rates. The solution is exact for straight pressure and any
-/// step size.
+/// Implements Dahl's friction with relaxation: z' = p' - z (|p'|/width + 1/tau). z is the state, p the
+/// pressure and tau the relaxation time. The block subtracts gain z from the displacement. At pressure rates
+/// far above width/tau, the block acts as a hysteresis with this width. At rates far below width/tau, it acts
+/// as a viscous branch, whose loop becomes smaller as the rate decreases. The solution is exact for straight
+/// pressure and any step size.
 template <class T>
 class RelaxingFriction {
  public:
@@ -31,7 +33,7 @@ class RelaxingFriction {
       : gain_(values[0]), per_kpa_(1.0 / values[1]), per_s_(1.0 / values[2]) {}
 
   void reset(const T& input) {
-    held_kpa_ = T(0.0);  // the friction has relaxed completely
+    held_kpa_ = T(0.0);  // at rest, the friction has relaxed completely
     pressure_ = input;
     output_ = T(0.0);
   }
@@ -61,7 +63,8 @@ class RelaxingFriction {
     return value_of(change) < 0.0 ? U(-change) : change;
   }
 
-  // Returns z(1) for the equation dz/ds = change - decay z, where s goes from 0 to 1 over the segment.
+  // Returns the state z of the friction at the end of a segment. Solves dz/ds = change - decay z, where s
+  // goes from 0 to 1 over the segment.
   template <class U>
   [[nodiscard]] U moved(const U& change, const U& decay) const {
     return held_kpa_ + (change - decay * held_kpa_) * phi1(U(-decay));

@@ -8,8 +8,9 @@
 
 namespace softgrip::model {
 
-/// Multiplies y by 1 + r (1 - exp(-t/tau)), limited to positive values. t is the time since the start of the
-/// measurement campaign.
+/// Multiplies the displacement y by 1 + r (1 - exp(-t/tau)). positive_gain() limits this factor to positive
+/// values. r is the final relative change of the gain, t is the time since the start of the measurement
+/// campaign, and tau the time constant of the running-in.
 template <class T>
 class RunningIn : public SurroundingsGain<RunningIn<T>, T> {
  public:

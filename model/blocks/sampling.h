@@ -1,5 +1,5 @@
 #pragma once
-// Models a sensor with a lower sampling rate than the log.
+// Models a sensor whose sampling rate is lower than that of the log.
 
 #include <cmath>
 
@@ -7,8 +7,7 @@
 
 namespace softgrip::model {
 
-/// Sample and hold: the output is the reading at the last multiple of the sampling interval. It has the
-/// derivatives of this reading.
+/// Returns the reading at the last multiple of the sampling interval, with the derivatives of this reading.
 template <class T>
 class Sampling {
  public:

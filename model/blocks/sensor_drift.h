@@ -5,7 +5,8 @@
 
 namespace softgrip::model {
 
-/// z = y + rate t, where t is the time since the start of the measurement campaign.
+/// Computes the reading z = y + rate t from the displacement y. `rate` is the drift rate, and t is the time
+/// since the start of the measurement campaign.
 template <class T>
 class SensorDrift {
  public:

@@ -8,8 +8,9 @@
 
 namespace softgrip::model {
 
-/// Adds straight lines between knots, one knot per interval after the start of the measurement campaign. The
-/// drift is zero at the start and constant after the last knot.
+/// Adds a drift to the displacement. The drift consists of straight lines between knots, one knot per
+/// interval after the start of the measurement campaign. The drift is zero at the start and constant after
+/// the last knot.
 template <class T>
 class SensorFreeDrift {
  public:

@@ -7,7 +7,8 @@
 
 namespace softgrip::model {
 
-/// tau z' = y - z. The solution is exact if the displacement y is a parabola over each segment.
+/// Computes the reading z from the displacement y: tau z' = y - z with the time constant tau. The solution is
+/// exact if y is a parabola over each segment.
 template <class T>
 class SensorLag {
  public:

@@ -9,9 +9,9 @@
 
 namespace softgrip::model {
 
-/// Adds Gaussian noise with a given root mean square. If there is a correlation time tau, the correlation of
-/// two readings at the distance dt is exp(-dt/tau) (Ornstein-Uhlenbeck process, exact for any dt). For a step
-/// of zero duration, no random number is used.
+/// Adds Gaussian noise to the reading. With a correlation time tau above 0, two readings whose times differ
+/// by dt have the correlation exp(-dt/tau) (Ornstein-Uhlenbeck process, exact for any dt). A step of zero
+/// duration uses no random number.
 template <class T>
 class SensorNoise {
  public:
@@ -55,7 +55,7 @@ class SensorNoise {
   double correlation_time_s_;
   std::uint64_t seed_;
   std::uint64_t drawn_ = 0;
-  double noise_ = 0.0;  // noise with a root mean square of 1
+  double noise_ = 0.0;  // noise, normalised to a root mean square of 1
   T output_{0.0};
 };
 

@@ -5,9 +5,10 @@
 
 namespace softgrip::model {
 
-/// With x = y/range: z = y + 4 bow x (1 - x) + 6 sqrt(3) wave x (1 - x) (1 - 2x) within the range. Outside
-/// the range, the curve continues as straight lines. The error is zero at both ends of the range, and `bow`
-/// in the middle. The second term is between 0 and `wave` below the middle, and between -`wave` and 0 above
+/// Computes the reading z from the displacement y. With x = y/range: z = y + 4 bow x (1 - x) + 6 sqrt(3) wave
+/// x (1 - x) (1 - 2x) within the range. Outside the range, the curve continues as straight lines. The
+/// difference of reading and displacement is zero at both ends of the range, and `bow` in the middle. The
+/// term with `wave` is between 0 and `wave` below the middle of the range, and between -`wave` and 0 above
 /// the middle.
 template <class T>
 class SensorNonlinearity {

@@ -6,7 +6,8 @@
 
 namespace softgrip::model {
 
-/// z = y between the limits of the range. Outside the range, z is the nearer limit.
+/// Computes the reading z from the displacement y. z = y within the measuring range. If y is outside the
+/// range, z is the nearer end of the range.
 template <class T>
 class SensorSaturation {
  public:

@@ -8,9 +8,9 @@
 
 namespace softgrip::model {
 
-/// z = y + a sin(w t) + b (cos(w t) - 1) with w = 2 pi / period, where t is the time since the start of the
-/// measurement campaign. The block models a slow drift, for example with the room temperature.
-/// PeriodicDisturbance models faster oscillations.
+/// Computes the reading z = y + a sin(w t) + b (cos(w t) - 1) from the displacement y, with the parameters a,
+/// b and w = 2 pi / period. t is the time since the start of the measurement campaign. The block models a
+/// slow drift, for example with the room temperature. PeriodicDisturbance models faster oscillations.
 template <class T>
 class SensorWander {
  public:

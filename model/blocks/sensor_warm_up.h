@@ -7,7 +7,8 @@
 
 namespace softgrip::model {
 
-/// z = y + warm_up (1 - exp(-t/tau)), where t is the time since the start of the measurement campaign.
+/// Computes the reading z = y + warm_up (1 - exp(-t/tau)) from the displacement y. t is the time since the
+/// start of the measurement campaign, and tau is the time constant of the warm-up.
 template <class T>
 class SensorWarmUp {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// Models creep that is slower than all branches of the given model, by an additional Kelvin-Voigt branch.
+// Models creep that is slower than all Kelvin-Voigt branches of the model, with one additional branch.
 
 #include "model/block.h"
 #include "model/exponential.h"
@@ -7,9 +7,9 @@
 
 namespace softgrip::model {
 
-/// Solves tau x' = gain p - x. The block is equivalent to a Kelvin-Voigt branch with the stiffness 1/gain and
-/// the damping tau/gain. There are two differences: the block is also defined for gain 0, and its parameters
-/// are separate from the parameters of kelvin_voigt.
+/// Adds the displacement x to the model: tau x' = gain p - x with the pressure p. The block is equivalent to
+/// a Kelvin-Voigt branch with the stiffness 1/gain and the damping tau/gain. In contrast to such a branch,
+/// the block is also defined for gain 0, and its parameters are separate from the parameters of kelvin_voigt.
 template <class T>
 class SlowCreep {
  public:

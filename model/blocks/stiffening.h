@@ -7,8 +7,9 @@
 
 namespace softgrip::model {
 
-/// z = y / (1 + s |y|) for s >= 0, and z = y (1 - s |y|) for s < 0. The map is odd, monotone for every s, and
-/// smooth in s at s = 0.
+/// Computes the displacement z from the displacement y of the elements: z = y / (1 + s |y|) for s >= 0, and z
+/// = y (1 - s |y|) for s < 0, where s is the stiffening. The map is odd, monotone for every s, and smooth in
+/// s at s = 0.
 template <class T>
 class Stiffening {
  public:

@@ -1,14 +1,15 @@
 #pragma once
-// Models a material that becomes softer as its largest load so far increases (Mullins effect of filled
-// rubbers).
+// Models a material that becomes softer each time its load exceeds all earlier loads (Mullins effect of
+// filled rubbers).
 
 #include "model/block.h"
 #include "model/clip.h"
 
 namespace softgrip::model {
 
-/// q = p (1 + s m/(1 + b m)), where m is the largest pressure so far. The first loading curve is convex.
-/// Every later curve up to m is straight and lies above the first loading curve. b makes the softening
+/// Computes the driving pressure q = p (1 + s m/(1 + b m)), where m is the largest pressure so far; s and b
+/// are parameters. The curve of q over p is convex on the first loading. After the first loading, the curve
+/// is straight up to m and lies above the curve of the first loading. The parameter b makes the softening
 /// saturate. The block stores m over the whole measurement campaign: rest() keeps m, and only reset() clears
 /// m.
 template <class T>
@@ -65,7 +66,8 @@ class StressSoftening {
     return p * (1.0 + softening_per_kpa_ * largest / (1.0 + saturation_per_kpa_ * largest));
   }
 
-  // At pressures below the largest pressure so far, the map is a straight line.
+  // Passes on a segment whose pressures are all below the largest pressure so far. There, the map from p to q
+  // is a straight line.
   template <class Next>
   void again(const Segment<T>& in, Next&& next) {
     const T begin = output_;
@@ -73,9 +75,9 @@ class StressSoftening {
     next(Segment<T>{in.duration_s, begin, output_, map(in.mean, largest_kpa_)});
   }
 
-  // At pressures above the previous largest pressure, the present pressure is the largest so far. Simpson's
-  // rule gives the mean of the added pressure, for a pressure p that changes linearly. This mean is exact if
-  // b is zero.
+  // Passes on a segment whose pressures are all above the previous largest pressure, so that m equals the
+  // present pressure. Simpson's rule gives the mean of the added pressure, for a pressure that changes
+  // linearly. The mean is exact if b is zero.
   template <class Next>
   void anew(const Segment<T>& in, Next&& next) {
     const T begin = output_;

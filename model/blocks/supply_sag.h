@@ -1,5 +1,5 @@
 #pragma once
-// Models an output pressure that decreases when the supply pressure decreases.
+// Models a valve whose output pressure decreases when the supply pressure decreases.
 
 #include "model/block.h"
 #include "model/gain.h"
@@ -7,8 +7,9 @@
 
 namespace softgrip::model {
 
-/// p = u (1 - coupling * loss) with loss = max(0, 1 - supply/nominal), where u is the command. The supply
-/// pressure is a member of Surroundings. A log for this block needs the column supply_kpa.
+/// Computes the pressure p = u (1 - coupling * loss) from the command u, with loss = max(0, 1 -
+/// supply/nominal). The supply pressure is a member of Surroundings. A log for this block needs the column
+/// supply_kpa.
 template <class T>
 class SupplySag {
  public:

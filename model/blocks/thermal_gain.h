@@ -1,12 +1,13 @@
 #pragma once
-// Models a gain of the actuator that depends on its temperature.
+// Models a gain of the actuator that depends on the temperature of the actuator.
 
 #include "model/block.h"
 #include "model/moving_gain.h"
 
 namespace softgrip::model {
 
-/// Multiplies y by 1 + a (temperature - 20 degC), limited to positive values. The temperature is a member of
+/// Multiplies the displacement y by 1 + a (temperature - 20 degC). The parameter a is the relative change per
+/// kelvin. positive_gain() limits this factor to positive values. The temperature is a member of
 /// Surroundings. A log for this block needs the column temperature_c.
 template <class T>
 class ThermalGain : public SurroundingsGain<ThermalGain<T>, T> {

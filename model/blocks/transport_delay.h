@@ -1,5 +1,6 @@
 #pragma once
-// Models the dead time between command and pressure. A delay line stores the last `delay_s` of the signal.
+// Models the dead time between command and pressure. A delay line stores the signal of the last `delay_s`
+// seconds.
 
 #include <algorithm>
 #include <cstddef>
@@ -10,10 +11,10 @@
 
 namespace softgrip::model {
 
-/// The solution is exact for piecewise parabolic signals and any delay. If the delayed signal has a kink
-/// within a sample, the sample is divided at the kink, and two segments are passed on. A jump is passed on as
-/// a jump, at the start of the first step that ends after the jump. The output is differentiable with respect
-/// to the delay.
+/// Delays a signal. The solution is exact for piecewise parabolic signals and any delay. If the delayed
+/// signal has a kink within a sample, the sample is divided at the kink, and two segments are passed on. A
+/// jump is passed on as a jump, at the start of the first step that ends after the jump. The output is
+/// differentiable with respect to the delay.
 template <class T>
 class TransportDelay {
  public:
@@ -77,8 +78,8 @@ class TransportDelay {
     T mean;
   };
 
-  // Returns the initial number of pieces: two pieces per sample (a jump and a ramp). This number is doubled,
-  // because samples may be shorter than the nominal sample time.
+  // Returns the initial number of pieces of the delay line: 4 per sample. Each sample needs two pieces (a
+  // jump and a ramp). This number is doubled, because samples may be shorter than the nominal sample time.
   static std::size_t initial_size(double delay_s, double sample_time_s) {
     if (sample_time_s <= 0) return 64;
     const std::size_t needed = 16 + static_cast<std::size_t>(4.0 * delay_s / sample_time_s);
@@ -121,10 +122,10 @@ class TransportDelay {
   }
 
   T delay_s_;
-  T front_begin_{0.0};  // beginning of the oldest piece, which is the output of the block
+  T front_begin_{0.0};  // start value of the oldest piece, which is the output of the block
   std::size_t head_ = 0;
   std::size_t count_ = 0;
-  std::vector<Piece> line_;  // a ring buffer; its size is a power of two
+  std::vector<Piece> line_;  // ring buffer of the pieces; its size is a power of two
 };
 
 }  // namespace softgrip::model

@@ -1,14 +1,14 @@
 #pragma once
-// Models a valve that ignores small changes of the command: dead band of its regulator, or play of its
-// linkage.
+// Models a valve that ignores small changes of the command, because its regulator has a dead band or its
+// linkage has play.
 
 #include "model/block.h"
 #include "model/play.h"
 
 namespace softgrip::model {
 
-/// After a reversal of the command, the pressure is constant until the command has moved back by the width of
-/// the band. After that, the pressure follows the command.
+/// Computes the pressure from the command. After a reversal of the command, the pressure is constant until
+/// the command has moved back by the width of the band. After that, the pressure follows the command.
 template <class T>
 class ValveDeadband {
  public:

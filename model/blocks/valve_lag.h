@@ -1,5 +1,6 @@
 #pragma once
-// Models the lag of the regulator and the tube as first order: tau p' = command - p.
+// Models the lag of the regulator and the tube as a first-order lag of the pressure p: tau p' = command - p
+// with the time constant tau.
 
 #include <cmath>
 
@@ -9,8 +10,9 @@
 
 namespace softgrip::model {
 
-/// The solution is exact for straight input, also if the output reverses. If the output becomes equal to the
-/// input within a segment, the output has an extremum there. In this case, two segments are passed on.
+/// Computes the pressure behind the lag. The solution is exact for a straight command, also if the pressure
+/// reverses. Where the pressure becomes equal to the command within a segment, the pressure has an extremum.
+/// In this case, the block passes two segments on.
 template <class T>
 class ValveLag {
  public:
@@ -36,7 +38,7 @@ class ValveLag {
       next(in);
       return;
     }
-    if (is_zero(in.duration_s)) return;  // a jump of the input does not change the output immediately
+    if (is_zero(in.duration_s)) return;  // a jump of the command does not change the pressure immediately
     const ExponentialWeights<T>& w = weights(in.duration_s);
     const T bend = in.bend();
     const T begin = output_;
@@ -59,9 +61,9 @@ class ValveLag {
   }
 
   // For a straight input of slope r, the gap d = input - output follows d' = r - d / tau. The gap is zero
-  // after t = tau log(1 - d(0) / (r tau)). A reversal within a millionth of the duration from either end of
-  // the segment is ignored. The effect of such a reversal on a Bouc-Wen block is of second order in the
-  // ignored time.
+  // after t = tau log(1 - d(0) / (r tau)). A reversal is ignored if its distance from an end of the segment
+  // is below a millionth of the segment's duration. The effect of such a reversal on a Bouc-Wen block is of
+  // second order in its distance from the end.
   template <class Next>
   bool turns(const Segment<T>& in, const T& begin, const T& gap_begin, const T& end, Next&& next) const {
     using std::log1p;

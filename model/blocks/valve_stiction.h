@@ -1,5 +1,6 @@
 #pragma once
-// Models stick-slip motion of the valve: stiction of its spool, or the dead band of a digital regulator.
+// Models stick-slip motion of the valve. The cause is stiction of its spool, or the dead band of a digital
+// regulator.
 
 #include <cmath>
 
@@ -7,12 +8,13 @@
 
 namespace softgrip::model {
 
-/// Keeps the pressure until the command differs from the pressure by more than the band. Then the pressure
-/// jumps to the command and sticks again, so a ramp of the command becomes a series of steps. The block
-/// models the stiction of positioners (stick band equal to slip jump: Choudhury, Thornhill and Shah, Control
-/// Engineering Practice 13, 2005) and the dead band of digital regulators. All jumps of a segment are passed
-/// on at their times. If the command crosses one band in less than `rest_s`, the spool does not come to rest
-/// between the jumps. In this case, the valve follows the command to the end of the segment.
+/// Keeps the pressure constant until the command differs from the pressure by more than the band. The
+/// pressure then jumps to the command and stays constant again. As a result, a ramp of the command becomes a
+/// series of steps of the pressure. The block models the stiction of positioners (stick band equal to slip
+/// jump: Choudhury, Thornhill and Shah, Control Engineering Practice 13, 2005) and the dead band of digital
+/// regulators. All jumps within a segment are passed on at their exact times. If the command crosses one band
+/// in less than `rest_s`, the spool does not come to rest between the jumps. In this case, the valve follows
+/// the command to the end of the segment.
 template <class T>
 class ValveStiction {
  public:
@@ -52,7 +54,7 @@ class ValveStiction {
     return change * rest_s > value_of(band_) * value_of(in.duration_s);
   }
 
-  /// Returns the command at which the spool starts to move upwards or downwards.
+  /// Returns the command at which the spool starts to move: upwards if `up` is true, otherwise downwards.
   [[nodiscard]] T level(bool up) const { return up ? T(held_ + band_) : T(held_ - band_); }
   [[nodiscard]] static bool is_beyond(const T& command, const T& level, bool up) {
     return up ? value_of(command) > value_of(level) : value_of(command) < value_of(level);
@@ -69,7 +71,7 @@ class ValveStiction {
     next(Segment<T>{duration_s, held_, held_, held_});
   }
 
-  // The command is so fast that the spool does not stick again. Therefore, the valve follows the command.
+  // Makes the valve follow a command that is so fast that the spool does not stick again.
   template <class Next>
   void follow(const Segment<T>& in, Next& next) {
     const bool up = rises(in);
@@ -100,7 +102,7 @@ class ValveStiction {
     T past(0.0);
     for (T start = level(up); is_beyond(in.end, start, up); start = level(up)) {
       if (is_beyond(in.begin, start, up)) {
-        jump(in.begin, next);  // this jump is at the beginning of the segment
+        jump(in.begin, next);  // the command is already beyond the band at the beginning of the segment
         continue;
       }
       const T now = in.duration_s * in.fraction_at(start);
@@ -113,7 +115,7 @@ class ValveStiction {
 
   T band_;
   bool moving_ = false;   // true: the valve follows a fast command
-  bool upwards_ = false;  // direction in which the valve follows; true: upwards
+  bool upwards_ = false;  // true: the valve follows the fast command upwards; false: downwards
   T held_{0.0};
 };
 

@@ -7,9 +7,10 @@
 
 namespace softgrip::model {
 
-/// Multiplies y by 1 + c l, limited to positive values. l is the total travel of the actuator in both
-/// directions during the measurement campaign. The block stores l over the whole campaign: rest() keeps l,
-/// and only reset() clears l.
+/// Multiplies the displacement y by 1 + c l. positive_gain() limits this factor to positive values. c is the
+/// change of the gain per travel, and l is the total travel of the actuator in both directions during the
+/// measurement campaign. The block stores l over the whole campaign: rest() keeps l, and only reset() clears
+/// l.
 template <class T>
 class Wear {
  public:

@@ -13,7 +13,8 @@ const EarlierBlock* find_earlier_block(std::string_view id) {
         block_type<RateDependentLevelling>()},
        "",
        true},
-      // The gains of the three successor blocks are multiplied. The earlier block added them.
+      // The chain multiplies the gains of these three blocks, but the earlier block added the gains.
+      // Therefore, `adds` is false.
       {"ageing", {block_type<Ageing>(), block_type<RunningIn>(), block_type<Wear>()}, "", false},
       {"sensor_drift",
        {block_type<SensorDrift>(), block_type<SensorWarmUp>(), block_type<SensorWander>(),

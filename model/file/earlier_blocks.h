@@ -1,6 +1,6 @@
 #pragma once
-// Describes blocks of earlier versions that contained several effects. Today, each effect is a separate
-// block. The table determines how a model file with an earlier block is read.
+// Describes blocks of earlier versions that contained several effects. In the present version, each effect is
+// a separate block. These descriptions determine how a model file with an earlier block is read.
 
 #include <cstddef>
 #include <string_view>
@@ -8,18 +8,19 @@
 
 namespace softgrip::model {
 
-/// An earlier block. Its keys have the same names as the keys of the blocks that replace it.
+/// A block of an earlier version. The keys of the new blocks that replace this block have the same names as
+/// its keys.
 struct EarlierBlock {
   std::string_view id;
   std::vector<std::size_t> types;  ///< types of the blocks that replace the earlier block
-  /// Key whose number selects one of the new blocks. If it is empty, each new block with a value that is not
-  /// neutral is used.
+  /// Key of the earlier block whose number selects one of the new blocks. Empty: each new block is used that
+  /// has an effect with the values in the file.
   std::string_view choice;
-  bool adds = false;  ///< true: several new blocks together have the same effect as the earlier block
+  bool adds = false;  ///< true: the new blocks together have the same effect as the earlier block
 };
 
-/// Returns the earlier block with this id, or nullptr. Some of these ids also belong to one of the new
-/// blocks.
+/// Returns the earlier block with this id; nullptr if no earlier block has this id. One of the new blocks can
+/// have the id of the earlier block.
 [[nodiscard]] const EarlierBlock* find_earlier_block(std::string_view id);
 
 }  // namespace softgrip::model

@@ -29,7 +29,7 @@ std::vector<std::string> ids_of(Station station) {
   return ids;
 }
 
-// Reads one value and checks that its declaration permits it.
+// Reads the value of one parameter and checks that the declaration of the parameter permits this value.
 double read_value(MapReader& map, const ParameterSpec& spec, const std::string& name) {
   if (!std::isnan(spec.if_left_out) && !map.has(name)) return spec.if_left_out;
   if (spec.whole) {
@@ -39,7 +39,8 @@ double read_value(MapReader& map, const ParameterSpec& spec, const std::string& 
   return map.number(name, {spec.lower, spec.upper});
 }
 
-// Returns the largest number of a part (k1, c1, k2, c2, ...) in the map, but at least min_parts.
+// Returns the number of repeated parts in a block: the largest number in its keys (k1, c1, k2, c2, ...), but
+// at least min_parts.
 std::size_t count_parts(const MapReader& map, const BlockDescriptor& descriptor) {
   std::size_t parts = 0;
   for (std::size_t part = 1; part <= descriptor.max_parts; ++part) {
@@ -60,8 +61,8 @@ bool does_something(const BlockSpec& block) {
   return false;
 }
 
-/// Returns true if a key of the map belongs to the earlier block with this id, and not to the present block
-/// with the same id.
+/// Returns true if the map has a key of the earlier block that the present block with the same id does not
+/// have.
 bool has_key_of_another(const Node& map, const EarlierBlock& earlier, std::size_t today) {
   const auto has = [](std::size_t type, const std::string& key) {
     const BlockDescriptor& descriptor = catalogue()[type];
@@ -143,8 +144,8 @@ class ModelReader {
     model.blocks.push_back(std::move(block));
   }
 
-  /// Converts a block of an earlier version to those new blocks that have an effect with the given values. If
-  /// none of them has an effect, the first one is used.
+  /// Converts a block of an earlier version to the new blocks that have an effect with the values in the
+  /// file. If none of the new blocks has an effect, the first new block is used.
   void read_earlier(const Node::Entry& entry, const EarlierBlock& earlier, Model& model) {
     MapReader map(document_, entry.value, problems_, entry.key);
     std::vector<std::size_t> types = earlier.types;
@@ -193,8 +194,8 @@ class ModelReader {
         document_.problem(entry.key_at, "unknown block " + entry.key + " in the station " + where, hint));
   }
 
-  // Checks that the blocks of a station are in the order of their kinds. Also checks that a block that is not
-  // repeatable occurs only once.
+  // Checks the position of a block. The blocks of a station must be in the order of their kinds, and a block
+  // that is not repeatable must occur only once.
   void check_place(const Node::Entry& entry, const BlockInfo& info, const Model& model) {
     for (const BlockSpec& block : model.blocks) {
       const BlockInfo& other = catalogue()[block.type].info;

@@ -1,5 +1,5 @@
 #pragma once
-// Converts model files (YAML) to Model and back. No information is lost.
+// Converts model files (YAML) to Model and back, without loss of information.
 //
 //   name: bench_twin
 //   source: where the numbers come from, one line
@@ -22,12 +22,13 @@
 
 namespace softgrip::model {
 
-/// Reads a model from a parsed document. Adds all errors to `problems`; if there are errors, returns nullopt.
+/// Reads a model from a parsed document. Adds all errors to `problems`. Returns nullopt if the model has
+/// errors.
 [[nodiscard]] std::optional<Model> read_model(const document::Document& document,
                                               document::Problems& problems);
 
-/// Reads a model for a rig, as read_model() does. A rig measures in mm, so a model with any other output unit
-/// is an error.
+/// Reads a model for a rig, as read_model() does. A rig measures in mm, so a model with another output unit
+/// than mm is an error.
 [[nodiscard]] std::optional<Model> read_rig_model(const document::Document& document,
                                                   document::Problems& problems);
 
@@ -36,13 +37,13 @@ namespace softgrip::model {
 /// Reads a file with parse_file() and read_rig_model().
 [[nodiscard]] std::optional<Model> load_rig_model(const std::string& path, document::Problems& problems);
 
-/// Returns the YAML text of a model. Each number has the smallest number of digits from which the same double
-/// can be read. Therefore, read_model(parse(to_yaml(m))) == m for every valid m.
+/// Returns the YAML text of a model. Each number has the smallest number of digits that determines the double
+/// exactly. Therefore, read_model(parse(to_yaml(m))) == m for every valid model m.
 [[nodiscard]] std::string to_yaml(const Model& model);
 
-/// Returns 16 hexadecimal digits that identify the blocks and numbers of a model in provenance records. They
-/// are the FNV-1a hash (64 bit) of to_yaml(). The hash is the same on every machine, and changes if any digit
-/// of a number changes.
+/// Returns 16 hexadecimal digits that identify the blocks and numbers of a model in provenance records. The
+/// digits are the FNV-1a hash (64 bit) of the text that to_yaml() returns. The hash does not depend on the
+/// machine, and changes if any digit of a number changes.
 [[nodiscard]] std::string model_hash(const Model& model);
 
 }  // namespace softgrip::model

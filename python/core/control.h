@@ -5,8 +5,8 @@
 
 namespace softgrip::python {
 
-/// Adds the classes to the module. Their functions need microseconds, so they keep the global interpreter
-/// lock (GIL).
+/// Adds the classes to the module. Each function of these classes takes only microseconds, so it keeps the
+/// global interpreter lock (GIL).
 void add_control(pybind11::module_& module);
 
 }  // namespace softgrip::python

@@ -1,6 +1,6 @@
-// Binds the functions of the C++ library, with NumPy arrays, to the Python module softgrip._core. The Python
-// package checks the types of arguments and converts the results to typed objects
-// (python/softgrip/models.py).
+// Binds the functions of the C++ library, with NumPy arrays, to the Python module softgrip._core. The modules
+// of the Python package, such as python/softgrip/models.py, check the types of arguments and convert the
+// results to typed objects.
 
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>

@@ -1,4 +1,4 @@
-"""Holds a part, and at the same time watches the daemon's events for the loss of the part.
+"""Grips a part and watches the daemon's events for the loss of the part.
 
     guard_grip.py [SOCKET] [--sequence pick_stone] [--for-s 2]
 """

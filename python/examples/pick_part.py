@@ -1,4 +1,6 @@
-"""Shows a robot program: it checks a grip, grips, carries the part away and releases it. It handles a failed grip.
+"""Shows a robot program that checks a sequence, grips a part, carries the part away and releases it.
+
+The program also handles a failed grip.
 
     pick_part.py [SOCKET] [--sequence hand_over] [--squeeze-kpa 4]
 """
@@ -10,7 +12,7 @@ import softgrip
 
 
 def carry_away() -> None:
-    """Moves the robot. This example contains only a placeholder."""
+    """Stands for the motion of the robot with the part. In this example, the function does nothing."""
 
 
 def main() -> int:
@@ -20,7 +22,7 @@ def main() -> int:
     parser.add_argument("--squeeze-kpa", type=float, default=4.0)
     arguments = parser.parse_args()
 
-    # At the end of the block, also after an exception, the sequences that it started are stopped if they may still run.
+    # At its end, also after an exception, the block stops the sequences that it started and that may still run.
     with softgrip.Gripper(arguments.socket, name="pick_part") as gripper:
         gripper.check(arguments.sequence, squeeze_kpa=arguments.squeeze_kpa)
         gripper.start(arguments.sequence, squeeze_kpa=arguments.squeeze_kpa)

@@ -1,5 +1,6 @@
-"""Prints for each finger of a recording: the largest pressure, the largest displacement, and the time for which it held its
-part.
+"""Prints the largest pressure, the largest displacement and the holding time of each finger in a recording.
+
+The holding time is the time for which the finger held its part.
 
     read_recording.py RECORDING
 """

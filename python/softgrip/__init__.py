@@ -1,10 +1,10 @@
 """Client of softgripd, the controller of soft pneumatic grippers. The package also reads files of softgrip and computes
 models.
 
-The methods of `Gripper` block; `AsyncGripper` is for asyncio. Both use version 1 of the daemon's socket API and need only
-Python.
-`Recording` and the `read_*` functions need NumPy. Models, logs, `identify()`, `validate()`, `diagnose()`, `health()`, the
-controller and the simulated board need NumPy and the shared library. NumPy and the library are loaded at their first use.
+The methods of `Gripper` block until the daemon replies; `AsyncGripper` is for asyncio. Both classes use version 1 of
+the daemon's socket API and need no other package. `Recording` and the `read_*` functions need NumPy. Models, logs,
+`identify()`, `validate()`, `diagnose()`, `health()`, the controller and the simulated board need NumPy and the shared
+library. NumPy and the shared library are loaded when they are first used.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .results import (Cause, Change, Diagnosis, Estimate, FingerHealth, Health, HealthAlarm, HealthIndicator,
                           Identification, Prediction, Suspect, Validation)
 
-# Names that are loaded at their first use: the module that defines each name, and the name in that module.
+# Names that are loaded when they are first used. For each: the module that defines it, and its name in this module.
 _ON_USE = {name: ("analysis", name) for name in ("diagnose", "health", "identify", "validate")}
 _ON_USE |= {name: ("control", name) for name in
             ("Board", "ControlOutput", "Controller", "LimitedCommand", "Limits", "Pid", "PidSettings", "Reading", "Reference",

@@ -16,8 +16,8 @@ T = TypeVar("T")
 
 
 class AsyncGripper:
-    """The client for asyncio, with the methods of `Gripper`: `async with AsyncGripper(name="cell 4") as gripper:`. Several
-    tasks may share an object."""
+    """The client of softgripd for asyncio: `async with AsyncGripper(name="cell 4") as gripper:`. It has the methods of
+    `Gripper`. Several tasks may share an object."""
 
     def __init__(self, path: Optional[str] = None, *, name: str, answer_s: float = 5.0) -> None:
         self.path = path or default_path()
@@ -41,8 +41,8 @@ class AsyncGripper:
             await self.close()
 
     async def connect(self) -> Hello:
-        """Connects to the daemon, also after a ConnectionLost. Afterwards, `events()` returns the missed events that the
-        daemon still stores."""
+        """Connects to the daemon, also after a ConnectionLost. After this call, `events()` returns the events that the
+        client has missed, as far as the daemon still stores them."""
         await self._hang_up()
         reader, self._writer = await self._open()
         self._reading = asyncio.create_task(self._read(reader))
@@ -56,8 +56,8 @@ class AsyncGripper:
         return self.hello
 
     async def close(self) -> None:
-        """Ends the connection. A running sequence continues and has no owner. At its end, the `async with` block then does
-        not stop the sequence."""
+        """Ends the connection. A running sequence continues and has no owner. After this call, the end of the `async
+        with` block does not stop the sequence."""
         self._session.starts.clear()
         await self._hang_up()
 
@@ -111,7 +111,8 @@ class AsyncGripper:
         return await self._until(self._session.ended, timeout_s)
 
     async def events(self, *, timeout_s: float) -> AsyncIterator[Event]:
-        """Yields all events in order. The iteration ends if there is no event for `timeout_s` seconds."""
+        """Yields all events in the order in which they occurred. The iteration ends after `timeout_s` seconds without
+        an event."""
         while True:
             try:
                 event = await self._until(
@@ -154,7 +155,7 @@ class AsyncGripper:
                 raise
 
     async def _stop_over_another(self, start_id: str) -> None:
-        """Sends the request to stop over a separate connection."""
+        """Sends a stop request over a new connection, because the first connection has failed."""
         session = Session()
         number, line = session.request("stop", {START_ID: start_id})
         reader, writer = await self._open()
@@ -184,7 +185,7 @@ class AsyncGripper:
             raise ProtocolError(f"a line is longer than {LONGEST_LINE} bytes") from error
 
     async def _until(self, look: Callable[[], Optional[T]], timeout_s: float) -> T:
-        """Calls look() after each line from the daemon. Returns its first value that is not None."""
+        """Calls look() after each line from the daemon. Returns the first value of look() that is not None."""
         end = asyncio.get_running_loop().time() + timeout_s
         while True:
             found = look()
@@ -206,7 +207,7 @@ class AsyncGripper:
         except (OSError, SoftgripError) as error:
             self._session.failure = error if isinstance(error, SoftgripError) else ConnectionLost(str(error))
         finally:
-            # Waiting tasks must check their condition once more after this task is no longer counted as reading.
+            # After this task has ended, the waiting tasks must check their conditions again.
             asyncio.get_running_loop().call_soon(self._tell)
 
     def _tell(self) -> None:

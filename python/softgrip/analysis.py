@@ -71,13 +71,14 @@ def identify(logs: Logs, structure: str = "start", *, start: Optional[Model] = N
              validation: Logs = (), progress: Progress = None) -> Identification:
     """Fits a model to logs, as `softgrip identify` does.
 
-    structure: "start" (the structure of `start`, or the default structure with `branches` creep branches). Or "auto",
-    "bouc_wen" or "play": a structure selected on held-out blocks of the logs. fixed: parameters that keep their start value.
-    free: if it is given, only these parameters are estimated. starts: number of start points. fit_share: fitted first share
-    of each log, 0.05 to 1. threads: number of threads, 0 for one per processor core. drive: "command" or "measured" pressure
-    as the input. begin: state of the finger at the start of a log, "auto", "rest" or "unknown". validation: logs to predict.
-    progress: function that is called with a text about the present stage; an exception of this function ends the call, as
-    Ctrl-C does.
+    structure: "start" uses the structure of `start`, or the default structure with `branches` creep branches. "auto",
+    "bouc_wen" and "play" select a structure by the error on held-out blocks of the logs. fixed: parameters that keep
+    their start value. free: parameters that are estimated; by default, all parameters except those in `fixed`. starts:
+    number of start points. fit_share: share of each log that is fitted, from its start; 0.05 to 1. threads: number of
+    threads, 0 for one per processor core. drive: "command" or "measured" pressure as the input. begin: state of the
+    finger at the start of a log, "auto", "rest" or "unknown". validation: logs that are predicted but not fitted.
+    progress: function that is called with a text about the present stage; an exception in this function ends the
+    computation, as Ctrl-C does.
 
     >>> model = Model.load("config/models/bench_twin.yaml")
     >>> import numpy as np
@@ -110,8 +111,9 @@ def validate(model: Model, logs: Logs, *, drive: str = "command", begin: str = "
 def diagnose(model: Model, logs: Logs, healthy: Optional[Logs] = None, *, seed: int = 1, threads: int = 0,
              null_campaigns: int = 0, drive: str = "command", begin: str = "auto", held: bool = False,
              progress: Progress = None) -> Union[Diagnosis, Change]:
-    """Finds the error of a model on logs and its cause, as `softgrip diagnose` does. With logs of the healthy finger, finds
-    what has changed since these logs, as `softgrip diagnose --healthy` does. In this case, the result is a `Change`."""
+    """Determines the error of a model on logs and the causes of this error, as `softgrip diagnose` does. With logs of
+    the healthy finger in `healthy`, determines how the finger has changed since these logs, as `softgrip diagnose
+    --healthy` does. The result is then a `Change`."""
     core = _model("model", model)
     columns = _columns("logs", logs)
     seed = _whole("seed", seed)
@@ -130,12 +132,13 @@ def diagnose(model: Model, logs: Logs, healthy: Optional[Logs] = None, *, seed: 
 
 def health(recordings: Union[Path, Iterable[Path]], baseline: Path, *, points: str = "day", false_alarm_points: float = 3650,
            notes: Optional[Path] = None, scores: Optional[Path] = None, progress: Progress = None) -> Health:
-    """Reports which fingers have changed in recordings of ordinary grips, as `softgrip health` does.
+    """Detects changed fingers in recordings of ordinary grips, as `softgrip health` does.
 
-    recordings: folders of recordings, or folders that contain such folders. baseline: folder of `softgrip baseline`. points:
-    a point of a control chart is a "day" or a "run". false_alarm_points: mean number of points between two false alarms of a
-    healthy finger. notes: file of maintenance records. scores: file with the indicators of earlier calls. If it exists, it
-    is read, and its recordings are not read again. The call then replaces the file.
+    recordings: folders of recordings, or folders that contain such folders. baseline: folder of `softgrip baseline`.
+    points: a point of a control chart is a "day" or a "run". false_alarm_points: mean number of points between two
+    false alarms of a healthy finger. notes: file of maintenance records. scores: file that stores the indicators of all
+    recordings that were read so far. Recordings whose indicators are in this file are not read again. The call replaces
+    the file at its end.
     """
     if isinstance(recordings, (str, os.PathLike)):
         recordings = [recordings]

@@ -22,7 +22,7 @@ def text_of(argument: str, value: object) -> str:
 
 
 def file_path_of(argument: str, value: Path) -> str:
-    """Returns the path as a text that the system accepts, also if the path is not valid UTF-8."""
+    """Returns the path as a text that the operating system accepts, even if the path is not valid UTF-8."""
     try:
         path = os.fspath(value)
         if isinstance(path, str) and b"\0" not in os.fsencode(path):

@@ -16,12 +16,13 @@ from .wire import Wire
 class Gripper:
     """A connection to softgripd.
 
-    `path`: socket of the daemon; the default is $SOFTGRIP_SOCKET or the socket of the packaged service. `name`: name of this
-    client in the daemon's events. A client with a name owns the sequences that it starts: other clients may then only stop
-    the sequence or vent. `answer_s`: longest time of a reply [s]. Threads must not share an object.
+    `path`: socket of the daemon; the default is $SOFTGRIP_SOCKET or the socket of the packaged service. `name`: name of
+    this client in the daemon's events. A client with a name owns the sequences that it starts. While such a sequence
+    runs, other clients may only stop the sequence or vent the fingers. `answer_s`: longest time until the daemon
+    replies [s]. Threads must not share an object.
 
-    At the end of a `with` block, the object stops the sequences that it has started and that may still run, and no other
-    sequences. Raises StopNotConfirmed if the daemon does not confirm the stop within `answer_s`.
+    At the end of a `with` block, the object stops those sequences that it has started itself and that may still run.
+    Raises StopNotConfirmed if the daemon does not confirm the stop within `answer_s`.
     """
 
     def __init__(self, path: Optional[str] = None, *, name: str, answer_s: float = 5.0) -> None:
@@ -43,16 +44,17 @@ class Gripper:
             self.close()
 
     def close(self) -> None:
-        """Ends the connection. A running sequence continues and has no owner. At its end, the `with` block then does not
-        stop the sequence."""
+        """Ends the connection. A running sequence continues and has no owner. After this call, the end of the `with`
+        block does not stop the sequence."""
         self._session.starts.clear()
         if self._wire:
             self._wire.close()
         self._wire = None
 
     def reconnect(self) -> Hello:
-        """Connects to the daemon after a ConnectionLost. Afterwards, `events()` returns the missed events that the daemon
-        still stores. If the daemon was restarted, the last grip counts as ended by a fault."""
+        """Connects to the daemon after a ConnectionLost. After this call, `events()` returns the events that the client
+        has missed, as far as the daemon still stores them. If the daemon was restarted, the last grip counts as ended
+        by a fault."""
         if self._wire:
             self._wire.close()
         self.hello = self._open()
@@ -66,12 +68,12 @@ class Gripper:
         return Listing.of(self.ask("sequences"), "sequences").sequences
 
     def start(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Grip:
-        """Starts a sequence by its name, or the sequence in `text`. Further keywords are parameters of the sequence:
-        `squeeze_kpa=4`."""
+        """Starts the sequence with the name `name`, or the sequence in `text`. Additional keyword arguments are
+        parameters of the sequence, for example `squeeze_kpa=4`."""
         return Grip.of(self.ask("start", **start_keys(sequence, text, parameters)), "start")
 
     def check(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Checked:
-        """Makes all checks of `start()`, but moves nothing. Raises the same exceptions as `start()`."""
+        """Makes all checks of `start()`, but does not start the sequence. Raises the same exceptions as `start()`."""
         return Checked.of(self.ask("start", dry_run=True, **start_keys(sequence, text, parameters)), "start")
 
     def stop(self) -> None:
@@ -88,13 +90,14 @@ class Gripper:
         self.ask("release")
 
     def acknowledge(self) -> None:
-        """Resets the latched fault if its cause no longer exists. Nothing moves."""
+        """Resets the latched fault if its cause no longer exists. The fingers do not move."""
         self.ask("acknowledge")
 
     def wait_until(self, *wanted: Result, timeout_s: float) -> Result:
-        """Waits until the overall result of the last start is one of `wanted`, and returns this result. A call uses up the
-        results that it checks, including results from before the call. Raises GripFailed if the result is NO PART, PART LOST
-        or ERROR and not `wanted`, or if the sequence ends."""
+        """Waits until the overall result of the last start is one of `wanted`, and returns this result. Each result is
+        checked by one call only; results that arrived before the call are checked too. Raises GripFailed if the result
+        is NO PART, PART LOST or ERROR and is not in `wanted`. Also raises GripFailed if the sequence ends before such a
+        result."""
         end = time.monotonic() + timeout_s
         while True:
             result = self._session.reached(frozenset(wanted))
@@ -112,7 +115,8 @@ class Gripper:
             self._connected().read(self._session, end)
 
     def events(self, *, timeout_s: float) -> Iterator[Event]:
-        """Yields all events in order. The iteration ends if there is no event for `timeout_s` seconds."""
+        """Yields all events in the order in which they occurred. The iteration ends after `timeout_s` seconds without
+        an event."""
         while True:
             end = time.monotonic() + timeout_s
             try:
@@ -144,9 +148,9 @@ class Gripper:
         return self._wire
 
     def _stop_own(self) -> None:
-        """Stops the sequences that this client started. Sends the stop without another request before it, so that a daemon
-        that does not respond now receives the stop later. The stop names the start. Therefore it ends no other sequence, and
-        prevents a start that the daemon has not received yet."""
+        """Stops the sequences that this client started. The stop request is sent without any request before it, so that
+        a daemon that does not respond now receives the stop later. Each stop names one start. Therefore, it ends no
+        other sequence, and it cancels a start that the daemon has not received yet."""
         end = time.monotonic() + self.answer_s
         failure: Optional[SoftgripError] = None
         for start_id in tuple(self._session.starts):

@@ -1,4 +1,4 @@
-"""Limits, PID, controller and boards. The computations are those of the daemon, for one finger at a time.
+"""Limits, PID, controller and boards. The computations are those of the daemon, for one finger.
 
 Times are in s, pressures in kPa, displacements in the unit of the model. Only one thread at a time may use an object.
 """
@@ -63,19 +63,19 @@ class Limits:
 
 @dataclasses.dataclass(frozen=True)
 class LimitedCommand:
-    """A command [kPa] within the limits, and the reasons if the command differs from the request."""
+    """A command [kPa] within the limits, and the reasons why it differs from the requested pressure."""
 
     command: float
-    saturated: bool  # the request is outside the pressure range
-    slewing: bool  # the slew limits do not allow the request yet
-    invalid: bool  # the request is not a number, so the command is the last command
+    saturated: bool  # True: the requested pressure is outside the pressure range
+    slewing: bool  # True: the slew limits do not yet allow the requested pressure
+    invalid: bool  # True: the requested pressure is not a number, so the result is the last command
 
 
 def limit(limits: Limits, wanted: float, last: float, elapsed: float) -> LimitedCommand:
-    """Returns the command for a request.
+    """Returns the command for a requested pressure.
 
-    wanted: the request [kPa]; if it is NaN, the last command is held. last: the last command [kPa]. elapsed: time since the
-    last command [s].
+    wanted: requested pressure [kPa]; for NaN, the result is the last command. last: last command [kPa]. elapsed: time
+    since the last command [s].
 
     >>> limit(Limits(pressure_max=60, slew_up=100), wanted=50, last=0, elapsed=0.1)
     LimitedCommand(command=10.0, saturated=False, slewing=True, invalid=False)
@@ -91,8 +91,8 @@ def limit(limits: Limits, wanted: float, last: float, elapsed: float) -> Limited
 class PidSettings:
     """Gains of a PID controller: kp [kPa per unit of the model], ki [kPa per unit and s], kd [kPa s per unit].
 
-    derivative_filter: time constant [s]. setpoint_weight: share of the reference in the proportional part, 0 to 1. anti_windup:
-    "back_calculation" (with the time constant tracking_time [s]), "conditional" or "none".
+    derivative_filter: time constant [s]. setpoint_weight: factor of the reference in the proportional part, 0 to 1.
+    anti_windup: "back_calculation" (with the time constant tracking_time [s]), "conditional" or "none".
     """
 
     kp: float = 0
@@ -110,8 +110,8 @@ class PidSettings:
 
 
 class Pid:
-    """A PID controller with two degrees of freedom. Each period calls `step()`, then `limit()` for the sum of feedback and
-    feedforward, then `sent()`.
+    """A PID controller with two degrees of freedom. In each period, call `step()`, pass the sum of feedback and
+    feedforward to `limit()`, and pass the limited command to `sent()`.
 
     >>> pid = Pid(PidSettings(kp=2), tick=0.01)
     >>> pid.step(reference=5, measurement=4)
@@ -123,7 +123,7 @@ class Pid:
         self._core = _core.Pid(_instance("settings", settings, PidSettings)._values(), _number("tick", tick, "s"))
 
     def align(self, command: float) -> None:
-        """Sets the integrator so that the next `step()` continues at a command [kPa]."""
+        """Sets the integrator such that the next `step()` continues from the command `command` [kPa]."""
         self._core.align(_finite("command", command, "kPa"))
 
     def step(self, reference: float, measurement: float, feedforward: float = 0) -> float:
@@ -132,16 +132,18 @@ class Pid:
                                _finite("feedforward", feedforward, "kPa"))
 
     def hold(self, feedforward: float = 0) -> float:
-        """Returns the feedback [kPa] for a period without a usable measurement. Integrator and derivative do not change."""
+        """Returns the feedback [kPa] for a period without a usable measurement. The integrator and the derivative do
+        not change."""
         return self._core.hold(_finite("feedforward", feedforward, "kPa"))
 
     def sent(self, command: float) -> None:
-        """Reports the command [kPa] that was sent after the limits. The anti-windup uses it."""
+        """Receives the command [kPa] that was sent after the limits. The anti-windup uses this command."""
         self._core.sent(_finite("command", command, "kPa"))
 
 
 class Reference:
-    """A reference that is known in advance. It has up to 8 segments; value, rate and acceleration are continuous.
+    """A reference that is known in advance. It consists of up to 8 segments. In ramps and holds, value, rate and
+    acceleration are continuous.
 
     >>> reference = Reference(0).ramp_to(6, duration=2).hold_for(1)
     >>> reference.at(1), reference.end
@@ -159,13 +161,13 @@ class Reference:
         return self
 
     def hold_for(self, duration: float) -> Reference:
-        """Appends a segment of a duration [s] that holds the last value."""
+        """Appends a segment with a duration [s] in which the reference keeps its last value."""
         self._core.hold_for(_number("duration", duration, "s"))
         return self
 
     def sine(self, mean: float, amplitude: float, frequency: float, cycles: float) -> Reference:
-        """Appends mean - amplitude cos(2 pi f t) with the frequency f [Hz]. The reference should be at mean - amplitude
-        before."""
+        """Appends mean - amplitude cos(2 pi f t) with the frequency f [Hz]. Before the sine, the reference should be at
+        mean - amplitude."""
         self._core.sine(_number("mean", mean), _number("amplitude", amplitude), _number("frequency", frequency, "Hz"),
                         _number("cycles", cycles))
         return self
@@ -182,9 +184,9 @@ class Reference:
 
 @dataclasses.dataclass(frozen=True)
 class Reading:
-    """Reading of one channel. `pressure` [kPa] and `temperature` [degrees Celsius] are NaN without a sensor. `sampled_at` is
-    the time of the sample on the clock of the program [s]. `sequence` counts the responses of the board. `validity`:
-    "valid", "none_yet", "out_of_range", "sensor_error", "jumped", "frozen" or "stale"."""
+    """Reading of one channel. `pressure` [kPa] and `temperature` [degrees Celsius] are NaN without a sensor.
+    `sampled_at` is the time of the sample on the clock of the program [s]. `sequence` is the number of responses of the
+    board so far. `validity`: "valid", "none_yet", "out_of_range", "sensor_error", "jumped", "frozen" or "stale"."""
 
     displacement: float
     pressure: float = _NAN
@@ -200,7 +202,8 @@ class Reading:
 
 
 class Board(abc.ABC):
-    """An I/O board with one output and one set of inputs per channel. A driver is a class that is derived from Board."""
+    """An I/O board with one output and one set of inputs per channel. To write a driver for a board, derive a class
+    from Board."""
 
     @property
     @abc.abstractmethod
@@ -209,20 +212,22 @@ class Board(abc.ABC):
 
     @abc.abstractmethod
     def exchange(self, commands: Sequence[float], deadline: float) -> Sequence[Reading]:
-        """Writes one pressure [kPa] per channel and reads all channels, within a deadline [s]. Raises `BusError`."""
+        """Writes one pressure [kPa] per channel and reads all channels, within a deadline [s]. Raises `BusError` if
+        this fails."""
 
     def connect(self, deadline: float) -> None:
-        """Opens or reopens the connection, within a deadline [s]. The outputs keep their values. Raises `BusError`."""
+        """Opens or reopens the connection to the board, within a deadline [s]. The outputs of the board keep their
+        values. Raises `BusError` if this fails."""
 
     def describe(self) -> str:
-        """Returns one line for the user: product and address."""
+        """Returns a description of the board for the user, in one line with product and address."""
         return type(self).__name__
 
 
 @dataclasses.dataclass(frozen=True)
 class SimulatedObject:
-    """An object that a finger touches: the displacement at contact, and the share of the free motion that remains possible
-    after contact (0: rigid)."""
+    """An object that a simulated finger touches. `position`: displacement at contact. `yielding`: ratio of the motion
+    beyond the contact to the motion without an object, 0 (rigid) to 1."""
 
     position: float
     yielding: float = 0.1
@@ -234,7 +239,7 @@ class SimulatedObject:
 @dataclasses.dataclass(frozen=True)
 class SimulatedFinger:
     """One channel of a `SimulatedBoard`: the model of its finger, an object that the finger can touch, the standard
-    deviation of a reading, the range of the output [kPa], and the seed of all noise."""
+    deviation of a reading, the range of the output [kPa], and the seed of the random numbers for all noise."""
 
     model: Model
     object: Optional[SimulatedObject] = None
@@ -254,7 +259,8 @@ def _object_values(value: Optional[SimulatedObject]) -> Optional[tuple[float, fl
 
 
 class SimulatedBoard(Board):
-    """A board in memory whose fingers are models: the simulated board of the daemon. Its clock changes only in `advance()`.
+    """A simulated board to which simulated fingers are connected; the daemon uses this board too. The clock of the
+    board changes only in `advance()`.
 
     >>> board = SimulatedBoard([SimulatedFinger(Model.load("config/models/bench_twin.yaml"))])
     >>> board.connect()
@@ -266,7 +272,8 @@ class SimulatedBoard(Board):
     """
 
     def __init__(self, fingers: Sequence[SimulatedFinger], tick: float = 0.005) -> None:
-        """Creates a board. fingers: one per channel, 1 to 16. tick: usual time between two calls of `exchange()` [s]."""
+        """Creates a board. fingers: settings of the fingers, one entry per channel, 1 to 16 entries. tick: usual time
+        between two calls of `exchange()` [s]."""
         try:
             values = [_instance("fingers", one, SimulatedFinger)._values() for one in fingers]
         except TypeError as error:
@@ -315,11 +322,11 @@ class ControlOutput:
     """Result of `Controller.tick()`. A value that is not available is NaN."""
 
     command: float  # command for the board [kPa], within the limits
-    reference: float  # present value of the reference; NaN while no reference is followed
-    displacement: float  # the last valid reading
-    feedforward: float  # feedforward part of the command [kPa]
-    feedback: float  # feedback part of the command [kPa]
-    residual: float  # reading minus model output
+    reference: float  # value of the reference at this time; NaN while no reference is followed
+    displacement: float  # last valid reading of the displacement
+    feedforward: float  # feedforward part of the requested pressure [kPa]
+    feedback: float  # feedback part of the requested pressure [kPa]
+    residual: float  # reading minus the reading that the model predicts
     validity: str  # validity of the reading after the plausibility check
     saturated: bool
     slewing: bool
@@ -327,8 +334,8 @@ class ControlOutput:
 
 
 class Controller:
-    """Controller of one finger. It computes feedforward and PID feedback, limits their sum, and checks the plausibility of
-    the readings."""
+    """Controller of one finger. The controller adds feedforward and PID feedback, limits the sum, and checks the
+    plausibility of the readings."""
 
     def __init__(self, model: Model, limits: Limits, pid: PidSettings = PidSettings(), *, feedforward: str = "full_model",
                  extra_latency: float = 0, tick: float = 0.005, sensor_noise: float = 0.05,
@@ -348,7 +355,8 @@ class Controller:
         self._core.start(_finite("command", command, "kPa"))
 
     def follow(self, reference: Reference) -> None:
-        """Follows a reference from the next tick on. Time 0 of the reference is time 0 of `tick()`."""
+        """Follows a reference from the next tick on. The times of the reference are on the clock of the argument `now`
+        of `tick()`."""
         self._core.follow(_instance("reference", reference, Reference)._core)
 
     def hold(self) -> None:
@@ -364,5 +372,6 @@ class Controller:
         self._core.pressure(_finite("pressure", pressure, "kPa"))
 
     def tick(self, now: float, reading: Reading) -> ControlOutput:
-        """Runs one period. now: time of the period on the clock of the readings [s]."""
+        """Executes one period and returns its output. now: time of the period [s], on the clock of
+        `Reading.sampled_at`."""
         return ControlOutput(*self._core.tick(_number("now", now, "s"), _instance("reading", reading, Reading)._values()))

@@ -1,5 +1,5 @@
-"""Converts JSON of the daemon to values. Each value is checked against the annotations of its class. Malformed JSON raises a
-ProtocolError with the location of the error, and no other exception."""
+"""Converts JSON of the daemon to Python objects. Each value is checked against the annotations of its class. Malformed
+JSON raises only ProtocolError, with the location of the error."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def _no_number(name: str) -> Any:
 
 
 def parsed(line: bytes) -> dict[str, Any]:
-    """Returns the JSON object in a line. Raises ProtocolError if the line does not contain one."""
+    """Returns the JSON object in a line. Raises ProtocolError if the line contains no JSON object."""
     try:
         value = json.loads(line, parse_constant=_no_number)
     except (ValueError, RecursionError):
@@ -38,8 +38,9 @@ def _hints(cls: Any) -> dict[str, Any]:
 
 
 def fields_of(cls: Any, value: Any, where: str) -> dict[str, Any]:
-    """Returns the values of a dataclass's fields from the members of a JSON object that have the same names. Other members
-    are ignored, because a newer daemon may send more members. A member may be missing if the field has a default."""
+    """Returns the values of a dataclass's fields from the members of a JSON object that have the same names. Members
+    without a field are ignored, because a newer daemon may send additional members. A member may be missing if the
+    field has a default."""
     if not isinstance(value, dict):
         raise ProtocolError(f"{where} is not a JSON object")
     found = {}
@@ -57,7 +58,7 @@ def decoded(cls: type[T], value: Any, where: str) -> T:
 
 
 def checked(kind: Any, value: Any, where: str) -> Any:
-    """Returns the value if it has the type `kind` of the annotation. Raises ProtocolError otherwise."""
+    """Returns the value if it has the annotated type `kind`. Raises ProtocolError if it has another type."""
     origin, inner = typing.get_origin(kind), typing.get_args(kind)
     if origin is Union:  # the annotation is Optional[...]
         return None if value is None else checked(inner[0], value, where)

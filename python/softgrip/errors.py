@@ -1,4 +1,4 @@
-"""The exceptions of the package. The docstring of each exception describes its cause."""
+"""Defines the exceptions of the package. The docstring of each exception describes its cause."""
 
 from __future__ import annotations
 
@@ -17,16 +17,17 @@ class NoDaemon(SoftgripError):
 
 
 class ConnectionLost(SoftgripError):
-    """The connection to the daemon was lost. After `reconnect()`, the events continue without a gap."""
+    """The connection to the daemon was lost. After `reconnect()`, `events()` continues with the events that the client
+    has missed."""
 
 
 class NotAnswered(SoftgripError, TimeoutError):
-    """The daemon did not reply, or the grip did not end, within the given time."""
+    """The daemon did not reply, or the grip did not end, before the time-out of the call."""
 
 
 class ProtocolError(SoftgripError):
-    """A line of the daemon is malformed, so the connection is closed. Or the daemon does not accept the request. `code` is
-    the error code of the daemon, if the daemon sent one."""
+    """A line of the daemon is malformed, or the daemon does not accept the request. After a malformed line, the
+    connection is closed. `code` is the error code of the daemon, if the daemon sent one."""
 
     def __init__(self, message: str, code: str = "") -> None:
         super().__init__(message)
@@ -48,7 +49,7 @@ class Owned(Refused):
 
 
 class SequenceRefused(SoftgripError):
-    """The sequence cannot be run on this rig."""
+    """The sequence does not fit this rig, so the daemon refuses to start it."""
 
     def __init__(self, message: str, problems: tuple[Problem, ...]) -> None:
         super().__init__("\n".join([message, *map(str, problems)]))
@@ -66,15 +67,16 @@ class GripFailed(SoftgripError):
 
 
 class StopNotConfirmed(SoftgripError):
-    """At the end of a block, the daemon did not confirm the stop of the sequences that the block had started. They may still
-    run. `__cause__` is the reason. `__context__` of the reason is the exception that ended the block."""
+    """At the end of a `with` block, the daemon did not confirm the stop of the sequences that the block had started.
+    These sequences may still run. `__cause__` is the reason. `__context__` of the reason is the exception that ended
+    the block."""
 
 
 class MalformedFile(SoftgripError, ValueError):
     """A recording, log or report does not have the format that softgrip writes."""
 
 
-# Arguments of the C++ library whose names in this package are different.
+# Arguments of the C++ library that have a different name in this package.
 _ARGUMENTS = {"time_s": "t", "pressure_kpa": "pressure", "pressure_command_kpa": "command", "supply_kpa": "supply",
               "temperature_c": "temperature", "pressure_min_kpa": "pressure_min", "pressure_max_kpa": "pressure_max",
               "slew_up_kpa_per_s": "slew_up", "slew_down_kpa_per_s": "slew_down", "start_kpa": "start",
@@ -84,7 +86,7 @@ _ARGUMENTS = {"time_s": "t", "pressure_kpa": "pressure", "pressure_command_kpa":
 
 
 class InvalidArgument(SoftgripError, ValueError):
-    """An invalid argument. The text names the argument, the required shape or range, and the unit."""
+    """An invalid argument. The text names the argument, the required number or range of values, and the unit."""
 
     def __init__(self, argument: str, message: str) -> None:
         self.argument = _ARGUMENTS.get(argument, argument)
@@ -109,4 +111,5 @@ class BusError(SoftgripError):
 
 
 class NoResult(SoftgripError):
-    """The arguments are valid, but there is no result: a model without an inverse, or logs that cannot be fitted."""
+    """The arguments are valid, but the function cannot compute a result. Examples are a model without an inverse, and
+    logs that cannot be fitted."""

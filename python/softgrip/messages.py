@@ -1,4 +1,5 @@
-"""The messages of the daemon as Python objects. A name with a unit ends with the unit. None means unknown."""
+"""Defines the messages of the daemon as Python objects. The name of a quantity ends with its unit. The value None means
+that the daemon does not know the quantity."""
 
 from __future__ import annotations
 
@@ -44,8 +45,8 @@ class _AsSaid:
 
     @classmethod
     def of(cls: type[T], json: Any, where: str) -> T:
-        """Reads an object from JSON. Raises ProtocolError for JSON of another form. `where` is the location in the
-        message."""
+        """Creates an object from JSON. Raises ProtocolError if the JSON does not match the fields of the class. `where`
+        is the location in the message."""
         return decoded(cls, json, where)
 
 
@@ -96,7 +97,7 @@ class Channel(_AsSaid):
 
 @dataclasses.dataclass(frozen=True)
 class SequenceState(_AsSaid):
-    """The sequence that runs, or the last sequence if none runs."""
+    """The running sequence, or the last sequence if no sequence runs."""
 
     name: str
     request: int
@@ -127,7 +128,7 @@ class Status:
         return cls(**fields_of(cls, {**json, "json": json}, where))
 
     def channel(self, name: str) -> Channel:
-        """Returns the finger with this name. Raises KeyError if there is none."""
+        """Returns the finger with this name. Raises KeyError if no finger has this name."""
         for channel in self.channels:
             if channel.name == name:
                 return channel
@@ -190,13 +191,13 @@ class Sequence(_AsSaid):
 class Grip(_AsSaid):
     """A grip: a sequence that was started."""
 
-    request: int  # number of this start in events and recordings
+    request: int  # number by which events and recordings identify this start
     warnings: tuple[Problem, ...] = ()
 
 
 @dataclasses.dataclass(frozen=True)
 class WouldStart(_AsSaid):
-    """The part of the daemon's reply to a dry run that describes the start."""
+    """The part of the daemon's reply to a check that describes the sequence that a start would run."""
 
     name: str
     parameters: Mapping[str, float]

@@ -1,4 +1,5 @@
-"""Models and logs as Python objects with NumPy arrays. The results are identical to those of the `softgrip` commands."""
+"""Defines models and logs as Python objects with NumPy arrays. Their results are identical to those of the `softgrip`
+commands."""
 
 from __future__ import annotations
 
@@ -20,7 +21,7 @@ _EMPTY: Vector = np.empty(0)
 
 
 def _vector(argument: str, values: npt.ArrayLike, unit: str) -> Vector:
-    """Converts an argument to a vector of numbers. Raises InvalidArgument if this is impossible."""
+    """Converts an argument to a vector of numbers. Raises InvalidArgument if the argument is not a vector of numbers."""
     wanted = f"a vector of numbers in {unit} is required"
     try:
         if isinstance(values, np.ma.MaskedArray):
@@ -78,12 +79,12 @@ class Parameter:
 class Inverse:
     """Result of `Model.inverse()`: the command."""
 
-    pressure_kpa: Vector  # one value per time; each value is held until the next time
-    out_of_reach: npt.NDArray[np.bool_]  # True if the limits prevent the command from following the reference
+    pressure_kpa: Vector  # one value per time; the board holds each value until the next time
+    out_of_reach: npt.NDArray[np.bool_]  # True if the finger cannot reach the reference because of the limits of the command
 
 
 class Model:
-    """A model of a finger: a chain of blocks from the commanded pressure to the reading. An object never changes.
+    """A model of a finger: a chain of blocks from the commanded pressure to the reading. A Model object is immutable.
 
     >>> model = Model.load("config/models/bench_twin.yaml")
     >>> model.name, model.unit
@@ -94,23 +95,24 @@ class Model:
     """
 
     def __init__(self, core: _core.Model) -> None:
-        """Only the package calls this function. Use `load()` or `parse()`."""
+        """Only the package calls this constructor. To create a model, use `load()` or `parse()`."""
         if not isinstance(core, _core.Model):
             raise InvalidArgument("core", "core: use Model.load() or Model.parse()")
         self._core = core
 
     @classmethod
     def load(cls, path: Path) -> Model:
-        """Reads a model file. Raises `MalformedFile`, which names each problem with line and column."""
+        """Reads a model file. Raises `MalformedFile` if the file is not a valid model; the text names each problem with
+        line and column."""
         return cls(_core.Model.load(path_of("path", path)))
 
     @classmethod
     def parse(cls, yaml: str, name: str = "model") -> Model:
-        """Reads the text of a model file; messages contain `name`."""
+        """Reads the text of a model file. Error messages use `name` as the name of the text."""
         return cls(_core.Model.parse(text_of("yaml", yaml), text_of("name", name)))
 
     def save(self, path: Path) -> None:
-        """Writes a model file. `load()` reads the same model from this file."""
+        """Writes a model file, from which `load()` reads an equal model."""
         self._core.save(path_of("path", path))
 
     @property
@@ -139,7 +141,7 @@ class Model:
         return {one[0]: Parameter(*one) for one in self._core.parameters()}
 
     def with_parameter(self, name: str, value: float) -> Model:
-        """Returns a copy of the model in which one parameter has another value.
+        """Returns a copy of the model in which one parameter has the value `value`.
 
         >>> model = Model.load("config/models/bench_twin.yaml").with_parameter("transport_delay.delay_s", 0.2)
         >>> model.parameters["transport_delay.delay_s"].value
@@ -153,10 +155,10 @@ class Model:
         """Returns the reading at each time, in the unit of the model. At first, the finger is at rest under the first
         pressure.
 
-        t: times [s], increasing. pressure: commanded pressure [kPa], one value per time. held: if True, the pressure of a
-        sample is held until the next sample; otherwise it is interpolated linearly. noise: standard deviation of white
-        noise, in the unit of the model. seed: seed of all noise. supply: supply pressure [kPa], one value per time.
-        temperature: [degrees Celsius], one value per time.
+        t: times [s], increasing. pressure: commanded pressure [kPa], one value per time. held: if True, the pressure of
+        a sample is constant until the next sample; otherwise, the pressure is linear between samples. noise: standard
+        deviation of white noise, in the unit of the model. seed: seed of the random numbers for all noise. supply:
+        supply pressure [kPa], one value per time. temperature: [degrees Celsius], one value per time.
 
         >>> model = Model.load("config/models/bench_twin.yaml")
         >>> model.simulate([0, 1], [0, 10, 20])
@@ -173,9 +175,9 @@ class Model:
         """Returns the command for which the displacement of the finger follows a reference.
 
         t: times [s] with equal steps. displacement: the reference in the unit of the model, one value per time.
-        pressure_min, pressure_max: range of the command [kPa]. slew_up, slew_down: largest rise and fall of the command
-        [kPa/s]. start: command under which the finger is at rest at the first time [kPa]. Raises `NoResult` if the model has
-        no inverse.
+        pressure_min, pressure_max: range of the command [kPa]. slew_up, slew_down: largest rates of increase and
+        decrease of the command [kPa/s]. start: command under which the finger is at rest at the first time [kPa].
+        Raises `NoResult` if the model has no inverse.
 
         >>> model = Model.load("config/models/bench_twin.yaml")
         >>> t = np.arange(0, 10, 0.005)
@@ -268,9 +270,9 @@ class Log:
         """Reads a log (CSV, or the folder of a recording). Converts a file of another program (text, XLSX, TDMS, MCAP,
         MATLAB, HDF5) with the column roles that `softgrip import` proposes; the notes of the log describe the conversion.
 
-        columns: for each role (time, command, pressure, displacement, temperature, supply), the name or the number (from 1)
-        of a column. units: unit for each role, if the file does not state the unit. rate_hz: samples per second of a file
-        without times.
+        columns: for each role (time, command, pressure, displacement, temperature, supply), the name of a column, or
+        its number counted from 1. units: unit for each role whose unit is not in the file. rate_hz: samples per second
+        of a file without times.
         """
         found = _core.read_log(path_of("path", path), text_of("channel", channel), _flag("import_file", import_file),
                                texts_of("columns", columns), texts_of("units", units),
@@ -295,7 +297,7 @@ class Log:
         return cls(t, command, displacement, pressure, temperature, supply, unit, name)
 
     def write(self, path: Path) -> None:
-        """Writes a log file. `read()` reads the same log from this file."""
+        """Writes a log file, from which `read()` reads an equal log."""
         _core.write_log(path_of("path", path), self._columns())
 
     def check(self) -> None:

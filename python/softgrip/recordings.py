@@ -34,10 +34,10 @@ def _check(about: os.stat_result, path: Path, largest: int) -> None:
 
 
 def _text(path: Path, largest: int) -> str:
-    """Returns the text of a regular file. Raises OSError for a device, for a pipe (reading it would block) and for a file
-    that is too large."""
+    """Returns the text of a regular file. Raises OSError for a device, for a pipe (because reading could block) and for
+    a file that is too large."""
     path = file_path_of("path", path)
-    _check(os.stat(path), path, largest)  # check the type before opening, because opening starts some devices
+    _check(os.stat(path), path, largest)  # check the type first: opening alone starts some devices
     with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC), "rb") as file:
         _check(os.fstat(file.fileno()), path, largest)  # another process may have replaced the file since the first check
         data = file.read(largest)
@@ -67,8 +67,9 @@ def _column(cells: list[str]) -> Array:
 
 
 def read_columns(path: Path) -> dict[str, Array]:
-    """Reads a CSV file with a header (run.csv, a log, a series.csv) as one array per column. An incomplete last line, which
-    a killed run can leave, is ignored. Any other malformed line raises MalformedFile with the line number."""
+    """Reads a CSV file with a header (run.csv, a log, a series.csv) as one array per column. An incomplete last line is
+    ignored, because a program that was killed can leave such a line. Any other malformed line raises MalformedFile with
+    the line number."""
     text = _text(path, LARGEST_CSV)
     rows = csv.reader(io.StringIO(text[:text.rfind("\n") + 1], newline=""))
     kept: list[list[str]] = []
@@ -106,10 +107,10 @@ def _with_arrays(value: Any) -> Any:
 
 @dataclasses.dataclass(frozen=True)
 class Recording:
-    """A recorded run: a folder with run.csv and run.json."""
+    """A recording: a folder with run.csv and run.json."""
 
     about: Mapping[str, Any]  # content of run.json
-    channels: Mapping[str, Mapping[str, Array]]  # for each finger, its columns of run.csv; all have the same length
+    channels: Mapping[str, Mapping[str, Array]]  # for each finger, its columns in run.csv; all columns have the same length
 
     @classmethod
     def read(cls, folder: Path) -> Recording:

@@ -1,4 +1,5 @@
-"""Results of identification, validation, diagnosis and health, as objects with a table for notebooks and with plots."""
+"""Defines the results of identification, validation, diagnosis and health as objects, with tables for notebooks and
+with plots."""
 
 from __future__ import annotations
 
@@ -20,11 +21,11 @@ Vector = npt.NDArray[np.float64]
 
 
 def _pyplot() -> Any:
-    return importlib.import_module("matplotlib.pyplot")  # the import takes about a second, so only plots import the module
+    return importlib.import_module("matplotlib.pyplot")  # imported only for plots: the import takes about 1 s
 
 
 def two_axes(axes: Any) -> tuple[Any, Any]:
-    """Returns the two given matplotlib axes, or two new axes, one above the other."""
+    """Returns the two matplotlib axes in `axes`, or two new axes in one column."""
     if axes is None:
         _, axes = _pyplot().subplots(2, 1, sharex=True, layout="constrained")
     try:
@@ -47,8 +48,8 @@ def _interval(interval: Optional[tuple[float, float]]) -> str:
 
 @dataclasses.dataclass(frozen=True)
 class Estimate:
-    """A number with its 95 % interval. The interval is None if the number is fixed, is at a bound, or has no effect on the
-    result (see `note`)."""
+    """A number with its 95 % interval. The interval is None if the number is fixed, is at a bound, or has no effect on
+    the result; `note` gives the reason."""
 
     name: str
     unit: str
@@ -73,7 +74,8 @@ class Prediction:
     diverges: bool
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws readings and prediction on one matplotlib axes, and the error on a second one below. Returns both axes."""
+        """Draws readings and prediction on one matplotlib axes, and the error on a second axes below the first. Returns
+        both axes."""
         upper, lower = two_axes(axes)
         upper.plot(self.time_s, self.prediction + self.error, ".", markersize=2, label="reading")
         upper.plot(self.time_s, self.prediction, label="prediction")
@@ -94,7 +96,7 @@ class _Reported:
 
     @functools.cached_property
     def report(self) -> Mapping[str, Any]:
-        """Returns the complete result: the JSON file of the command as Python values."""
+        """Returns the complete result of the command: the content of its JSON file as Python values."""
         return json.loads(self.json)  # type: ignore[no-any-return]
 
     def save_html(self, path: Any) -> None:
@@ -158,7 +160,8 @@ class Validation(_Reported):
 
 @dataclasses.dataclass(frozen=True)
 class Cause:
-    """A named cause. In a `Change`, the error reduction is NaN, and the parameter is the size of the change."""
+    """A cause that a diagnosis names. In a `Change`, the error reduction is NaN, and the parameters contain the size of
+    the change."""
 
     id: str
     title: str
@@ -192,8 +195,8 @@ def _plotted_causes(causes: Sequence[Cause], axes: Any) -> Any:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Diagnosis(_Reported):
-    """The result of `diagnose()`. Errors are root mean squares in `unit`. The errors of the refitted and the extended model
-    are errors on held-out blocks."""
+    """The result of `diagnose()`. The errors are root mean squares in `unit`. The errors of the refitted and of the
+    extended model were computed on held-out blocks."""
 
     verdict: str
     sentence: str
@@ -237,8 +240,8 @@ class Change(_Reported):
 
     def plot(self, axes: Any = None) -> Any:
         """Draws the size of each change with its 95 % interval on matplotlib axes, and returns the axes. The sizes have
-        different units. Therefore, each size is drawn as a share of the largest absolute value in its interval; the labels
-        state the sizes."""
+        different units. Therefore, each size is drawn relative to the largest absolute value in its own interval, and
+        the labels state the sizes with units."""
         axes = _one_axes(axes)
         sizes = [(cause.id, one) for cause in self.causes for one in cause.parameters]
         for row, (_, one) in enumerate(sizes):
@@ -254,9 +257,9 @@ class Change(_Reported):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class HealthIndicator:
-    """An indicator of a finger. `value` is the value at the last point. `reference` and `spread` are mean and standard
-    deviation since the last maintenance record. Each of the three is None if it is unknown. `values` has one value per
-    point; NaN means that the point has none."""
+    """An indicator of a finger. `value` is its value at the last point. `reference` and `spread` are its mean and
+    standard deviation since the last maintenance record. An unknown `value`, `reference` or `spread` is None. `values`
+    has one value per point, NaN for a point without a value."""
 
     id: str
     title: str
@@ -269,8 +272,8 @@ class HealthIndicator:
 
 @dataclasses.dataclass(frozen=True)
 class HealthAlarm:
-    """A significant change of an indicator, in the unit of the indicator. `since` and `noticed` are points. A maintenance
-    record ends the alarm."""
+    """A significant change of an indicator, in the unit of the indicator. `since` and `noticed` are the points at which
+    the change began and at which it was detected. A maintenance record ends the alarm."""
 
     indicator: str
     change: float
@@ -313,8 +316,8 @@ class FingerHealth:
         raise InvalidArgument("indicator", f"indicator: {name!r} is not one of {', '.join(one.id for one in self.indicators)}")
 
     def plot(self, indicator: Optional[str] = None, axes: Any = None) -> Any:
-        """Draws an indicator over the points, with its reference and 3 standard deviations, on matplotlib axes. Returns the
-        axes. The default is the indicator of the first active alarm, or the gain if no alarm is active."""
+        """Draws an indicator over the points, with its reference ± 3 standard deviations, on matplotlib axes. Returns
+        the axes. The default indicator is that of the first active alarm, or the gain if no alarm is active."""
         active = [one.indicator for one in self.alarms if one.active]
         shown = self.indicator(indicator if indicator is not None else active[0] if active else "gain_mm")
         axes = _one_axes(axes)
@@ -336,8 +339,8 @@ class FingerHealth:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Health:
-    """The result of `health()`. `alarm` is True while an alarm of a finger is active. `warnings` are changes that are not
-    attributed to a finger. `skipped` has the name of each recording that was not used, and the reason."""
+    """The result of `health()`. `alarm` is True while an alarm of a finger is active. `warnings` describe changes that
+    are not attributed to a finger. `skipped` contains the name of each recording that was not used, with the reason."""
 
     alarm: bool
     fingers: Sequence[FingerHealth]
@@ -347,7 +350,7 @@ class Health:
 
     @functools.cached_property
     def report(self) -> Mapping[str, Any]:
-        """Returns the complete result: health.json as Python values."""
+        """Returns the complete result: the content of health.json as Python values."""
         return json.loads(self.json)  # type: ignore[no-any-return]
 
     def finger(self, name: str) -> FingerHealth:
@@ -363,8 +366,8 @@ class Health:
         return _table("alarm" if self.alarm else "steady", self.warnings, ("finger", "state", "health", "suspects"), rows)
 
     def plot(self, finger: Optional[str] = None, indicator: Optional[str] = None, axes: Any = None) -> Any:
-        """Draws an indicator of a finger over time. The default is the first finger with an active alarm, or the first
-        finger if no alarm is active."""
+        """Draws an indicator of a finger over time. The default finger is the first finger with an active alarm, or the
+        first finger if no alarm is active."""
         alarmed = [one for one in self.fingers if one.state == "alarm"]
         shown = self.finger(finger) if finger is not None else (alarmed or self.fingers)[0]
         return shown.plot(indicator, axes)

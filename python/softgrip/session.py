@@ -1,4 +1,5 @@
-"""The state of a connection without its socket: the requests and their results. Both clients add a socket."""
+"""The state of a connection without its socket: the requests and their results. The blocking client and the asyncio
+client add the socket."""
 
 from __future__ import annotations
 
@@ -15,14 +16,14 @@ from .messages import Event, Failure, Grip, Hello, Reply, Result, SequenceEnd, S
 
 API = 1
 LONGEST_LINE = 16 << 20
-# Number of grips whose results are stored for later calls.
+# Largest number of grips whose results are stored for later calls.
 MOST_GRIPS = 64
-# Replaces the request number of a grip that an earlier daemon started.
+# Value in place of the request number of a grip that was started before the daemon was restarted.
 OF_ANOTHER_DAEMON = -1
 FAILURES = frozenset({Result.NO_PART, Result.PART_LOST, Result.ERROR})
-# A capability in the daemon's hello: starts have ids, and a stop may name the id of a start.
+# Capability that the daemon reports in its first message: starts have ids, and a stop may name the id of a start.
 START_ID = "start_id"
-# The daemon's refusal of a stop that names a start: this start does not run and will not begin.
+# Code with which the daemon refuses a stop that names a start if this start does not run and will not begin.
 NOT_RUNNING = "named_start_not_running"
 
 
@@ -41,7 +42,7 @@ def start_keys(sequence: str, text: Optional[str], parameters: Mapping[str, floa
 
 
 def error_of(error: Optional[Failure]) -> SoftgripError:
-    """Returns the exception that belongs to the error in a reply."""
+    """Returns the exception that corresponds to the error in a reply."""
     if error is None:
         return ProtocolError("a reply lacks 'error'")
     if error.code == "sequence_refused":
@@ -60,7 +61,7 @@ def error_of(error: Optional[Failure]) -> SoftgripError:
 
 
 class _Story:
-    """The results of one grip, collected from its events."""
+    """The results of one grip, collected from the events of the grip."""
 
     def __init__(self) -> None:
         self.results: collections.deque[Result] = collections.deque()
@@ -98,8 +99,8 @@ class Session:
         self._names_starts = START_ID in hello.capabilities
 
     def request(self, command: str, keys: Mapping[str, Any]) -> tuple[int, bytes]:
-        """Returns the line of a request and the id of its reply. A start is stored with a unique id before it is sent,
-        because an exception can occur at any time after this call."""
+        """Returns the line to be sent for a request, and the id that the reply will have. A start is stored with a
+        unique id before it is sent, because an exception can occur at any time after this call."""
         number = self._last_id + 1
         starts = command == "start" and not keys.get("dry_run")
         if starts:
@@ -120,7 +121,7 @@ class Session:
         return os.urandom(16).hex()
 
     def forget(self, number: int) -> None:
-        """Discards the reply to this request."""
+        """Stores that the reply to this request must be discarded."""
         self._waiting.discard(number)
         self.replies.pop(number, None)
 
@@ -131,8 +132,8 @@ class Session:
         return {"since": self.last_event, "started_at": self.started_at}
 
     def subscribed(self, result: Mapping[str, Any]) -> None:
-        """Processes the reply to a subscription. If the daemon was restarted, its request numbers start from the beginning,
-        and the sequences of the previous daemon have ended."""
+        """Processes the reply to a subscription. If the daemon was restarted, its request numbers start from the
+        beginning, and all sequences that ran before the restart have ended."""
         reply = Subscribed.of(result, "subscribe")
         if self.started_at not in ("", reply.started_at):
             self.starts.clear()
@@ -164,8 +165,8 @@ class Session:
             self.replies[reply.id] = reply
 
     def _take_start(self, number: int, reply: Reply) -> None:
-        """Processes the reply to a start, also if the program no longer waits for this reply. If the reply is a refusal, the
-        start will not begin; any other error does not prove this."""
+        """Processes the reply to a start, also if the program no longer waits for this reply. After a refusal, the
+        sequence will not begin. After any other error, the sequence may begin nevertheless."""
         start_id = self._start_of.pop(number)
         if reply.ok:
             request = Grip.of(reply.result, "start").request
@@ -181,8 +182,8 @@ class Session:
                        if request is None or self._story(request).end is None}
 
     def result_of(self, number: int) -> Mapping[str, Any]:
-        """Returns the result of a received reply and discards the reply. If the reply is an error, raises the exception for
-        it."""
+        """Returns the result in a received reply and discards the reply. If the reply is an error, raises the
+        corresponding exception."""
         reply = self.replies.pop(number)
         if not reply.ok:
             raise error_of(reply.error)
@@ -210,8 +211,8 @@ class Session:
         return story
 
     def reached(self, wanted: frozenset[Result]) -> Optional[Result]:
-        """Returns the result of the last start if it is one of `wanted`; None if there is no result yet. Raises GripFailed
-        if the grip failed or the sequence ended."""
+        """Returns the result of the last start if this result is in `wanted`; None if the last start has no result yet.
+        Raises GripFailed if the grip failed or the sequence ended."""
         story = self._story(self.grip)
         while story.results:
             result = story.results.popleft()
@@ -224,5 +225,5 @@ class Session:
         return None
 
     def ended(self) -> Optional[SequenceEnd]:
-        """Returns the end of the last start, or None if its sequence still runs."""
+        """Returns the reason for which the sequence of the last start ended, or None if the sequence still runs."""
         return self._story(self.grip).end

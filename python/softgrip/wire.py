@@ -1,4 +1,4 @@
-"""Sends and receives lines over the daemon's socket, for the blocking client."""
+"""Implements the connection of the blocking client: sends and receives lines over the daemon's socket."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ CONNECT_PAUSE_S = 0.01
 
 
 class Wire:
-    """A connection to the daemon. `torn` is True if an exception, such as that of Ctrl-C, may have left an incomplete
-    line."""
+    """A connection to the daemon. `torn` is True if an exception, such as KeyboardInterrupt, may have left a line that
+    was sent only in part."""
 
     def __init__(self, path: str, end: float) -> None:
         self.path = path
@@ -41,7 +41,7 @@ class Wire:
             session.forget(number)
 
     def read(self, session: Session, end: float) -> None:
-        """Receives lines until at least one is complete, and processes them."""
+        """Receives bytes until at least one line is complete, and processes the complete lines."""
         while b"\n" not in self._input:
             self._receive(session, end)
         *lines, self._input = self._input.split(b"\n")
@@ -92,8 +92,8 @@ class Wire:
         return NotAnswered(f"{self.path}: time limit exceeded")
 
     def _lost(self, session: Session, error: Optional[OSError]) -> Exception:
-        """Returns the exception for a lost connection. If the last message of the daemon was an error, this is the exception
-        for that error, because it is more specific than the loss of the connection."""
+        """Returns the exception for a lost connection. If the last message of the daemon was an error, the result is
+        the exception for this error, because it is more specific than ConnectionLost."""
         self.close()
         return session.failure or ConnectionLost(f"{self.path}: {error or 'the daemon closed the connection'}")
 

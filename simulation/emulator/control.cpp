@@ -6,8 +6,8 @@
 namespace softgrip::simulation {
 namespace {
 
-// Predefined objects. A wide stone stops the fingers at 12 mm. A screw head is narrower, so the fingers touch
-// it at 17 mm. It is also stiffer than the stone.
+// Predefined objects. A stone is wide, so the fingers touch the stone at 12 mm. A screw head is narrower, so
+// the fingers touch the screw head at 17 mm. The screw head is also stiffer than the stone.
 constexpr simulation::PlantObject stone{12, 0.1};
 constexpr simulation::PlantObject screw{17, 0.05};
 

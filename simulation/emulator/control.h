@@ -1,5 +1,5 @@
 #pragma once
-// Executes control commands of the emulator, which scripts and users send as single lines:
+// Executes the control commands of the emulator. Scripts and users send each command as a line:
 //
 //   status                 one line of JSON: true state of board, fingers and faults
 //   fault NAME             begins the fault NAME of the faults file
@@ -17,13 +17,13 @@
 
 namespace softgrip::simulation {
 
-/// Returns the object that a text describes ("stone", "screw", "13", "13:0.2"), or nullopt for any other
-/// text.
+/// Returns the object that a text describes, for example "stone", "screw", "13" or "13:0.2". Returns nullopt
+/// if the text describes no object.
 [[nodiscard]] std::optional<simulation::PlantObject> object_named(std::string_view text);
 
 struct ControlAnswer {
   std::string line;   ///< reply to the command: "ok", "error: ..." or the status, without a line break
-  bool quit = false;  ///< true: the command requests the end of the emulator
+  bool quit = false;  ///< true: the command requests that the emulator ends
 };
 
 /// Executes one command line at the time `now`.

@@ -21,7 +21,7 @@ bool reads_input_registers(const RegisterBlock& block) {
 }
 
 /// First register and number of registers that a write request changes. The number is 0 if the request
-/// changes none.
+/// changes no register.
 struct WrittenRange {
   std::size_t first = 0;
   std::size_t count = 0;
@@ -78,8 +78,8 @@ void EmulatedBoard::define_registers() {
     define_block({clients->function, clients->address, 1, drivers::RegisterKind::uint16},
                  Registers::Access::read_only);
   }
-  // The outputs must be defined last. If a read-back or a flag uses the register of an output, this register
-  // stays writable.
+  // The outputs must be defined last. A register that an output shares with a read-back or a flag then
+  // remains writable.
   define_block(map_.outputs.registers, Registers::Access::read_write);
   fill_readable_gaps();
   allow_functions();
@@ -155,8 +155,8 @@ Registers::Answer EmulatedBoard::answer(Nanoseconds now, std::span<const std::ui
   if (touched) {
     commanded_ = true;
     if (!tripped_ && !writes_ignored_) take_outputs();
-    // The registers show the values that are really at the terminals. Therefore, a client that reads the
-    // registers detects a write that was ignored.
+    // After this call, the registers contain the values that are really at the terminals. Therefore, a client
+    // that reads the registers detects a write that was ignored.
     show_outputs();
   }
   return answer;
@@ -171,8 +171,8 @@ void EmulatedBoard::advance(Nanoseconds now) {
   show_tripped();
 }
 
-/// Ends the tripped state of the watchdog after all writes that clear it have been received. If the map
-/// contains no such writes, any write to the outputs ends the tripped state.
+/// Ends the tripped state of the watchdog after all writes that the map lists under `clear` have been
+/// received. If the map lists no writes, any write to the outputs ends the tripped state.
 void EmulatedBoard::note_clearing(std::span<const std::uint8_t> pdu, bool wrote_outputs) {
   for (std::size_t i = 0; i < cleared_.size(); ++i) {
     if (is_write(pdu, map_.watchdog.clear[i])) cleared_[i] = true;
@@ -240,7 +240,7 @@ void EmulatedBoard::put_raw(const RegisterBlock& block, std::size_t index, doubl
 }
 
 /// Returns true if the request is a heartbeat that feeds the watchdog. If the heartbeat has two alternating
-/// values, a repeated value does not feed the watchdog, because it may come from a program that hangs.
+/// values, a repetition of the last value does not feed the watchdog, because the client may hang.
 bool EmulatedBoard::is_heartbeat(std::span<const std::uint8_t> pdu) {
   drivers::FixedWrite write = *map_.watchdog.feed_write;
   if (!write.alternate) return is_write(pdu, write);

@@ -1,7 +1,6 @@
 #pragma once
 // Emulates a board: its registers according to a board map, its converters and its watchdog. The signals at
-// its terminals are voltages or currents. This class does not model the valves and sensors that are connected
-// to the terminals.
+// the terminals of the board are voltages or currents. Valves and sensors are not part of this class.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,19 +15,20 @@ namespace softgrip::simulation {
 
 class EmulatedBoard {
  public:
-  /// Creates the board in the state after power-on. The outputs have their safe values, or 0 if the map gives
-  /// no safe values. The watchdog is inactive until the first request that feeds it.
+  /// Creates the board in the state after power-on. The outputs have their safe values, or 0 if the board map
+  /// gives no safe values. The watchdog is inactive until the first request that feeds it.
   explicit EmulatedBoard(const drivers::BoardMap& map);
 
   [[nodiscard]] const drivers::BoardMap& map() const noexcept { return map_; }
 
-  /// Returns the reply to a request that arrives at `now`. The calls must be in the order of time.
+  /// Returns the reply to a request that arrives at the time `now`. `now` must not decrease from call to
+  /// call.
   Registers::Answer answer(Nanoseconds now, std::span<const std::uint8_t> pdu);
 
-  /// If the time-out of the watchdog has passed at `now`, trips the watchdog.
+  /// Trips the watchdog if its time-out has passed at the time `now`.
   void advance(Nanoseconds now);
-  /// Returns the time at which the watchdog trips if no request feeds it before that time. Returns nullopt if
-  /// the watchdog is inactive or has tripped, or if the board has no watchdog.
+  /// Returns the time at which the watchdog trips if no further request feeds it. Returns nullopt if the
+  /// watchdog is inactive or has tripped, or if the board has no watchdog.
   [[nodiscard]] std::optional<Nanoseconds> watchdog_due() const noexcept;
   [[nodiscard]] bool tripped() const noexcept { return tripped_; }
   /// Returns true if a client has written an output since the board was created.
@@ -36,16 +36,17 @@ class EmulatedBoard {
 
   /// Returns the signal of an output terminal [V or mA].
   [[nodiscard]] double output(std::size_t terminal) const { return outputs_.at(terminal); }
-  /// Writes the number of connected clients to the register for this number. Does nothing if the map has no
-  /// such register.
+  /// Writes the number of connected clients to the register that the map defines for this number. Has no
+  /// effect if the map defines no such register.
   void count_clients(std::size_t clients);
-  /// If `ignored` is true, the board confirms writes but does not execute them.
+  /// Sets how the board handles writes. If `ignored` is true, the board confirms writes but does not execute
+  /// them.
   void ignore_writes(bool ignored) noexcept { writes_ignored_ = ignored; }
 
   /// Sets the signal at an input terminal [V or mA].
   void set_input(std::size_t terminal, double electrical);
-  /// Sets an input to the board's error value. If the map has no error value, sets the input to the upper end
-  /// of its range.
+  /// Sets an input to the error value of the board. If the map gives no error value, sets the input to the
+  /// upper end of the input's range.
   void set_input_error(std::size_t terminal);
 
  private:
@@ -76,8 +77,8 @@ class EmulatedBoard {
   bool tripped_ = false;
   bool commanded_ = false;
   bool writes_ignored_ = false;
-  std::vector<bool> cleared_;  // for each write that clears the watchdog: true if the write was received
-                               // since the watchdog tripped
+  std::vector<bool> cleared_;  // for each write that clears the watchdog: true if this write was received
+                               // after the watchdog tripped
 };
 
 }  // namespace softgrip::simulation

@@ -28,8 +28,8 @@ Nanoseconds interval_of(const FaultSpec& fault) {
   return std::max<Nanoseconds>(1, std::llround(fault.interval_s * 1e9));
 }
 
-/// Returns true in the first, third, fifth ... interval of a jumping sensor. In these intervals, its reading
-/// has an offset.
+/// Returns true in the first, third, fifth ... interval of a jumping sensor. In these intervals, the reading
+/// of the sensor has an offset.
 bool is_off(const FaultSpec& fault, Nanoseconds since, Nanoseconds now) {
   return (now - since) / interval_of(fault) % 2 == 0;
 }
@@ -59,8 +59,8 @@ void Emulator::advance(Nanoseconds now) {
       ++watchdog_trips_;
       take_commands();
     }
-    // Faults must be applied in each step: a jumping sensor also changes while its fault is active without
-    // interruption.
+    // Faults must be applied in each step, because the offset of a jumping sensor also changes while the set
+    // of active faults is unchanged.
     faults_.advance(now_);
     apply_faults();
     if (now_ % grid == 0 && observer_) observer_();
@@ -87,7 +87,8 @@ bool Emulator::tripped() const noexcept {
 Reply Emulator::serve(Nanoseconds now, const Request& request, std::size_t link, Nanoseconds opened_at) {
   advance(now);
   EmulatedBoard* const board = board_at(link, request.unit);
-  // On a serial line, all modules receive all requests, but only the addressed module replies.
+  // On a serial line, every module receives every request, but only the module with the unit id of the
+  // request replies.
   if (board == nullptr && wire_ == Wire::rtu) return {};
   ++requests_;
   const auto index = wire_fault(request, now - opened_at);

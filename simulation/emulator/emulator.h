@@ -1,6 +1,6 @@
 #pragma once
-// Emulates a rig: board, fingers and faults. This class has no sockets and no clock. The caller passes the
-// requests, together with the times at which they arrive.
+// Emulates a rig: board, fingers and faults. This class has no sockets and no clock. The caller passes each
+// request together with its time of arrival.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace softgrip::simulation {
 
-/// One module of the board, and its unit id and link.
+/// One module of the board, with its unit id and its link.
 struct EmulatedModule {
   drivers::BoardMap map;
   std::uint8_t unit = 1;
@@ -24,7 +24,7 @@ struct EmulatedModule {
 };
 
 struct EmulatorSettings {
-  /// Modules of the board. A request to a unit that does not exist gets exception 11 on a network, and no
+  /// Modules of the board. A request to a unit id that no module has gets exception 11 on a network, and no
   /// reply on a serial line.
   std::vector<EmulatedModule> modules;
   Wire wire = Wire::tcp;
@@ -36,24 +36,24 @@ struct EmulatorSettings {
 
 class Emulator {
  public:
-  /// Step of the simulated fingers [ns]. A step ends at each multiple of this time, and at each request and
-  /// event.
+  /// Longest time step of the simulated fingers [ns]. A time step ends at each multiple of this value, at
+  /// each request, and at each start or end of a fault.
   static constexpr Nanoseconds grid = 1'000'000;
   /// Name of a fault that always exists. While this fault is active, the object is removed.
   static constexpr std::string_view object_out = "object_out";
 
-  /// Creates the rig. The time of the new rig is 0.
+  /// Creates the rig at the time 0.
   explicit Emulator(EmulatorSettings settings);
 
-  /// Advances the rig to the time `now`. The calls must be in the order of time.
+  /// Advances the rig to the time `now`, which must not decrease from call to call.
   void advance(Nanoseconds now);
   /// Processes a request that arrives on a link at `now`, over a connection that was opened at `opened_at`.
-  /// Returns the reply; it is empty if the board does not respond.
+  /// Returns the reply, or an empty reply if the board does not respond.
   [[nodiscard]] Reply serve(Nanoseconds now, const Request& request, std::size_t link = 0,
                             Nanoseconds opened_at = 0);
   /// Sets the number of clients that are connected to a link.
   void count_clients(std::size_t clients, std::size_t link);
-  /// Returns true if new connections are accepted.
+  /// Returns true if the emulator accepts new connections.
   [[nodiscard]] bool reachable() const { return !faults_.first_active(FaultKind::disconnect); }
 
   /// trigger() begins a fault, and clear() ends it. Both return false if no fault has this name.
@@ -71,7 +71,7 @@ class Emulator {
   [[nodiscard]] const std::vector<EmulatedBoard>& modules() const noexcept { return boards_; }
   /// Returns true if a client has written an output since the rig was created.
   [[nodiscard]] bool commanded() const noexcept;
-  /// Returns true while the watchdog of a module holds its outputs.
+  /// Returns true while the watchdog of at least one module holds the outputs of this module.
   [[nodiscard]] bool tripped() const noexcept;
   [[nodiscard]] const FaultSchedule& faults() const noexcept { return faults_; }
   [[nodiscard]] std::uint64_t requests() const noexcept { return requests_; }

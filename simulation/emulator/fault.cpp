@@ -27,7 +27,7 @@ document::Range up_to(double upper) {
   return {0, upper};
 }
 
-/// Reads the keys that belong only to this kind of fault.
+/// Reads the keys of the fault that other kinds of faults do not have.
 void read_own_keys(FaultSpec& fault, document::MapReader& map) {
   switch (fault.kind) {
     case FaultKind::late_reply:

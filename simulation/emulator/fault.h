@@ -4,10 +4,16 @@
 //   faults:
 //     - name: slow_wire
 //       kind: dripped_reply
-//       at_s: 5           # begins 5 s after the first command to an output; without at_s, only when
-//       triggered for_s: 2          # lasts 2 s; without for_s, until it is cleared replies: 1        # only
-//       for faults of the transmission: ends after this number of affected requests interval_s: 0.05  # a key
-//       of this kind of fault; such keys are required
+//       at_s: 5
+//       for_s: 2
+//       replies: 1
+//       interval_s: 0.05
+//
+// The fault begins at_s seconds after the first command to an output. Without at_s, the fault begins only
+// when a control command triggers it. The fault ends after for_s seconds. Without for_s, the fault lasts
+// until a control command clears it. A fault of the transmission with the key `replies` also ends after this
+// number of affected requests. The remaining keys, such as interval_s, depend on the kind of the fault and
+// are required.
 //
 // docs/reference/emulator.md describes the file.
 
@@ -25,30 +31,33 @@ namespace softgrip::simulation {
 
 enum class FaultKind : std::uint8_t {
   // the following kinds are faults of the transmission
-  lost_request,       ///< the request is lost: it is neither executed nor answered
-  no_reply,           ///< the request is executed, but not answered
+  lost_request,       ///< the request is lost: the board neither executes nor answers the request
+  no_reply,           ///< the board executes the request, but sends no reply
   late_reply,         ///< the reply is delayed by delay_s, so it may arrive after the replies to later
                       ///< requests
   dripped_reply,      ///< the reply is sent as single bytes, one byte every interval_s
   cut_reply,          ///< only the first half of the reply is sent
   repeated_reply,     ///< the reply is sent twice
-  wrong_unit,         ///< the unit id in the reply is too large by one
-  wrong_transaction,  ///< the transaction id in the reply is too large by one
-  wrong_length,       ///< the length in the header of the reply is too large by one
+  wrong_unit,         ///< the unit id in the reply is 1 higher than the correct unit id
+  wrong_transaction,  ///< the transaction id in the reply is 1 higher than the correct transaction id
+  wrong_length,       ///< the length in the header of the reply is 1 higher than the correct length
   exception_reply,    ///< the reply is the Modbus exception `code`, and the request is not executed
   settling,           ///< requests that arrive within settle_s after the connection was opened are lost
-  few_registers,      ///< a request for more than `most` registers gets exception 3
-  stray_bytes,        ///< each reply has `before` extra bytes before it, and `behind` extra bytes after it
-  disconnect,         ///< open connections are closed, and new connections are closed immediately
+  few_registers,      ///< a request for more than `most` registers gets exception 3 as reply
+  stray_bytes,        ///< each reply has `before` extra bytes before its start, and `behind` extra bytes
+                      ///< after its end
+  disconnect,         ///< the emulator closes open connections, and immediately closes each new connection
   // the following kind is a fault of the board
   ignored_write,  ///< the board confirms writes but does not execute them
   // the following kinds are faults of a channel
   sensor_stuck,         ///< the sensor repeats its last value
-  sensor_jumping,       ///< in every second interval of interval_s, by_mm is added to the reading
+  sensor_jumping,       ///< by_mm is added to the reading in the first, third, fifth ... interval of
+                        ///< interval_s
   sensor_out_of_range,  ///< the sensor gives no valid reading
-  line_blocked,         ///< the pressure of the finger stays constant
+  line_blocked,         ///< the pressure of the finger stays constant, because commands do not reach the
+                        ///< finger
   line_leaking,         ///< the finger receives (1 - share) of the commanded pressure
-  object_removed,       ///< the object is removed, and put back at the end of the fault
+  object_removed,       ///< the object is removed at the start of the fault, and put back at its end
 };
 
 [[nodiscard]] std::string_view name_of(FaultKind kind) noexcept;
@@ -62,7 +71,7 @@ enum class FaultKind : std::uint8_t {
   return kind >= FaultKind::sensor_stuck;
 }
 
-/// One entry of a faults file. Each member from `delay_s` on is used only by some kinds of faults.
+/// One entry of a faults file. The members from `delay_s` on belong to single kinds of faults.
 struct FaultSpec {
   std::string name;
   FaultKind kind = FaultKind::no_reply;
@@ -82,11 +91,11 @@ struct FaultSpec {
   SensorFault sensor;  ///< used by the kinds sensor_stuck, sensor_jumping and sensor_out_of_range
 };
 
-/// Returns a fault of this kind that has default values and no name.
+/// Returns a fault of this kind with default values and without a name.
 [[nodiscard]] FaultSpec fault_of(FaultKind kind);
 
 /// Reads a faults file for a rig with the channels `channels`. Adds the problems of the file to `problems`.
-/// The result is valid only if no problem was added.
+/// The result may only be used if no problem was added.
 [[nodiscard]] std::vector<FaultSpec> read_faults(const document::Document& document,
                                                  const std::vector<std::string>& channels,
                                                  document::Problems& problems);

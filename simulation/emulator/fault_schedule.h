@@ -1,6 +1,6 @@
 #pragma once
-// Determines which faults are active at a time. A fault begins at its scheduled time, or when it is
-// triggered. It ends after its duration, or by a control command.
+// Determines which faults are active at a time. A fault begins at its scheduled time, or when a control
+// command triggers it. A fault ends after its duration, or when a control command clears it.
 
 #include <cstddef>
 #include <optional>
@@ -16,34 +16,38 @@ class FaultSchedule {
  public:
   explicit FaultSchedule(std::vector<FaultSpec> faults);
 
-  /// Sets the time that counts as 0 for at_s. Only the first call has an effect.
+  /// Sets the time from which the key at_s of the faults is measured. Only the first call has an effect.
   void start(Nanoseconds now);
   [[nodiscard]] bool started() const noexcept { return started_at_.has_value(); }
-  /// Begins and ends all faults that are due at or before `now`. Returns true if a fault began or ended.
+  /// Begins and ends the faults whose scheduled times are at or before `now`. Returns true if a fault began
+  /// or ended.
   bool advance(Nanoseconds now);
   /// Returns the next scheduled time at which a fault begins or ends.
   [[nodiscard]] std::optional<Nanoseconds> next_change() const;
 
-  /// Begins a fault now, independent of its at_s. Returns false if no fault has this name.
+  /// Begins a fault at `now`, independent of the key at_s of this fault. Returns false if no fault has the
+  /// name `name`.
   bool trigger(std::string_view name, Nanoseconds now);
-  /// Ends a fault. After that, only trigger() can begin it. Returns false if no fault has this name.
+  /// Ends a fault. After clear(), only trigger() can begin the fault. Returns false if no fault has the name
+  /// `name`.
   bool clear(std::string_view name);
 
-  /// Counts a reply that was affected by a fault of the transmission. The fault ends after FaultSpec::replies
-  /// such replies.
+  /// Counts a reply that a fault of the transmission has changed or suppressed. The fault ends after
+  /// FaultSpec::replies of these replies.
   void count_reply(std::size_t index);
 
   [[nodiscard]] const std::vector<FaultSpec>& faults() const noexcept { return faults_; }
   [[nodiscard]] bool active(std::size_t index) const { return states_[index].active; }
   /// Returns the time at which an active fault began.
   [[nodiscard]] Nanoseconds since(std::size_t index) const { return states_[index].since; }
-  /// Returns the index of the first active fault of this kind; nullopt if none is active.
+  /// Returns the index of the first active fault of this kind; nullopt if no fault of this kind is active.
   [[nodiscard]] std::optional<std::size_t> first_active(FaultKind kind) const;
 
  private:
   struct State {
     bool active = false;
-    bool spent = false;  ///< true: the scheduled start of the fault has passed, or was cancelled
+    bool spent = false;  ///< true: the scheduled start of the fault has passed or was cancelled, so only
+                         ///< trigger() can begin the fault
     Nanoseconds since = 0;
     std::uint32_t replies = 0;
   };

@@ -1,5 +1,5 @@
 #pragma once
-// One emulated finger: its simulation, and its wiring to the board.
+// Emulates one finger: its simulation, and its wiring to the board.
 
 #include <optional>
 #include <span>
@@ -17,18 +17,18 @@ class Finger {
   [[nodiscard]] const std::string& name() const noexcept { return wiring_.name; }
   [[nodiscard]] const simulation::Plant& plant() const noexcept { return plant_; }
 
-  /// Reads the signal at the output terminal and sets the commanded pressure. `modules` contains the modules
-  /// of the board, with the same indices as in the wiring.
+  /// Reads the signal at the output terminal of the finger and sets the commanded pressure of the simulation.
+  /// `modules` contains the modules of the board, with the same indices as in the wiring.
   void take_command(std::span<const EmulatedBoard> modules);
-  /// Advances the finger by `duration_s`, in which the command is constant.
+  /// Advances the finger by `duration_s`. The command is constant during this time.
   void advance(double duration_s) noexcept { plant_.advance(duration_s); }
-  /// Sets the inputs of the board to the signals of the sensors.
+  /// Sets the inputs of the board to the signals of the finger's sensors.
   void show(std::span<EmulatedBoard> modules) const;
 
-  /// Sets the faults of the finger. A fault that has not changed is not restarted, so a stuck sensor keeps
-  /// its value.
+  /// Sets the faults of the finger. A fault that is already active is not restarted. Therefore, a stuck
+  /// sensor keeps its value.
   void set_faults(const simulation::LineFault& line, const simulation::SensorFault& sensor);
-  /// If `there` is true, places the object of the finger, otherwise removes it.
+  /// Places the object of the finger if `there` is true, otherwise removes the object.
   void place_object(bool there);
   [[nodiscard]] bool has_object() const noexcept { return plant_.object().has_value(); }
   /// Sets the object that place_object() places.

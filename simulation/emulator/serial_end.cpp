@@ -82,7 +82,7 @@ tl::expected<SerialEnd, std::string> SerialEnd::open(const drivers::SerialLine& 
   SerialEnd end(line);
   struct stat about {};
   if (::stat(line.device.c_str(), &about) != 0 && errno == ENOENT) {
-    // If an emulator was killed, its link may still exist and lead nowhere. Such a link is removed.
+    // A link whose target does not exist is removed, because an emulator that was killed leaves such a link.
     if (::lstat(line.device.c_str(), &about) == 0 && S_ISLNK(about.st_mode)) ::unlink(line.device.c_str());
     if (auto made = end.make_pseudo(); !made) return tl::unexpected{made.error()};
     return end;

@@ -1,6 +1,6 @@
 #pragma once
-// The end of a serial line that the emulated board uses. It is a serial device or a pseudo-terminal. The
-// daemon opens the other end of the line.
+// Opens the end of a serial line that the emulated board uses. This end is a serial device or a
+// pseudo-terminal. The daemon opens the opposite end of the line.
 
 #include <string>
 
@@ -14,8 +14,8 @@ namespace softgrip::simulation {
 
 class SerialEnd {
  public:
-  /// Opens an existing device. If the path does not exist, creates a pseudo-terminal and a link with this
-  /// path to it. The destructor removes the link. The error is one sentence.
+  /// Opens the device of `line`. If its path does not exist, creates a pseudo-terminal and a link with this
+  /// path to the pseudo-terminal. The destructor removes the link. The error is one sentence.
   [[nodiscard]] static tl::expected<SerialEnd, std::string> open(const drivers::SerialLine& line);
   SerialEnd(SerialEnd&& other) noexcept;
   SerialEnd& operator=(SerialEnd&& other) noexcept;
@@ -23,10 +23,11 @@ class SerialEnd {
   SerialEnd& operator=(const SerialEnd&) = delete;
   ~SerialEnd();
 
-  /// Returns the times that the server must simulate. These are the turnaround time and, on a
-  /// pseudo-terminal, also the transmission times of the bytes.
+  /// Returns the times by which the server must delay its replies. The times contain the turnaround time of
+  /// the module. For a pseudo-terminal, they also contain the transmission times of the bytes.
   [[nodiscard]] WireTime wire_time() const noexcept;
-  /// Returns the descriptor for reading and writing. It can be returned only once.
+  /// Returns the descriptor for reading and writing, with its ownership. A second call returns an empty
+  /// descriptor.
   [[nodiscard]] Descriptor take() noexcept { return std::move(end_); }
   [[nodiscard]] bool taken() const noexcept { return !end_; }
 
@@ -37,9 +38,9 @@ class SerialEnd {
 
   drivers::SerialLine line_;
   Descriptor end_;
-  // For a pseudo-terminal, this is a descriptor of the daemon's end, so that the line remains open when the
-  // daemon closes this end. For a device, it is a descriptor with a lock, so that no other Modbus client can
-  // use the device.
+  // For a pseudo-terminal: a second descriptor of the daemon's end, so that the line remains open when the
+  // daemon closes its descriptor. For a device: a descriptor with a lock, so that no Modbus client of this
+  // machine can use the device.
   Descriptor kept_;
   std::string link_;
   bool pseudo_ = false;

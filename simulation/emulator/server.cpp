@@ -18,7 +18,7 @@ constexpr std::size_t max_modbus_clients = 32;
 constexpr std::size_t max_control_clients = 8;
 constexpr std::size_t max_control_line = 1024;
 constexpr std::size_t max_control_read = 512;
-// Longest wait in poll(). The limit is needed so that the truth log and scheduled faults are not late.
+// Longest wait in poll(). A longer wait would delay the truth log and the scheduled faults.
 constexpr std::chrono::milliseconds longest_wait{20};
 
 }  // namespace
@@ -43,7 +43,7 @@ void Server::run(const std::function<void()>& idle) {
     plug_line();
     polled.clear();
     const auto signal = polled.add(sockets_.signals.get());
-    // If a listener is closed or pauses, its descriptor is -1, which has no events.
+    // The descriptor of a listener that is closed or pauses is -1, for which poll() reports no events.
     const auto control = polled.add(control_entrance_.descriptor(now()));
     for (std::size_t link = 0; link < links.size(); ++link)
       links[link] = polled.add(entrances_[link].descriptor(now()));
@@ -70,8 +70,8 @@ void Server::run(const std::function<void()>& idle) {
   }
 }
 
-/// Closes the newest client. This is needed if poll() fails, because it watches more descriptors than the
-/// process may have.
+/// Closes the connection of the newest client. The server calls this function if poll() fails because the
+/// process has more descriptors than it may have.
 bool Server::give_up_client() {
   if (sockets_.line || clients_.empty()) return false;
   clients_.pop_back();
@@ -79,8 +79,8 @@ bool Server::give_up_client() {
   return true;
 }
 
-/// Removes the serial line and its name while the fault `disconnect` is active. After the fault, creates the
-/// line again with the same name.
+/// Closes the serial line and removes its path while the fault `disconnect` is active. After the fault, opens
+/// the line again under this path.
 void Server::plug_line() {
   if (!sockets_.line || !clients_.empty()) return;
   if (sockets_.end && sockets_.end->taken()) sockets_.end.reset();
@@ -120,8 +120,8 @@ bool Server::serve(Client& client, net::PollSet::Events events) {
 
 void Server::accept_modbus(std::size_t link) {
   Descriptor client = entrances_[link].accept(now());
-  // If the fault `disconnect` is active, or if max_modbus_clients are already connected, a new client is
-  // accepted and then closed immediately.
+  // If the fault `disconnect` is active, or if max_modbus_clients are already connected, the server accepts a
+  // new client and closes its connection immediately.
   if (client && emulator_.reachable() && clients_.size() < max_modbus_clients) {
     const bool rtu = emulator_.wire() == Wire::rtu;  // true: RTU frames over TCP, as serial device servers
                                                      // transmit them
@@ -165,8 +165,8 @@ void Server::answer_control(const ControlClient& client, std::string_view line) 
   const ControlAnswer answer = control(emulator_, now(), line);
   quit_ = quit_ || answer.quit;
   const std::string text = answer.line + "\n";
-  // A reply fits into the buffer of the socket if the buffer is empty. If a client does not read its replies,
-  // its further replies are lost.
+  // A reply always fits into an empty buffer of the socket. The buffer is full only if a client does not read
+  // its replies; further replies to this client are then lost.
   if (client.socket) {
     ::send(client.socket.get(), text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   } else if (::write(STDOUT_FILENO, text.data(), text.size()) < 0) {

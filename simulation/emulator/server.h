@@ -1,5 +1,6 @@
 #pragma once
-// The server of the emulator. One thread waits with poll() for Modbus clients, control clients and signals.
+// Implements the server of the emulator. One thread waits with poll() for Modbus clients, control clients and
+// signals.
 
 #include <csignal>
 #include <cstddef>
@@ -21,11 +22,12 @@ namespace softgrip::simulation {
 
 struct ServerSockets {
   std::vector<Descriptor> modbus;  ///< listening sockets, one for each link of a network
-  /// Settings of the serial line; empty if the links are on a network. With them, the line is opened again
-  /// after the fault `disconnect`.
+  /// Settings of the serial line; empty if the links are on a network. The server needs the settings to open
+  /// the line again after the fault `disconnect`.
   std::optional<drivers::SerialLine> line;
   std::optional<SerialEnd> end;
-  Descriptor control;           ///< listening socket for control commands; empty: there is none
+  Descriptor control;           ///< listening socket for control commands; empty: the server has no control
+                                ///< socket
   Descriptor signals;           ///< signalfd descriptor: SIGUSR1 removes the object, and every other signal
                                 ///< ends run()
   bool standard_input = false;  ///< true: control commands are also read from the standard input
@@ -34,7 +36,8 @@ struct ServerSockets {
 class Server {
  public:
   Server(Emulator& emulator, ServerSockets sockets);
-  /// Runs until a signal or the control command `quit` arrives. `idle` is called at least every 20 ms.
+  /// Serves the clients until a signal or the control command `quit` arrives. `idle` is called at least every
+  /// 20 ms.
   void run(const std::function<void()>& idle);
 
  private:
@@ -48,8 +51,8 @@ class Server {
 
   [[nodiscard]] Nanoseconds now() const;
   [[nodiscard]] Nanoseconds timeout() const;
-  /// Closes a client, because the limit of descriptors was lowered. Returns false if there is no client to
-  /// close.
+  /// Closes the connection of a client, because the limit of descriptors was lowered. Returns false if no
+  /// client is connected through the network.
   [[nodiscard]] bool give_up_client();
   void accept_modbus(std::size_t link);
   void count_clients();
@@ -62,7 +65,8 @@ class Server {
     Nanoseconds opened_at = 0;
     net::PollSet::Place place = {};
   };
-  /// Processes the events of a client. Returns false if the client has ended or must be disconnected.
+  /// Processes the events of a Modbus client. Returns false if the client has closed its connection or must
+  /// be disconnected.
   [[nodiscard]] bool serve(Client& client, net::PollSet::Events events);
   void read_control(ControlClient& client);
   void answer_control(const ControlClient& client, std::string_view line);

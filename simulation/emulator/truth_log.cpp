@@ -14,7 +14,7 @@ TruthLog::TruthLog(const std::string& path, std::uint32_t decimation)
 
 void TruthLog::add(const Emulator& emulator) {
   if (count_++ % decimation_ != 0) return;
-  // Times are rounded to microseconds, so that their texts in the log are short.
+  // The times are rounded to microseconds to keep their text in the log short.
   const std::int64_t time_us = emulator.now() / 1000;
   const double time_s = static_cast<double>(time_us) / 1e6;
   for (const Finger& finger : emulator.fingers()) {

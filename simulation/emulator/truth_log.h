@@ -17,7 +17,7 @@ namespace softgrip::simulation {
 
 class TruthLog {
  public:
-  /// Creates the file. Only every `decimation`-th call of add() writes rows, one row per channel.
+  /// Creates the log file. Only every `decimation`-th call of add() writes rows: one row per channel.
   TruthLog(const std::string& path, std::uint32_t decimation);
 
   void add(const Emulator& emulator);

@@ -1,5 +1,5 @@
 #pragma once
-// Makes the names of drivers/modbus_server/ available in the namespace of the emulator.
+// Imports the names of drivers/modbus_server/ into the namespace of the emulator.
 
 #include "drivers/modbus_server/connection.h"
 #include "drivers/modbus_server/registers.h"

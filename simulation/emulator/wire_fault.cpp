@@ -36,8 +36,8 @@ Reply longer_than_it_is(Wire wire, const Request& request, const Bytes& pdu) {
   return at_once(std::move(whole));
 }
 
-/// Returns the reply with a transaction id that belongs to another request. On a serial line there is no
-/// transaction id, so the reply gets a wrong checksum.
+/// Returns the reply with the transaction id of the next request. On a serial line, frames have no
+/// transaction id, so the reply gets a wrong checksum instead.
 Reply of_another_question(Wire wire, const Request& request, const Bytes& pdu) {
   const auto next_transaction = static_cast<std::uint16_t>(request.transaction + 1);
   Bytes whole = frame_on(wire, next_transaction, request.unit, pdu);
@@ -45,7 +45,7 @@ Reply of_another_question(Wire wire, const Request& request, const Bytes& pdu) {
   return at_once(std::move(whole));
 }
 
-/// Returns the number of registers that a request reads, or the number that it writes, if this is larger.
+/// Returns the larger of two numbers: the registers that a request reads, and the registers that it writes.
 /// Returns 0 for requests that read or write bits.
 std::size_t most_registers_in(const Bytes& pdu) noexcept {
   constexpr std::size_t counted = 5;  // size of function code, address and number of registers

@@ -10,8 +10,8 @@ constexpr double pressure_span_kpa = 100;
 constexpr double nearest_mm = -5;
 constexpr double farthest_mm = 45;
 
-/// Lower and upper end of the usual signal range of a terminal. The range of the terminal's converter may be
-/// wider.
+/// Lower and upper end of the usual signal range of a terminal. The converter of the terminal may have a
+/// wider range.
 struct Span {
   double low;
   double high;
@@ -28,7 +28,7 @@ Span span_of(const drivers::Terminal& terminal) {
   return {0, terminal.highest};
 }
 
-/// A terminal, and the index of the module that contains it.
+/// A terminal, and the index of the module to which the terminal belongs.
 struct Place {
   std::size_t module;
   std::size_t index;
@@ -85,8 +85,8 @@ drivers::OutputWiring output_at(const Place& place) {
   return wiring;
 }
 
-/// Returns the wiring of a pressure monitor. If the input is in V or mA, the ends of its range represent the
-/// same pressures as the ends of the valve's range.
+/// Returns the wiring of a pressure monitor. The ends of the range of an input in V or mA represent the
+/// pressures at the ends of the valve's range.
 drivers::InputWiring monitor_at(const Place& place, const drivers::OutputWiring& valve) {
   if (place.terminal.unit != drivers::ElectricalUnit::kilopascal) {
     return input_at(place, valve.scaling.y0, valve.scaling.y1);

@@ -13,14 +13,14 @@ namespace {
 using model::Chain;
 using Contact = model::Contact<double>;
 
-// Position of the contact if there is no object. No finger reaches this position, so the contact does not
-// change the displacement.
+// Position of the contact block while no object is present. No finger reaches this position, so the contact
+// block does not change the displacement.
 constexpr double out_of_reach_mm = 1000;
 constexpr double most_stiffening = 1e6;
 
-// Longest step of the model. For each step, a chain approximates the response of a lag to a jump by one
-// parabola. For the model bench_twin, the error is 2e-8 mm with steps of 5 ms, and 0.1 mm with steps of 0.5
-// s.
+// Longest time step of the model. In each time step, a chain approximates the response of a lag to a jump by
+// one parabola. For the model bench_twin, the error is 2e-8 mm with time steps of 5 ms, and 0.1 mm with time
+// steps of 0.5 s.
 constexpr double longest_step_s = 5e-3;
 
 Contact contact_for(const std::optional<PlantObject>& object) {
@@ -33,8 +33,8 @@ std::size_t contact_type() {
   return model::find_block(Contact::info.id).value();
 }
 
-/// Returns the model with one more contact block, which represents the object. It comes after all other
-/// contacts of the load.
+/// Returns the model with an additional contact block that represents the object. The block follows all
+/// contact blocks of the model's load.
 model::Model with_object_place(const model::Model& model) {
   return model::with_block(model, {contact_type(), {out_of_reach_mm, 0.0}});
 }
@@ -77,7 +77,7 @@ struct Plant::Parts {
   LineFault line;
   SensorFault sensor;
   double command_kpa = 0;  ///< output pressure of the board
-  double applied_kpa = 0;  ///< input of the model: the command after the effect of line faults
+  double applied_kpa = 0;  ///< input of the model: the command as the line faults change it
   std::uint64_t samples = 0;
   double reading_mm = 0;
   double pressure_kpa = 0;  ///< pressure that the pressure monitor measures
@@ -114,7 +114,7 @@ void Plant::command(double command_kpa) noexcept {
 void Plant::advance(double duration_s) noexcept {
   Parts& parts = *parts_;
   if (!(duration_s > 0)) return;
-  // The board holds its output. Therefore, the command jumps at the start of the step and then remains
+  // The board holds its output. Therefore, the command jumps at the start of the time step and then remains
   // constant.
   if (parts.chain.command_kpa() != parts.applied_kpa) parts.chain.step(0, parts.applied_kpa, parts.around);
   const long pieces = std::max(1L, std::lround(std::ceil(duration_s / longest_step_s - 1e-6)));

@@ -1,6 +1,6 @@
 #pragma once
 // Simulates one finger: valve, actuator, load and sensor of a model, an object that the finger can touch, and
-// faults. The simulated board and the emulator use the same simulation.
+// faults. Both the simulated board and the emulator use this simulation.
 
 #include <cstdint>
 #include <memory>
@@ -10,11 +10,12 @@
 
 namespace softgrip::simulation {
 
-/// An object between the fingers. After contact at `position_mm`, the further motion of the finger is the
-/// free motion multiplied by `yielding`.
+/// An object between the fingers. After contact at `position_mm`, the finger moves by the motion without an
+/// object, multiplied by `yielding`.
 struct PlantObject {
   double position_mm = 0;
-  double yielding = 0.1;  ///< 0 (rigid) to 1 (the object has no effect)
+  double yielding = 0.1;  ///< ratio of the motion beyond the contact to the motion without an object: 0
+                          ///< (rigid object) to 1 (object without effect)
 
   bool operator==(const PlantObject&) const = default;
 };
@@ -36,7 +37,8 @@ struct SensorFault {
     none,
     stuck,         ///< the sensor repeats its last value
     offset,        ///< value_mm is added to each reading
-    out_of_range,  ///< there is no valid reading; the board shows its error value or an electrical limit
+    out_of_range,  ///< the sensor has no valid reading; the board shows its error value or an electrical
+                   ///< limit
   };
   Kind kind = Kind::none;
   double value_mm = 0;
@@ -44,9 +46,10 @@ struct SensorFault {
 
 struct PlantSettings {
   model::Model model;
-  std::optional<PlantObject> object;  ///< object that is present at the start; empty: there is none
-  double sample_time_s = 0;           ///< usual duration of a call of advance(); 0: the duration is irregular
-  double displacement_noise_mm = 0;   ///< standard deviation of noise that is added to the output of the
+  std::optional<PlantObject> object;  ///< object that is present at the start; empty: no object
+  double sample_time_s = 0;           ///< usual duration of a call of advance() [s]; 0: the durations are
+                                      ///< irregular
+  double displacement_noise_mm = 0;   ///< standard deviation of the noise that is added to the output of the
                                       ///< model's sensor blocks
   double pressure_noise_kpa = 0;      ///< standard deviation of the noise of the measured pressure
   double temperature_c = 20;          ///< ambient temperature of the finger
@@ -54,11 +57,11 @@ struct PlantSettings {
   std::uint64_t seed = 0;
 };
 
-/// Simulates a finger over time. Between two calls of command(), the command is constant, as an output that a
-/// board holds. If sample_time_s is above 0, advance() allocates no memory.
+/// Simulates a finger over time. The command is constant between two calls of command(), because a board
+/// holds its output. If sample_time_s is above 0, advance() allocates no memory.
 class Plant {
  public:
-  /// Creates a finger that is at rest under the command 0 kPa. The model must be valid.
+  /// Creates a finger at rest under the command 0 kPa. The model in `settings` must be valid.
   explicit Plant(const PlantSettings& settings);
   Plant(const Plant&) = delete;
   Plant& operator=(const Plant&) = delete;
@@ -68,11 +71,12 @@ class Plant {
 
   /// Sets the command, which is the output of the board [kPa]. A value that is not finite is ignored.
   void command(double command_kpa) noexcept;
-  /// Advances the simulation by `duration_s` >= 0, in which the command is constant.
+  /// Advances the simulation by `duration_s` >= 0. The command is constant during this time.
   void advance(double duration_s) noexcept;
 
   [[nodiscard]] double held_command_kpa() const noexcept;
-  /// Returns the sensor reading with noise and faults [mm]. It is not valid while sees_nothing() is true.
+  /// Returns the sensor reading with noise and faults [mm]. The reading is not valid while sees_nothing()
+  /// returns true.
   [[nodiscard]] double reading_mm() const noexcept;
   /// Returns the true displacement of the finger, without errors of the sensor [mm].
   [[nodiscard]] double displacement_mm() const noexcept;
@@ -85,8 +89,8 @@ class Plant {
   /// Returns true while the sensor has the fault out_of_range. In this case, reading_mm() is not valid.
   [[nodiscard]] bool sees_nothing() const noexcept;
 
-  /// Places an object. If `object` is empty, removes the object. The effect on the finger begins with the
-  /// next advance().
+  /// Places the object `object`, or removes the present object if `object` is empty. The effect on the finger
+  /// begins with the next advance().
   void set_object(const std::optional<PlantObject>& object) noexcept;
   [[nodiscard]] const std::optional<PlantObject>& object() const noexcept;
   void set_fault(const LineFault& fault) noexcept;

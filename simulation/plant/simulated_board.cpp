@@ -13,7 +13,7 @@ namespace {
 
 using Kind = SimulatedEvent::Kind;
 
-/// Returns `value` as it is represented by a converter with `bits` bits over the range [lower, upper].
+/// Returns the value that a converter with `bits` bits over the range [lower, upper] gives for `value`.
 /// `value` must not be NaN.
 double quantised(double value, double lower, double upper, int bits) noexcept {
   if (bits <= 0 || !(upper > lower)) return value;
@@ -68,8 +68,8 @@ void SimulatedBoard::Parts::move_to(Nanoseconds time) noexcept {
   plants_at = time;
 }
 
-/// Advances the plants to `time`. Events and a trip of the watchdog can lie between two exchanges; they are
-/// applied at their own times.
+/// Advances the plants to `time`. Events and a trip of the watchdog between two exchanges are applied at the
+/// times at which they occur.
 void SimulatedBoard::Parts::act_until(Nanoseconds time) noexcept {
   while (true) {
     constexpr Nanoseconds never = std::numeric_limits<Nanoseconds>::max();
@@ -83,7 +83,7 @@ void SimulatedBoard::Parts::act_until(Nanoseconds time) noexcept {
       move_to(event_at);
       happen(settings.events[next_event++]);
     } else if (trip_at == time) {
-      break;  // an exchange at exactly this time still feeds the watchdog
+      break;  // an exchange at exactly this time prevents the trip of the watchdog
     } else {
       move_to(trip_at);
       tripped = true;
@@ -181,7 +181,8 @@ std::size_t SimulatedBoard::channels() const noexcept {
 
 drivers::BusStatus SimulatedBoard::connect(std::chrono::nanoseconds) noexcept {
   Parts& parts = *parts_;
-  // The plants also move while there is no connection to the board, so they are advanced first.
+  // The plants also move while the connection to the board is interrupted. Therefore, they are advanced
+  // before the connection is checked.
   if (parts.started) parts.act_until(parts.clock.now());
   parts.connected = parts.bus != drivers::BusStatus::disconnected;
   if (!parts.connected) return parts.say(drivers::BusStatus::disconnected, "the simulated bus is down");

@@ -23,13 +23,13 @@ struct SimulatedEvent {
     object,         ///< places `object` so that the finger can touch it; nullopt: removes the object
     line_fault,     ///< sets the line fault of the finger to `line`
     sensor_fault,   ///< sets the sensor fault of the finger to `sensor`
-    bus_lost,       ///< from now on, every exchange returns `status`; if it is `disconnected`, connect()
-                    ///< fails too
-    bus_restored,   ///< exchanges succeed again; if `status` ended the session, connect() must be called
-                    ///< first
-    write_refused,  ///< outputs keep their values; an exchange with a new value reports that the write was
-                    ///< refused
-    write_taken,    ///< the outputs follow the commands again
+    bus_lost,       ///< from this event on, every exchange returns `status`; if `status` is `disconnected`,
+                    ///< connect() fails too
+    bus_restored,   ///< from this event on, exchanges succeed again; if the event bus_lost has ended the
+                    ///< session, connect() must be called first
+    write_refused,  ///< from this event on, outputs keep their values, and an exchange with a new value
+                    ///< reports `write_refused`
+    write_taken,    ///< from this event on, the outputs follow the commands again
   };
   /// Value of `channel` for an event that affects all channels.
   static constexpr std::size_t every_channel = static_cast<std::size_t>(-1);
@@ -49,10 +49,11 @@ struct SimulatedChannel {
   bool measures_pressure = false;
   bool measures_temperature = false;
   double valve_min_kpa = 0;  ///< lowest pressure of the valve; below 0 for vacuum
-  double valve_max_kpa = 0;  ///< highest pressure of the valve; commands outside the valve's range are
-                             ///< limited, and this is reported
+  double valve_max_kpa = 0;  ///< highest pressure of the valve; a command outside the range of the valve is
+                             ///< limited, and the exchange reports this
   double vented_kpa = 0;     ///< output of the valve after the watchdog has tripped
-  double sensor_min_mm = 0;  ///< lower end of the measuring range; readings outside the range are not valid
+  double sensor_min_mm = 0;  ///< lower end of the measuring range; readings outside the measuring range are
+                             ///< not valid
   double sensor_max_mm = 0;
   int output_bits = 0;  ///< resolution over the valve's range; 0: no quantisation
   int input_bits = 0;   ///< resolution over the measuring range and over the pressure range; 0: no
@@ -61,15 +62,15 @@ struct SimulatedChannel {
 
 struct SimulatedBoardSettings {
   std::vector<SimulatedChannel> channels;
-  std::vector<SimulatedEvent> events;  ///< events of the simulation; their order does not matter
+  std::vector<SimulatedEvent> events;  ///< events of the simulation, in any order
   /// Time without an exchange after which the outputs change to `vented_kpa` [s]. The outputs keep this value
   /// until connect() is called. 0: the board has no watchdog.
   double watchdog_timeout_s = 0;
 };
 
-/// A simulated board. An exchange at time t first advances the plants to t with the previous commands. The
-/// new commands have an effect only after t. Therefore, a measured value never depends on the command of the
-/// same exchange.
+/// A simulated board. An exchange at time t first advances the plants to t with the commands of the previous
+/// exchange. The new commands have an effect only after t. Therefore, a reading never depends on the command
+/// of the exchange that returns it.
 class SimulatedBoard final : public drivers::Board {
  public:
   /// `clock` must exist longer than the board.
@@ -87,8 +88,8 @@ class SimulatedBoard final : public drivers::Board {
   [[nodiscard]] bool has_watchdog() const noexcept override;
   [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override;
 
-  /// Returns the simulated finger of a channel, so that tests and scripts can change it. Only the thread that
-  /// calls exchange() may use it.
+  /// Returns the simulated finger of a channel, so that tests and scripts can change the finger. Only the
+  /// thread that calls exchange() may use the finger.
   [[nodiscard]] Plant& plant(std::size_t channel);
   /// Applies an event at the present time.
   void happen(const SimulatedEvent& event) noexcept;

@@ -1,9 +1,9 @@
 #pragma once
-/// @file
-/// The exceptions of the library. The changelog announces every incompatible change.
+/// @file Declares the exceptions of the library. The changelog announces every incompatible change of these
+/// exceptions.
 ///
-/// Functions that are called once (loading, fitting, construction) report errors by these exceptions.
-/// Functions that a control loop calls do not throw. They report errors by their return value.
+/// Functions that load data, fit models or construct objects report errors by these exceptions. Functions
+/// that a control loop calls do not throw exceptions. They report errors by their return value.
 
 #include <stdexcept>
 #include <string>
@@ -13,7 +13,8 @@
 /// Namespace of softgrip: models, control, identification and diagnosis of soft pneumatic fingers.
 namespace softgrip {
 
-/// Base class of all exceptions of the library. what() returns a sentence for the user.
+/// Base class of all exceptions of the library. what() returns a sentence that describes the error to the
+/// user.
 class SOFTGRIP_API Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -21,22 +22,22 @@ class SOFTGRIP_API Error : public std::runtime_error {
 };
 
 /// An argument is invalid: the number of its values is wrong, or a value is not finite or out of range.
-/// what() names the argument, the expected shape or range, and the unit.
+/// what() names the argument, the expected number or range of values, and the unit.
 class SOFTGRIP_API InvalidArgument : public Error {
  public:
-  /// Creates the exception.
+  /// Creates the exception for one argument.
   /// @param argument  name of the argument, as in the declaration of the function
   /// @param problem   description of the error
   InvalidArgument(std::string argument, const std::string& problem);
   ~InvalidArgument() override;
-  /// Returns the name of the argument, as in the declaration of the function.
+  /// Returns the name of the invalid argument, as in the declaration of the function.
   [[nodiscard]] const std::string& argument() const noexcept { return argument_; }
 
  private:
   std::string argument_;
 };
 
-/// A file cannot be read or written, or its content is refused. what() lists each problem with file, line and
+/// A file cannot be read or written, or its content is invalid. what() lists each problem with file, line and
 /// column.
 class SOFTGRIP_API FileError : public Error {
  public:
@@ -44,15 +45,15 @@ class SOFTGRIP_API FileError : public Error {
   ~FileError() override;
 };
 
-/// The arguments are valid, but there is no result. Examples are a model without an inverse, and logs that
-/// cannot be fitted.
+/// The arguments are valid, but the function cannot compute a result. Examples are a model without an
+/// inverse, and logs that cannot be fitted.
 class SOFTGRIP_API Refused : public Error {
  public:
   using Error::Error;
   ~Refused() override;
 };
 
-/// A computation ended early, because its std::stop_token requested this.
+/// A computation ended early, because the caller requested this through a std::stop_token.
 class SOFTGRIP_API Cancelled : public Error {
  public:
   using Error::Error;

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// Changes of fingers in the recordings of ordinary grips. The changelog announces every incompatible change
-/// of the function. Later versions may add members to the results.
+/// Declares the detection of changed fingers from the recordings of ordinary grips. The changelog announces
+/// every incompatible change of the function. New versions may add members to the results.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,47 +15,51 @@
 
 namespace softgrip {
 
-/// The period of a point on a control chart.
+/// The period to which one point of a control chart belongs.
 enum class HealthPoints : std::uint8_t {
-  day,  ///< one point for all recordings of a day (UTC): the median of their indicators
+  day,  ///< one point for all recordings of a day (UTC): the median of the indicators of these recordings
   run,  ///< one point for each recording
 };
 
 /// Settings of health(). They correspond to the options of `softgrip health`.
 struct HealthOptions {
-  HealthPoints points = HealthPoints::day;  ///< period of a point on a control chart
+  HealthPoints points = HealthPoints::day;  ///< period to which one point of a control chart belongs
   /// Mean number of points between two false alarms of a healthy finger, 20 to 1e9.
   double false_alarm_points = 3650;
-  std::string notes = {};  ///< path of the file of maintenance records (notes.yaml); empty: there is no such
-                           ///< file
-  /// Path of the file with the indicators of all recordings that were read so far (health-scores.jsonl). If
-  /// the file exists, it is read, and the recordings in it are not read again. The call then replaces the
-  /// file. Empty: no file is used.
+  std::string notes = {};  ///< path of the file with maintenance records (notes.yaml); empty: no such file is
+                           ///< used
+  /// Path of the file that stores the indicators of all recordings that were read so far
+  /// (health-scores.jsonl). Recordings whose indicators are in this file are not read again. health()
+  /// replaces the file at the end. Empty: no file is used.
   std::string scores = {};
-  Progress progress = {};     ///< function that is called with a text about the present stage; may be empty
-  std::stop_token stop = {};  ///< a request of its stop source ends the computation early
+  Progress progress = {};     ///< function that is called with a text about the present stage of the
+                              ///< computation; may be empty
+  std::stop_token stop = {};  ///< token through which the caller can end the computation early
 };
 
 /// An indicator of a finger, such as the displacement at full pressure.
 struct HealthIndicator {
   std::string id;                   ///< id, such as "gain_mm"; docs/how-to/watch-a-finger.md lists all ids
   std::string title;                ///< name of the indicator in words
-  std::string unit;                 ///< unit of value, reference, spread and values
-  std::optional<double> value;      ///< value at the last point that has one; empty if no point has one
+  std::string unit;                 ///< unit of the members value, reference, spread and values
+  std::optional<double> value;      ///< value of the indicator at the last point that has a value; empty if
+                                    ///< no point has a value
   std::optional<double> reference;  ///< mean of the indicator since the last maintenance record
   std::optional<double> spread;     ///< standard deviation of the indicator since the last maintenance record
-  std::vector<double> values;       ///< one value per point, for points with the recipe of the reference;
-                                    ///< NaN: the point has no value
+  std::vector<double> values;       ///< values of the indicator at the points whose recipe is that of the
+                                    ///< reference; NaN: the point has no value
 };
 
 /// A significant change of an indicator.
 struct HealthAlarm {
   std::string indicator;                ///< id of the indicator that changed
-  double change = 0;                    ///< change relative to the reference, in the unit of the indicator
+  double change = 0;                    ///< difference between the indicator and its reference, in the unit
+                                        ///< of the indicator
   std::string since;                    ///< label of the point at which the change began
   std::string noticed;                  ///< label of the point at which the change was detected
   std::size_t grips_until_noticed = 0;  ///< number of recordings between the points `since` and `noticed`
-  bool active = false;                  ///< true: active; false: a maintenance record ended the alarm
+  bool active = false;                  ///< true: the alarm is active; false: a maintenance record has ended
+                                        ///< the alarm
 };
 
 /// A possible cause of the active alarms.
@@ -72,13 +76,14 @@ struct FingerHealth {
   std::string sentence;             ///< the state of the finger in one sentence
   Unit unit = Unit::mm;             ///< unit of all displacements of the finger
   std::size_t grips = 0;            ///< number of recordings of the finger
-  std::vector<std::string> points;  ///< labels of the points in the order of time: a day, or the name of a
-                                    ///< recording
+  std::vector<std::string> points;  ///< labels of the points in the order of time; a label is a day or the
+                                    ///< name of a recording
   std::vector<HealthIndicator> indicators;  ///< all indicators of the finger
   std::vector<HealthAlarm> alarms;          ///< alarms in the order in which they were detected
-  std::vector<Suspect> suspects;            ///< possible causes of the active alarms; the first one explains
-                                            ///< the most alarms
-  std::vector<std::string> advice;          ///< measures that distinguish the possible causes
+  std::vector<Suspect> suspects;            ///< possible causes of the active alarms; the first cause
+                                            ///< explains the most alarms
+  std::vector<std::string> advice;          ///< measures with which the user can distinguish the possible
+                                            ///< causes
   std::string html;                         ///< report page of the finger
 };
 
@@ -90,16 +95,17 @@ struct SkippedRecording {
 
 /// Result of health().
 struct Health {
-  bool alarm = false;                     ///< true: an alarm of a finger is active
-  std::vector<FingerHealth> fingers;      ///< fingers in the order of their names
-  std::vector<std::string> warnings;      ///< changes that are not attributed to a finger
+  bool alarm = false;                     ///< true: at least one finger has an active alarm
+  std::vector<FingerHealth> fingers;      ///< health of each finger, in the order of the fingers' names
+  std::vector<std::string> warnings;      ///< warnings about changes that are not attributed to a finger
   std::vector<SkippedRecording> skipped;  ///< recordings that were not used
   std::string json;                       ///< content of health.json that `softgrip health` writes
 };
 
-/// Reports which fingers have changed, since when, and the possible causes. `softgrip health` uses the same
-/// functions. Throws InvalidArgument. Throws FileError if the baseline, the notes or the scores are refused.
-/// Throws Refused if no recording can be compared with the baseline. Throws Cancelled.
+/// Reports which fingers have changed, when each change began, and the possible causes of each change.
+/// `softgrip health` uses the same functions. Throws InvalidArgument if an argument is invalid. Throws
+/// FileError if the content of the baseline, the notes or the scores is invalid. Throws Refused if no
+/// recording can be compared with the baseline. Throws Cancelled after a request through `options.stop`.
 /// @param recordings  folders of recordings, or folders that contain such folders
 /// @param baseline    folder of `softgrip baseline`. If it contains a folder with the name of a finger, the
 ///                    baseline in that folder applies to this finger

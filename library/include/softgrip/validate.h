@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// Prediction of logs to which a model was not fitted. The changelog announces every incompatible change.
-/// Later versions may add members to the result.
+/// Declares the prediction of logs to which a model was not fitted. The changelog announces every
+/// incompatible change of this interface. New versions may add members to the result.
 
 #include <string>
 #include <vector>
@@ -22,7 +22,7 @@ struct Validation {
   std::string html;                     ///< content of report.html that `softgrip validate` writes
 };
 
-/// Predicts logs with a model, as `softgrip validate` does. Throws InvalidArgument.
+/// Predicts logs with a model, as `softgrip validate` does. Throws InvalidArgument if an argument is invalid.
 /// @param model  the model
 /// @param logs   at least one log, in the unit of the model
 /// @param use    how the logs are used: input, initial state, hold of the command

@@ -1,6 +1,6 @@
 #pragma once
 /// @file
-/// The version of the library. The changelog announces every incompatible change.
+/// Declares the version of the library. The changelog announces every incompatible change of this interface.
 
 #include <string>
 
