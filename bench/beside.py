@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Repeats the identification of the demo in Octave and in Python with SciPy, and compares it with softgrip on one page.
+"""Repeats the identification of the demo in Octave and in Python with SciPy, and compares the results with softgrip's
+on one page.
 
     bench/beside.py [--build build/release] [--page docs/results/beside-octave-and-scipy.md] [--runs 3]
 
-Needs Debian's octave, octave-optim, octave-dev, python3-scipy and python3-pandas (scripts/packages.sh tests readers benchmarks).
-The programs for Octave and SciPy are in bench/beside. Both use the same simulator, which is compiled C code. Every number of
-the page is measured by this run. Exit codes: 0: the page is written; 1: a program failed, or a program read other values than
-the exported ones.
+Needs Debian's octave, octave-optim, octave-dev, python3-scipy and python3-pandas (scripts/packages.sh tests readers
+benchmarks). The programs for Octave and SciPy are in bench/beside. Both programs use one simulator, which is compiled C
+code. This script measures every number of the page. Exit codes: 0: the page was written; 1: a program failed, or a
+program read values that differ from the exported values.
 """
 import argparse
 import csv
@@ -31,8 +32,8 @@ SIMULATOR, MEX = ROOT / "bench/sysid_peer_simulator.c", ROOT / "bench/sysid_peer
 
 
 def said(words, folder):
-    """Runs a program. Returns its standard output and the processor time that it used on all cores. The elapsed time is not
-    used, because other programs on the machine lengthen it."""
+    """Runs a program. Returns the standard output of the program and the processor time that it used on all cores. The
+    elapsed time is not used, because other programs on the machine increase it."""
     began = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run([str(word) for word in words], cwd=folder, capture_output=True, text=True)
     if done.returncode != 0:
@@ -48,7 +49,7 @@ def repeated(runs, words, folder):
 
 
 def lines_of(*files):
-    """Returns the number of lines that contain code. Empty lines and comments are not counted."""
+    """Returns the number of lines of a file that contain code. Empty lines and comments are not counted."""
     comment = ("#", "%", "/*", "*", "//", '"""')
     return sum(bool(line.strip()) and not line.strip().startswith(comment)
                for file in files for line in file.read_text().splitlines())
@@ -100,8 +101,8 @@ class Study:
         self.extended = json.loads((self.folder / "extended/validate.json").read_text())["rmse_mm"]
 
     def exports(self):
-        """Computes, for each program that reads the exported file, the largest difference between the values that it read
-        and the exported values [mm]."""
+        """Returns, for each program that reads the exported file, the largest difference between the values that the
+        program read and the exported values [mm]."""
         import pandas
         import scipy.io
         said([self.softgrip, "export", "tp1.csv", "--out", "out.mat"], self.folder)
@@ -148,11 +149,11 @@ class Study:
         return [
             ("uncertainty of beta (95 %)",
              f"± {self.scipy['beta_ci95']:.2g} mm/kPa from the Jacobian, as if every sample were independent",
-             f"± {half:.2g} mm/kPa: the residuals resemble each other (lag-1 correlation "
-             f"{residuals['lag1_correlation']:.2f}), equivalent to {residuals['effective_samples']:.0f} independent samples"),
+             f"± {half:.2g} mm/kPa: the residuals are correlated (lag-1 correlation "
+             f"{residuals['lag1_correlation']:.2f}), so they contain as much information as {residuals['effective_samples']:.0f} independent samples"),
             ("the model has no inverse", f"not reported: beta {self.scipy['beta']:.3f}, alpha {self.scipy['alpha']:.3f} mm/kPa "
              "are printed side by side", next((w for w in self.identified["warnings"] if "inverse response" in w), "-")),
-            ("cause of this", "not reported, because the error is small", f"{self.diagnosis['verdict']}: {causes or '-'}"),
+            ("cause of the missing inverse", "not reported, because the error is small", f"{self.diagnosis['verdict']}: {causes or '-'}"),
             ("improvement by the named causes", "-", f"held out, steps {mm(self.identified['validation']['rmse_mm']['steps'])} → "
              f"{mm(self.extended['steps'])} mm, sp2 {mm(self.identified['validation']['rmse_mm']['sp2'])} → "
              f"{mm(self.extended['sp2'])} mm"),
@@ -165,13 +166,12 @@ class Study:
         return "\n".join([
             *results_page.head(
                 "Compared with Octave and SciPy",
-                f"Octave, SciPy and `softgrip identify` fit the demo's log with {mm(self.octave_result['rmse_mm'])}, "
+                f"Octave, SciPy and `softgrip identify` fit the demo's log with RMS errors of {mm(self.octave_result['rmse_mm'])}, "
                 f"{mm(self.scipy['rmse_mm'])} and {mm(self.identified['rmse_mm']['tp1'])} mm. For Octave and SciPy, the user must write a script; for softgrip, no script is needed.",
                 self.version, f"bench/beside.py --runs {self.runs}",
                 f"simulated logs; {results_page.here()}"),
             "The identification of the demo is repeated with three programs: in Octave with `lsqcurvefit` (the paper used `lsqcurvefit` of MATLAB), in Python with SciPy,",
-            "and with `softgrip`. Each program fits the log `tp1` from 20 start points and predicts the logs `steps` and `sp2`. `bench/beside.py`",
-            "writes this page with all its numbers; it needs `scripts/packages.sh tests readers benchmarks`.",
+            "and with `softgrip`. Each program fits the log `tp1` from 20 start points and predicts the logs `steps` and `sp2`. `bench/beside.py` writes this page with all its numbers; the script needs the packages of `scripts/packages.sh tests readers benchmarks`.",
             "",
             "## Steps",
             "",
@@ -184,7 +184,7 @@ class Study:
                  "logarithms and bounds by hand, 20 starts in a loop", "`--starts 20`"),
                 ("fit", "`lsqcurvefit`", "`least_squares`", "`softgrip identify`"),
                 ("intervals", "from the Jacobian by hand", "from the Jacobian by hand", "in the report"),
-                ("predict the other logs", "by hand", "by hand", "`--validate`"),
+                ("predict the logs that were not fitted", "by hand", "by hand", "`--validate`"),
                 ("figures, series, report", "by hand", "by hand", "`report.html`, `series.csv`")]),
             "## Lines, time, errors",
             "",
@@ -199,7 +199,7 @@ class Study:
             *table(["", "Octave and SciPy", "softgrip"], self.unsaid_rows()),
             "## Other programs can read the exported files",
             "",
-            "`softgrip export tp1.csv` as .mat and as wide CSV, read by these programs:",
+            "`softgrip export` writes `tp1.csv` as .mat and as wide CSV. These programs read the two files:",
             "",
             *table(["reader", "values", "largest difference [mm]"],
                    [(reader, count, f"{difference:g}") for reader, count, difference in self.readers])])

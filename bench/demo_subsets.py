@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Diagnoses all seven subsets of the three logs that scripts/demo.sh makes, and writes the results as a page.
+"""Diagnoses all seven subsets of the three logs that scripts/demo.sh creates, and writes the results as a page.
 
     bench/demo_subsets.py --build BUILD [--page FILE] [--check] [SUBSET ...]
 
-SUBSET: names of logs joined by +, such as tp1+sp2; default: all seven. --check fails in three cases. An interval does not
-cover the true value of the simulated finger. A wrong cause is named. A cause that is named with some logs is not named when
-further logs are added.
+SUBSET: names of logs joined by +, such as tp1+sp2; default: all seven. --check fails in three cases: an interval does
+not cover the true value of the simulated finger; a wrong cause is named; a cause that is named with some logs is no
+longer named when logs are added.
 """
 import argparse
 import itertools
@@ -44,8 +44,8 @@ def diagnose(softgrip, logs, out):
 
 
 def found(diagnosis):
-    """Returns (value, low, high, inclusion) for each named cause, or None in place of the tuple if NUMBER_OF does not
-    contain the cause."""
+    """Returns a tuple (value, low, high, inclusion) for each named cause, or None in place of the tuple for a cause
+    that is not in NUMBER_OF."""
     rows = {}
     for cause in diagnosis["causes"]:
         number = cause["parameters"].get(NUMBER_OF.get(cause["id"]))
@@ -85,7 +85,7 @@ def page(results, verdicts, real, options, version):
                  "names the delay and the lag without an alternative.", version, "bench/demo_subsets.py --build build/release --page docs/results/demo-subsets.md",
                  f"simulated logs, `softgrip simulate` with `{' '.join(options)}`, `softgrip diagnose --model "
                  "config/models/zhang2025.yaml`"),
-             f"The demo's finger has a transport delay of {real['transport_delay']} s and a valve lag of {real['valve_lag']} s. The model that is given to `softgrip diagnose` has neither a delay nor a lag. If the logs do not show that there is a lag, the confidence interval of the delay includes the delays estimated with and without a lag.", "",
+             f"The demo's finger has a transport delay of {real['transport_delay']} s and a valve lag of {real['valve_lag']} s. The model that `softgrip diagnose` receives has neither a delay nor a lag. If the logs do not show that there is a lag, the confidence interval of the delay includes the delays estimated with and without a lag.", "",
              "| logs | verdict | transport delay | valve lag |", "|---|---|---|---|"]
     for subset, rows in results.items():
         lines.append(f"| {' + '.join(subset)} | {verdicts[subset]} | {cell(rows.get('transport_delay'))} | "

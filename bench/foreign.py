@@ -1,16 +1,16 @@
 #!/usr/bin/python3
-"""Tests softgrip with data of other laboratories.
+"""Tests softgrip with data that other laboratories have published.
 
     bench/foreign.py --out DIR [--data DIR ...] [--only JUDGE ...] [--cases PATTERN ...] [--softgrip PROGRAM]
                      [--threads 1] [--at-most-s 3600] [--reference FILE] [--page [PAGE]]
 
-A judge evaluates one kind of case: repeats (runs between which nothing changed), changes (changes that the laboratory
-labelled), stiction (control loops with labelled valves), identification (comparison with a linear output-error model and with
-a Bouc-Wen fit by SciPy). Each folder below --data is a data set. bench/foreign/sets/FOLDER.yaml, or foreign.yaml in the
-folder, describes it (docs/how-to/measure.md).
-The cases and their summary are written to DIR/results.json. The results of all calls are stored in DIR, so that a repeated
-run makes only the calls whose inputs have changed. If a case fails, the others are still judged. Exit codes: 0: all cases
-were judged; 1: some failed; 2: usage; 4: no such data or program.
+A judge is a test for one kind of case: repeats (runs between which nothing changed), changes (changes that the
+laboratory labelled), stiction (control loops with labelled valves), identification (comparison with a linear
+output-error model and with a Bouc-Wen fit by SciPy). Each folder below --data is a data set. The file
+bench/foreign/sets/FOLDER.yaml, or foreign.yaml in the folder, describes the data set (docs/how-to/measure.md). The
+cases and their summary are written to DIR/results.json. The results of all calls of softgrip are stored in DIR. A
+repeated run makes only the calls whose inputs have changed. If a case fails, all other cases are judged nevertheless.
+Exit codes: 0: all cases were judged; 1: some failed; 2: usage; 4: no such data or program.
 """
 import argparse
 import fnmatch
@@ -37,8 +37,8 @@ PAGE, REFERENCE = ROOT / "docs/results/foreign-data.md", HERE / "reference.json"
 
 
 class Judge:
-    """The four functions of a judge. They return the cases of a data set, the result of one case, its text for the screen,
-    and the summary of all cases."""
+    """The four functions of a judge. The functions return the cases of a data set, the result of one case, the text of
+    this result for the screen, and the summary of all cases."""
 
     def __init__(self, cases, judge, said, summary):
         self.cases, self.judge, self.said, self.summary = cases, judge, said, summary
@@ -125,7 +125,7 @@ class Results:
 
 
 def refused(options):
-    """Returns (exit code, sentence) if a data folder or the program does not exist, otherwise None."""
+    """Returns a tuple (exit code, error message) if a data folder or the program does not exist, otherwise None."""
     for folder in options.data:
         if not folder.is_dir():
             return 4, f"there is no folder {folder}"

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""Compares the Python functions with the C++ library and with SciPy, on one page.
+"""Compares the computing times of the Python package with those of the C++ library and of SciPy, on one page.
 
     bench/python_library.py [--build build/release] [--page docs/results/python-library.md] [--runs 5]
 
 Measures the import, one simulation of 10,000 samples from Python and from C++, and the identification of the demo with
 `softgrip.identify()` and with `scipy.optimize.least_squares` on a compiled simulator. Needs Debian's python3-scipy
-(scripts/packages.sh tests readers). Exit codes: 0 the page is written, 1 a program failed or a requirement is not met.
+(scripts/packages.sh tests readers). Exit codes: 0: the page was written; 1: a program failed or a requirement is not
+met.
 """
 import argparse
 import json
@@ -57,7 +58,7 @@ class Study:
         self.environment = {**os.environ, "PYTHONPATH": str(build / "python"), "LD_LIBRARY_PATH": str(build / "library")}
 
     def said(self, *words):
-        """Runs a program. Returns its standard output and its processor time on all cores [s]."""
+        """Runs a program. Returns the standard output of the program and its processor time on all cores [s]."""
         began = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = subprocess.run([str(word) for word in words], cwd=self.folder, env=self.environment, capture_output=True, text=True)
         if done.returncode != 0:
@@ -71,10 +72,10 @@ class Study:
         return [statistics.median(float(one[column]) for one in times) for column in (0, 1)]
 
     def simulations(self):
-        """Returns the time of the fastest call from C++ and from Python [µs]. Processes of the two languages alternate. The
-        fastest call is used, because other programs can make a call only slower. In both languages, malloc keeps freed
-        memory. By default, the small C++ program would return the memory after each call, and the next call would be
-        slower."""
+        """Returns the time of the fastest call from C++ and from Python [µs]. Processes of the two languages alternate.
+        The fastest call is used, because other programs on the machine can only increase the time of a call. In both
+        languages, malloc is set to keep freed memory. By default, the small C++ program would return the memory to the
+        system after each call, which would make the next call slower."""
         self.environment |= {"MALLOC_TRIM_THRESHOLD_": str(2**28), "MALLOC_MMAP_THRESHOLD_": str(2**25)}
         self.said("c++", "-std=c++20", "-O2", "-I", ROOT / "library/include", ROOT / "bench/library_simulate.cpp", "-o",
                   "library_simulate", self.build / "library/libsoftgrip.so")
@@ -135,7 +136,7 @@ def main():
         *("| " + " | ".join(row) + " |" for row in fits), "",
         f"SciPy and softgrip start at the published parameters and at {STARTS - 1} other parameter sets. SciPy's `least_squares` calls a simulator in C",
         f"(`bench/sysid_peer_simulator.c`) through ctypes. The processor time is that of the complete program on all cores, as the median of {args.runs}",
-        "runs. In this time, `softgrip.identify()` also computes intervals, warnings and the report.", ""])
+        "runs. In the same time, `softgrip.identify()` also computes confidence intervals, warnings and the report.", ""])
     args.page.write_text(text)
     print(text)
     met = max(with_numpy[1], without_numpy[1]) < MOST_IMPORT_S and overhead <= MOST_OVERHEAD_PERCENT

@@ -1,4 +1,5 @@
-"""Fits the logs of sysid_starts from its start points with SciPy's least_squares and a compiled simulator."""
+"""Fits the logs of bench/sysid_starts.cpp with SciPy's least_squares and a compiled simulator, from the start points of
+sysid_starts."""
 import ctypes
 import sys
 import time
@@ -29,8 +30,8 @@ def simulate(x, t, p):
 
 
 def natural(z):
-    """Converts the fitted numbers to the parameters of the model. As in softgrip, the logarithms of stiffnesses and dampings
-    are fitted; the other parameters are unchanged."""
+    """Converts the fitted numbers to the parameters of the model. As in softgrip, the fitted numbers are the logarithms
+    of stiffnesses and dampings; all other parameters are fitted directly."""
     return np.concatenate([z[:4], np.exp(z[4:])])
 
 

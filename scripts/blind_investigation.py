@@ -5,10 +5,10 @@
                                    [--causes ID ...] [--first-seed 3000] [--page docs/results/blind-investigation.md]
 
 The script uses the ambiguous worlds of a campaign (scripts/blind_campaign.py --work DIR) and new worlds. A new world
-first writes only one log of triangles, because many diagnoses of such a log are ambiguous. If the diagnosis lists the
+first writes a single log of triangles, because many diagnoses of such a log are ambiguous. If the diagnosis lists the
 true cause among its alternatives, the investigation plays the proposed experiments on the same world. If no waveform
-separates the causes, the investigation checks the sensor of the world against a gauge. The script can be resumed like
-the campaign.
+separates the causes, the investigation checks the sensor of the world against a gauge. The script can be resumed, like
+scripts/blind_campaign.py.
 """
 import argparse
 import collections
@@ -52,7 +52,7 @@ def page(results, command, version):
     twins = [r for r in open_still if is_indistinguishable(r)]
     others = [r for r in asked if r not in resolved and r not in wrong and r not in open_still]
     meaning = (f"Further experiments and a gauge check resolve {len(resolved)} of {len(asked)} ambiguous diagnoses of simulated "
-               f"fingers to the true cause, and {len(wrong)} to a wrong one.")
+               f"fingers to the true cause, and {len(wrong)} to a wrong cause.")
     lines = [*results_page.head("Blind investigations", meaning, version, command,
                                 f"{sum(not r['poor'] for r in results)} ambiguous cases of the campaign and "
                                 f"{sum(r['poor'] for r in results)} cases with a single log of triangles"),
@@ -81,7 +81,7 @@ def page(results, command, version):
                      f"{'triangles' if r['poor'] else 'three'} | {before} | {after} | "
                      f"{', '.join(r.get('played', [])) or '-'} | {r.get('minutes', 0):.1f} | {r['outcome']} |")
     counts = collections.Counter(r["before"] for r in results if "before" in r)
-    lines += ["", "First diagnoses: " + ", ".join(f"{k} {v}" for k, v in counts.most_common()) + "."]
+    lines += ["", "Outcomes of the first diagnoses: " + ", ".join(f"{k} {v}" for k, v in counts.most_common()) + "."]
     return "\n".join(lines) + "\n"
 
 

@@ -1,4 +1,4 @@
-"""Writes the page of the blind campaign. Tables and two pictures (SVG) show which causes were found at which
+"""Writes the page of the blind campaign. Tables and two pictures (SVG) show which causes were found at each
 strength."""
 import collections
 import fractions
@@ -121,8 +121,8 @@ def bars(results):
 
 
 def confusion(results):
-    """Draws a matrix of the hidden causes and the causes that were named first, over all strengths. If a cause has
-    alternatives, each counts with its share."""
+    """Draws a matrix of the hidden causes and the named causes, over all strengths. If a world has several named
+    causes or alternatives, it counts for each of them with a fraction."""
     singles = [r for r in results if len(r["causes"]) == 1]
     hidden = sorted({r["causes"][0] for r in singles}, key=lambda c: (is_outside(c), c)) + ["nothing"]
     named = [c for c in hidden if c != "nothing" and not is_outside(c)] + ["nothing", "unexplained"]
@@ -134,7 +134,7 @@ def confusion(results):
             continue
         for cause, rivals in zip(r["named"], r["rivals"]):
             for one in [cause, *rivals]:
-                # Fractions make the sum independent of the order of the rows.
+                # Use fractions, so that the sum does not depend on the order of the rows.
                 row[one] += fractions.Fraction(1, len(r["named"]) * (1 + len(rivals)))
     size, left, top = 21, 190, 175
     svg = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {left + size * len(named) + 45} '
@@ -163,8 +163,8 @@ def confusion(results):
 
 
 def detection_limits(results):
-    """Returns two values for each cause: the share that was found at each strength, and the smallest strength at
-    which 90 % were found."""
+    """Returns two results for each cause: the fraction of worlds in which it was found at each strength, and the
+    smallest strength at which it was found in 90 % of the worlds."""
     singles = [r for r in results if len(r["causes"]) == 1 and not is_outside(r["causes"][0])]
     strengths = sorted({r["strength"] for r in singles}, reverse=True)
     lines = ["| cause | " + " | ".join(f"found at strength {s:g}" for s in strengths) + " | smallest strength at which the cause is found in at least 90 % of the cases |",
@@ -214,7 +214,7 @@ def write(path, results, planned, command, variation, version):
     unreachable = sum(not r.get("reachable", True) for r in results)
     lines = [*results_page.head("Blind campaign", meaning(summary(results)), version, command,
                                 f"{len(results)} simulated cases{of_planned}"),
-             "In each case, a separate program simulates a finger with a hidden effect and writes logs. `softgrip diagnose` reads these logs and a model of the finger without the effect. The parameters of this model have errors of a few per cent. The strength of an effect is the RMS of the displacement change that a refit of the model cannot absorb, divided by the sensor noise (0.04 mm).",
+             "In each case, a separate program simulates a finger with a hidden effect and writes logs. `softgrip diagnose` reads these logs and a model of the finger without the effect. The parameters of the model without the effect have errors of a few per cent. The strength of an effect is the RMS of the displacement change that a refit of the model cannot absorb, divided by the sensor noise (0.04 mm).",
              "", variation, "", "| measure | target | measured (95 % interval) | cases |", "|---|---|---|---|"]
     lines += [f"| {what} | {target} | {measured} | {count} |" for what, target, measured, count in summary(results)]
     walls = [r["wall_s"] for r in results if "wall_s" in r]

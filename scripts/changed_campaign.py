@@ -7,12 +7,12 @@
                                 [--page docs/results/changed-campaign.md]
 
 --seeds counts per family, cause, strength and kind of columns. The worlds are from both families (tests/blind,
-tests/blind/textbook), with and without measured pressure. On the day of the later logs, the input, the zero (by up to
-0.5 mm) and the temperature (by up to 4 degrees) differ from those of the healthy logs. If the hidden cause is the
-temperature, the temperature is the same. The script can be stopped and continued. The outcome of every world is one
-line of DIR/changed.jsonl, and the finished worlds are always a fair sample. --variation X lets the runs vary
-(tests/blind/variation.h). --closed-loop records the later logs in closed loop. --baseline-runs 1 3 6 gives the same
-fingers these numbers of healthy logs. The page states these options.
+tests/blind/textbook), with and without measured pressure. The later logs differ from the healthy logs in the input
+signal, in the zero offset (by up to 0.5 mm) and in the temperature (by up to 4 degrees). If the hidden cause is the
+temperature, the temperatures do not differ. The script can be stopped and continued. The outcome of every world is one
+line of DIR/changed.jsonl, and the finished worlds are always a fair sample. --variation X sets the strength of the
+run-to-run variation (tests/blind/variation.h). --closed-loop records the later logs in closed loop. --baseline-runs 1
+3 6 gives the same fingers these numbers of healthy logs. The page states these options.
 """
 import argparse
 import collections
@@ -79,8 +79,8 @@ def with_runs(rows):
 
 
 def smallest_found(changed):
-    """Returns, for each number of baseline runs, the smallest strength at which 90 % of the causes are named or
-    listed."""
+    """Returns the smallest strength at which 90 % of the causes are named or listed, for each number of baseline
+    runs."""
     lines = ["| baseline runs | smallest strength found in 90 % of the worlds |", "|---|---|"]
     for runs in sorted({row["baseline runs"] for row in changed}):
         smallest = "-"
@@ -99,7 +99,7 @@ def meaning(changed, still):
 
     first = [share([r for r in changed if r["strength"] == strength], ("first",)) for strength in (1, 0.15)]
     return (f"If a simulated finger has changed since its healthy logs, the diagnosis names the true cause first in {first[0]} of the "
-            f"cases at strength 1, and in {first[1]} at strength 0.15. It reports {share(still, ('unchanged',))} of the unchanged fingers "
+            f"cases at strength 1, and in {first[1]} at strength 0.15. The diagnosis reports {share(still, ('unchanged',))} of the unchanged fingers "
             "as unchanged.")
 
 
@@ -109,8 +109,7 @@ def page(rows, command, planned, variation, version):
     still = [r for r in rows if r["cause"] == "none" and r["outcome"] != "failed"]
     failed = sum(r["outcome"] == "failed" for r in rows)
     lines = [*results_page.head("Campaign of changed fingers", meaning(changed, still), version, command,
-                                f"{len(rows)} simulated cases of {planned} planned, {failed} of them failed. Stopped before its "
-                                "end, it is a sample of the plan in random order."),
+                                f"{len(rows)} simulated cases of {planned} planned, {failed} of them failed. The campaign was stopped before its end, so these cases are a random sample of the plan."),
              *changing_text(), "", variation, "", "| measure | wanted | measured (95 % interval) | cases |", "|---|---|---|---|"]
     for strength, wanted in ((0.15, 90), (1, 97)):
         own = [r for r in changed if r["strength"] == strength]
@@ -140,7 +139,7 @@ def page(rows, command, planned, variation, version):
 def changing_text():
     return [
         "In each case, the healthy logs of a finger (campaign 0 of its seed; 3 logs unless stated) are simulated without a hidden cause. The later logs (campaign 1) have different",
-        "waveforms and different noise, and contain one hidden cause or no cause. The excess error of a change is the RMS of the displacement change that a refit of the model cannot absorb. At strength 1, the excess error is 8 times the sensor noise of 0.04 mm. The other campaigns call this strength 8. At strength 0.15, the excess error is 0.048 mm.",
+        "waveforms and different noise, and contain one hidden cause or no cause. The excess error of a change is the RMS of the displacement change that a refit of the model cannot absorb. At strength 1, the excess error is 8 times the sensor noise of 0.04 mm. The pages of the other campaigns call this excess error strength 8. At strength 0.15, the excess error is 0.048 mm.",
         "The zero offset of the sensor and the temperature differ between the healthy and the later logs. The outcomes are: `first`: the true cause is named first.",
         "`twin`: stiffening is named although the sensor scale is nonlinear, or a nonlinear sensor scale is named although the finger stiffens. `listed`: the true cause is named after a wrong cause,",
         "or is listed as an alternative. `unnamed`: a change is reported, but no cause is named. `missed`: the finger is reported as unchanged. `wrong`: only a wrong cause is named. The coverage of the intervals is computed for changes whose true cause",

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Measures the gripping pressure of the shipped recipe with seeded grips on simulated parts, in virtual and in real time.
+"""Measures the gripping pressure of the shipped recipe with seeded grips on simulated parts, in virtual and in real
+time.
 
     scripts/gentle_grips.py [--build build/release] [--seeds 240] [--wire 0] [--side-by-side 8] [--first-seed 1] [--page PAGE.md]
 
@@ -82,7 +83,7 @@ def page(groups, problems, off, wire, version):
     over_the_wire = "" if wire is None else f"""
 ## Over the network
 
-The first {args.wire} of these grips are repeated in real time. `softgripd` runs at 100 Hz and drives `softgrip-rig` over Modbus TCP,
+The first {args.wire} of the grips in virtual time are repeated in real time. `softgripd` runs at 100 Hz and drives `softgrip-rig` over Modbus TCP,
 {args.side_by_side} rigs in parallel. Both fingers touch the part at the same place. Every fifth part is removed 1 s after HOLDING is reported. The result must then be PART LOST. {summary(wire[0])}, {len(wire[1])}
 requirements violated.
 
@@ -93,14 +94,13 @@ requirements violated.
     head = results_page.head(
         "Gripping pressure of the shipped sequence",
         f"In {len(judged)} simulated grips, the gripping pressure was at most {max(one.peak_kpa for one in judged):.1f} kPa; "
-        f"{ALLOWED_KPA:g} kPa are allowed. When the fingers moved 2 % more or less than the model of the controller predicts, it was at most {off_model:.1f} kPa.", version, f"scripts/gentle_grips.py {wanted} --page docs/results/gentle-grips.md",
+        f"{ALLOWED_KPA:g} kPa are allowed. When the fingers moved 2 % more or less than the model of the controller predicts, the gripping pressure was at most {off_model:.1f} kPa.", version, f"scripts/gentle_grips.py {wanted} --page docs/results/gentle-grips.md",
         "simulated rig; virtual time, and real time over Modbus TCP" if wire else "simulated rig, virtual time")
     return "\n".join(head) + f"""
-The sequence `config/sequences/pick_stone.yaml` runs on the simulated rig of `config/rig.yaml` in virtual time. Two positions of the sequence depend on the expected position of the part: the approach ends {gripping.APPROACH_MM} mm before it, and the grip searches up to {gripping.REACH_MM} mm beyond it. Each seed determines the part, the number of fingers (one or two), and the distance of the part from its expected position. The gripping pressure is the true pressure at the finger minus the pressure that a finger without contact would need to rest at the same position. The table contains its largest value after the first contact
-([gripping pressure](../reference/sequence-file.md#contact-and-gripping-pressure)). The sequence allows
+The sequence `config/sequences/pick_stone.yaml` runs on the simulated rig of `config/rig.yaml` in virtual time. Two positions of the sequence depend on the expected position of the part: the approach ends {gripping.APPROACH_MM} mm before the expected position, and the grip searches up to {gripping.REACH_MM} mm beyond it. Each seed determines the part, the number of fingers (one or two), and the distance of the part from its expected position. The gripping pressure is the true pressure at the finger minus the pressure that a finger without contact would need to rest at the same position. The table contains the largest gripping pressure after the first contact ([definition](../reference/sequence-file.md#contact-and-gripping-pressure)). The sequence allows
 {ALLOWED_KPA:g} kPa; noise and the board's last bit may add {gripping.TOLERANCE_KPA:g} kPa.
 
-{summary(groups)}, {len(problems)} requirements violated. A grip violates a requirement if the gripping pressure exceeds the limit of the sequence, if HOLDING is reported without a part, or if NO PART is reported with a part.
+{summary(groups)}, {len(problems)} requirements violated. A grip violates a requirement if the gripping pressure exceeds the limit of the sequence, if HOLDING is reported without a part, or if NO PART is reported although a part is present.
 
 {table(groups)}
 Every third seed is repeated with fingers that move 2 % more or less than the model of the controller predicts:
@@ -109,7 +109,7 @@ Every third seed is repeated with fingers that move 2 % more or less than the mo
 
 
 def grips(finger, seeds, folder, play=gripping.play, side_by_side=1):
-    """Plays the trials of the seeds. Returns the judged trials by group, and the list of violated guarantees."""
+    """Plays the trials of the seeds. Returns the judged trials by group, and the list of violated requirements."""
     groups, problems = {}, []
     trials = [gripping.drawn(seed) for seed in seeds]
     with concurrent.futures.ThreadPoolExecutor(side_by_side) as pool:

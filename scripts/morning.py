@@ -21,9 +21,9 @@ sys.path.insert(0, str(ROOT / "tests/system"))
 HEAD = """# A morning at the bench
 
 This page shows the output of softgrip for common faults, and what to do. `scripts/morning.py` ran the commands below, with
-`softgrip-rig` in place of the board, and wrote this page. A test runs the commands again and compares their output with
-this page. Times are shown as hh:mm:ss, measured numbers are rounded, and `[...]` marks omitted lines. `softgrip watch`
-shows the state of the daemon live. Its keys are `s`, `v`, `r`, `a` and `g`
+`softgrip-rig` in place of the board, and wrote this page. A test runs the commands again and compares their output with this
+page. Times are shown as hh:mm:ss, measured numbers are rounded, and `[...]` marks omitted lines. `softgrip watch` shows the
+state of the daemon live. The keys of `softgrip watch` are `s`, `v`, `r`, `a` and `g`
 ([commands](../reference/commands.md#with-a-daemon)). The first picture shows `softgrip watch` in 80 columns while both
 fingers hold a part. The second picture shows `softgrip watch` in 60 columns after a sensor failed during a hold and
 recovered. `scripts/watch_pictures.py` drew the two pictures from a real terminal:
@@ -64,8 +64,8 @@ def rounded(text):
 
 def sentences(page):
     """Returns the sentences that --check compares. Numbers are replaced by #. The comparison ignores line breaks and
-    omitted lines. It also ignores details that differ between runs: how a connection broke, which watchdog reported
-    the break last, and how much data the model has."""
+    omitted lines. It also ignores details that differ between runs: how a connection was interrupted, which watchdog
+    reported the interruption last, and the amount of data that the model has."""
     text = re.sub(r"-?\d+(\.\d+)?", "#", page.replace("[...]", ""))
     text = re.sub(r"disconnected:[^.]*", "disconnected", " ".join(text.split()))
     text = text.replace("watchdog_tripped: no good exchange for # s: the board's own watchdog acts after # s",
@@ -88,8 +88,8 @@ def play():
                 self.page.append(textwrap.fill(paragraph, 118) + "\n")
 
         def show(self, *commands, keep=None, drop=None):
-            """Adds a command and its output to the page. If `keep` is given, adds only lines that match it. If `drop`
-            is given, leaves out lines that match it."""
+            """Adds a command and its output to the page. If `keep` is given, omits all other lines than those that
+            match `keep`. If `drop` is given, omits lines that match `drop`."""
             shown = []
             for command in commands:
                 done = self.softgrip(*command, expect=None)
@@ -106,13 +106,13 @@ def play():
             self.page.append("```\n" + rounded("\n".join(shown)) + "\n```\n")
 
         def show_status(self):
-            """Adds the output of `softgrip status` to the page. The lines about the loop, the recording and the bars
-            are left out, because they never change on this page."""
+            """Adds the output of `softgrip status` to the page. Omits the lines about the loop, the recording and the
+            bars, because they never change on this page."""
             self.show(("status",), drop=r"^(loop|recording|  (pressure|displacement) .*|$)|real time degraded")
 
         def show_failures(self, *command):
             """Adds the failed checks of softgrip doctor, and the checks that could not be judged because of these
-            failures. The timing checks are left out, because the computer may be busy."""
+            failures. Omits the timing checks, because they may fail on a busy computer."""
             done = self.softgrip("doctor", *command, expect=6)
             shown, wanted = [f"$ softgrip doctor {' '.join(command)}".rstrip()], False
             for line in done.stdout.splitlines():
@@ -133,8 +133,8 @@ def play():
             return self.emulated.port
 
         def no_cable(self):
-            self.say("## The cable is not in\n\nsoftgripd was started before the board was connected. This is not "
-                     "a fault yet. The status shows the connection attempts and their interval.")
+            self.say("## The cable is not in\n\nsoftgripd was started before the board was connected. The missing "
+                     "connection is not a fault yet. The status shows the connection attempts and their interval.")
             bench.wait_for("slow attempts", lambda: self.softgripd.status()["bus"]["attempts"] >= 4)
             self.show_status()
             self.say("The cable is connected:")
@@ -149,8 +149,8 @@ def play():
                 channel["validity"] == "stale" for channel in self.softgripd.status()["channels"]))
             self.show_status()
             self.show(("acknowledge",))
-            self.say("The doctor reports one failure for the cable. It does not check sensors and models, because their checks "
-                     "need the board:")
+            self.say("The doctor reports one failure for the cable. The doctor does not check sensors and models, because "
+                     "these checks need the board:")
             self.show_failures()
             self.say("The cable is connected again:")
             self.emulated.ask("clear cable")
@@ -224,8 +224,8 @@ def play():
             self.write("faults.yaml", "faults:\n  - {name: cable, kind: disconnect}\n"
                                       "  - {name: blind, kind: sensor_out_of_range, channel: left}\n")
             port = self.emulate()
-            # This time is much shorter than the time-out of the board's watchdog, so that the watchdog does
-            # not trip first.
+            # The bus fault must occur before the board's watchdog trips, so this time is much shorter than the watchdog
+            # time-out.
             rig = self.rig(port, ((r"bus_down_cycles: \d+", "bus_down_cycles: 10"),))
             self.emulated.end()
             self.softgripd = self.daemon(rig)

@@ -3,10 +3,10 @@
 
     scripts/ninety_days.py [--build build/release] [--healthy 6] [--seed 1] [--keep DIR] [--page PAGE.md]
 
-Two fingers grip four times a day, three times with one recipe and once with another. Each simulation is called a
-life. In every life, the temperature changes the gain of the fingers. It varies with the hour and with the weather,
-which persists for days. The positions of the parts vary slightly, and the fingers wear a little. In the life with
-events, a leak begins and grows, a sensor is displaced, a finger is replaced, another finger softens, and a common
+Two fingers grip four times a day, three times with one recipe and once with another. Each simulation is called a life.
+In every life, the temperature changes the gain of the fingers. The temperature varies with the hour and with the
+weather, which persists for days. The positions of the parts vary slightly, and the fingers wear a little. In the life
+with events, a leak begins and grows, a sensor is displaced, a finger is replaced, another finger softens, and a common
 supply line begins to leak. Each repair has a maintenance record. `softgrip run` makes every recording on a rig with a
 thermometer. The recordings are judged four times: with and without the temperature, for both fingers together and for
 each alone. The exit code is 1 if an event was not detected.
@@ -55,8 +55,8 @@ class Event:
     finger: str
     day: int
     mended: int  # day of the repair; DAYS if there is no repair within the 90 days
-    # Each of these causes is a correct diagnosis; for an event of both fingers, the indicator that must be reported
-    # as shared.
+    # Each of these causes is a correct diagnosis. For an event of both fingers, this is the indicator that must be
+    # reported as shared.
     causes: tuple
 
 
@@ -176,7 +176,8 @@ def judged_common(softgrip, folder, view, event):
 
 
 def judged_event(softgrip, folder, view, event):
-    """Returns the day, the indicators and the candidate fault with which an event was detected before its repair."""
+    """Returns the day on which an event was detected, the indicators, and the candidate fault. The detection must
+    precede the repair."""
     if event.finger == BOTH:
         return judged_common(softgrip, folder, view, event)
     said = finger_in(health(softgrip, folder, view, NOTES, event.mended), event.finger)
@@ -279,16 +280,15 @@ def page(args, seen, eventful, healthy, wall_s):
         results_page.version_of(args.build), f"scripts/ninety_days.py --healthy {args.healthy} --seed {args.seed} --page "
         "docs/results/ninety-days.md", f"simulated rig, virtual time, {len(HOURS)} grips a day of two fingers")
     return "\n".join(head) + f"""
-{(args.healthy + 1) * DAYS * len(HOURS)} recordings of `softgrip run` were evaluated{took}. The changes are simulated in the model of the finger. `softgrip health` reads only the recordings, so it does not know the changes.
+{(args.healthy + 1) * DAYS * len(HOURS)} recordings of `softgrip run` were evaluated{took}. The changes are simulated in the model of the finger. `softgrip health` reads only the recordings, so it has no information about the simulated changes.
 
-Each simulation covers {DAYS} days of one rig with two fingers. The daily temperature has a standard deviation of {WEATHER_C:g} °C, and the correlation of two consecutive days is {WEATHER_STAYS:g}. Within a day, it varies sinusoidally with an amplitude of {DAY_C:g} °C.
+Each simulation covers {DAYS} days of one rig with two fingers. The daily temperature has a standard deviation of {WEATHER_C:g} °C, and the correlation of two consecutive days is {WEATHER_STAYS:g}. Within a day, the temperature varies sinusoidally with an amplitude of {DAY_C:g} °C.
 The gain of the left finger changes by {100 * GAIN_PER_C["left"]:g} % per °C, and the gain of the right finger by {100 * GAIN_PER_C["right"]:g} % per °C. The standard deviation of the position of the parts is
-{PART_MM:g} mm. Wear reduces the gain by {-100 * WEAR_PER_DAY * DAYS:.1g} % in ninety days. The rig has one thermometer with a noise of {working_life.THERMOMETER_NOISE_C:g} °C. The recordings of each simulation are evaluated twice: with the recorded temperatures, and without them, as for a rig without a thermometer.
+{PART_MM:g} mm. Wear reduces the gain by {-100 * WEAR_PER_DAY * DAYS:.1g} % in ninety days. The rig has one thermometer with a noise of {working_life.THERMOMETER_NOISE_C:g} °C. The recordings of each simulation are evaluated twice: with the recorded temperatures, and without the temperatures, as for a rig without a thermometer.
 
 ## Detected changes
 
-{told}`warned on day` is the day on which `softgrip health` first reported that the difference between the fingers had changed. An `unclear` report does not name the changed finger. `shared` means that the indicator changed for both fingers because the rig changed. On day 60, the left finger was replaced by a finger that is {100 * (NEW_FINGER - 1):.0f} % softer. The maintenance record
-contains this replacement, so `softgrip health` monitored the new finger with a new reference.
+{told}`warned on day` is the day on which `softgrip health` first reported that the difference between the fingers had changed. An `unclear` report does not name the changed finger. `shared` means that the indicator changed for both fingers because the rig changed. On day 60, the left finger was replaced by a finger that is {100 * (NEW_FINGER - 1):.0f} % softer. The maintenance record contains the replacement of the finger, so `softgrip health` monitored the new finger with a new reference.
 
 ## Healthy days
 
@@ -301,7 +301,7 @@ The table shows how many fingers had an alarm, and in how many simulations a cha
 {counts}
 The estimated temperature coefficient of the gain is {min(slopes, default=0):.4f} to {max(slopes, default=0):.4f} mm per °C.
 
-{lists}An active alarm hides further alarms of the same indicator. Without a thermometer, the weather causes the reported changes of the gain of both fingers. The warnings of these changes are correct, but they are not useful. The results have three limitations: all simulated fingers are of one type, their temperature equals the ambient temperature
+{lists}An active alarm hides further alarms of the same indicator. Without a thermometer, the weather causes the reported changes of the gain of both fingers. The warnings of changes that the weather causes are correct, but they are not useful. The results have three limitations: all simulated fingers are of one type, their temperature equals the ambient temperature
 without delay, and only the weather is correlated from day to day.
 """
 

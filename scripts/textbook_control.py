@@ -8,12 +8,11 @@ the feedforward of the identified model, PID alone, and the scheme of the paper.
 Each finger (tests/blind/textbook) is identified twice from its own campaign: with `softgrip identify --structure auto` and
 with `--structure bouc_wen`. Then tests/blind/textbook/rig.cpp simulates four copies of the finger in real time on Modbus
 TCP, and softgripd tracks one sine with all four copies at 200 Hz. In the first run, four PID controllers track a sine of
-0.2 Hz. The gains are those of `softgrip tune` for maximum sensitivities of 2, 1.6, 1.3 and 1.15. The two PID controllers
+0.2 Hz. The gains of the four controllers are the gains of `softgrip tune` for maximum sensitivities of 2, 1.6, 1.3 and 1.15. The two PID controllers
 with the smallest errors are used in the second run. In the second run, four controllers track the sines of all frequencies:
 the feedforward of the identified model with PID, the two PID controllers, and the scheme of the paper, which is the inverse
 of the Bouc-Wen element with PID. The two controllers with a feedforward use the gains of `softgrip tune`. The error is the
-root mean square of reading minus reference at the time of the reading, from the second cycle on. The noise of the sensor
-adds its mean square to the error of every scheme, so the table also states the error without this noise.
+root mean square of reading minus reference at the time of the reading, from the second cycle on. The noise of the sensor adds its mean square to the error of every scheme, so the table also states the error without the noise.
 """
 import argparse
 import concurrent.futures
@@ -98,8 +97,8 @@ def cycles_at(hz):
 
 
 def errors_mm(recording, names, frequencies_hz):
-    """Returns the RMS [mm] of reading minus reference by (frequency, scheme), without the first cycle. The time of a
-    reading is age_s before the time of its row; the reference is that of the same time."""
+    """Returns the RMS [mm] of reading minus reference by (frequency, scheme), without the first cycle. A reading is
+    older than its row by age_s. It is compared with the reference at the time of the reading."""
     rows = {}
     with open(recording / "run.csv", encoding="ascii") as file:
         for row in csv.DictReader(file):
@@ -180,12 +179,12 @@ def page(results, frequencies_hz, command, version):
     raw = [x for hz in frequencies_hz for x in ratios(results, hz, "identified", float)]
     exact = [best_pid(r, hz) / NOISE_MM for r in results for hz in frequencies_hz]
     meaning = (f"With the feedforward of an identified model and a PID controller, the RMS tracking error is {statistics.median(raw):.1f} times smaller than with the "
-               f"best PID controller alone. Because of the sensor noise, it could be at most {statistics.median(exact):.1f} times smaller.")
+               f"best PID controller alone. Because of the sensor noise, the error could be at most {statistics.median(exact):.1f} times smaller, even with a perfect controller.")
     lines = [*results_page.head("Tracking control of fingers that are simulated with equations from textbooks", meaning, version, command,
                                 f"{len(results)} simulated fingers in real time on Modbus TCP, 200 Hz"),
              " ".join(__doc__.split("\n\n")[2].replace("(tests/blind/textbook)", "(`tests/blind/textbook`)").split()), "",
              f"There are {len(results)} fingers. The amplitude of the sines is 25 % of the span. The standard deviation of the sensor noise is "
-             f"{NOISE_MM} mm. The RMS error contains this noise, so no controller can have a smaller error.", "",
+             f"{NOISE_MM} mm. The RMS error contains the sensor noise, so no controller can have an RMS error below the noise.", "",
              "| frequency | error: identified model and PID | error: best PID alone | error: scheme of the paper | error of the best PID / error of identified model and PID, median | "
              "smallest of these ratios | this ratio without the sensor noise, median | error of the best PID / error of the scheme of the paper, median |", "|---|---|---|---|---|---|---|---|"]
     for hz in frequencies_hz:
@@ -198,7 +197,7 @@ def page(results, frequencies_hz, command, version):
                      f" | {statistics.median(read):.1f} times | {min(read):.1f} times | {statistics.median(free):.1f} times | "
                      f"{statistics.median(paper):.1f} times |")
     lines += ["", f"With the identified model and PID, the RMS error of the readings is {statistics.median(raw):.1f} times smaller than with the "
-              f"best PID (median over all fingers and frequencies). If a finger followed the reference exactly, this error would be {statistics.median(exact):.1f} times smaller. Without the sensor noise, the error is "
+              f"best PID (median over all fingers and frequencies). If a finger followed the reference exactly, the RMS error of the readings would be {statistics.median(exact):.1f} times smaller. Without the sensor noise, the error is "
               f"{statistics.median(every):.1f} times smaller than with the best PID.", "", "## Errors of the readings, for each finger", "",
               "| make | seed | reference | " + " | ".join(f"{hz:g} Hz: identified, best PID, paper" for hz in frequencies_hz) + " |",
               "|---" * (3 + len(frequencies_hz)) + "|"]

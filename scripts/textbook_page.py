@@ -80,8 +80,8 @@ def columns_text(columns):
 
 
 def clean_table(rows):
-    """Returns, for each make and each set of columns, the held-out error and the named causes of worlds without a
-    hidden effect."""
+    """Returns the held-out error and the named causes of worlds without a hidden effect, for each make and each set of
+    columns."""
     lines = []
     for make in sorted({r["make"] for r in rows}):
         for columns in sorted({r["columns"] for r in rows}, reverse=True):
@@ -139,7 +139,7 @@ def meaning(rows):
     found = [measured.get(f"one effect of strength {strength}: effect found", "-") for strength in (8, 2)]
     return (f"The fingers and valves are simulated with equations from textbooks that softgrip does not use. If the hidden effect "
             f"changes the displacement by 8 times the sensor noise, the diagnosis finds the true cause in {found[0]} of the cases, and in "
-            f"{found[1]} at 2 times the noise. It names a wrong cause in "
+            f"{found[1]} at 2 times the noise. The diagnosis names a wrong cause in "
             f"{measured.get('one effect: a wrong cause is named', '-')} of the cases.")
 
 
@@ -154,13 +154,13 @@ def made(results, planned):
 
 
 INTRODUCTION = """\
-The simulation uses none of the equations of softgrip's models. The flow through the simulated valve follows ISO 6358. A PI controller positions its spool, which has overlap and pilot hysteresis. There are five types of fingers (column `make`), which differ in the simulation of the hysteresis and the creep: generalised play operators, Maxwell-slip elements, Preisach relays, a rubber tube that is divided into slices and has a Prony series, and play operators with fractional creep. All types have creep with time constants over five decades and a slightly nonlinear characteristic.
+The simulation uses none of the equations of softgrip's models. The flow through the simulated valve follows ISO 6358. A PI controller positions the spool of the valve, which has overlap and pilot hysteresis. There are five types of fingers (column `make`), which differ in the simulation of the hysteresis and the creep: generalised play operators, Maxwell-slip elements, Preisach relays, a rubber tube that is divided into slices and has a Prony series, and play operators with fractional creep. All types have creep with time constants over five decades and a slightly nonlinear characteristic.
 Each case has three logs. The standard deviation of the noise is 0.04 mm for the displacement readings, 0.05 kPa for the measured pressures and 0.3 kPa for the supply pressures.
 
-The strength of an effect is the RMS of the displacement change that the effect causes in the logs of the case, divided by the sensor noise of 0.04 mm. The part of the change that a refit of the model can absorb is not included. A refit can absorb any change of the zero offset and of the gain. It can also absorb any hysteresis width, curvature and creep that fingers of this type can have. For a leak, the complete change is included.
+The strength of an effect is the RMS of the displacement change that the effect causes in the logs of the case, divided by the sensor noise of 0.04 mm. The part of the displacement change that a refit of the model can absorb is not included. A refit can absorb any change of the zero offset and of the gain. A refit can also absorb any hysteresis width, curvature and creep that fingers of this type can have. For a leak, the complete displacement change is included.
 *Own physics* are mechanisms that the simulated finger and valve have even without the hidden effect. A mechanism is included only if its removal changes the displacement by more than 25 % of the sensor noise. A named cause is not counted as wrong if it describes own physics of the case. A named hidden cause is counted as found even if it also describes own physics (for example an additional valve lag).
 
-The diagnosis starts from a plain Bouc-Wen model of another finger (`tests/blind/textbook/given.yaml`). This represents a user who identifies a model on one finger and uses this model for a second finger of the same type. `--given commissioned` starts from the model of `softgrip identify --structure
+The diagnosis starts from a plain Bouc-Wen model of another finger (`tests/blind/textbook/given.yaml`). This model represents a user who identifies a model on one finger and uses it for a second finger of the same type. `--given commissioned` starts from the model of `softgrip identify --structure
 auto` that was fitted to different logs of the same finger without the effect. A cause is *found* if it is named or is an alternative of a named cause, with any verdict. One named cause is counted for at most one hidden cause. A named cause is *wrong* if the finger contains neither this cause nor one of its alternatives. The held-out error of `identify` is the error of `softgrip identify --structure auto` on interleaved blocks. The held-out error of the model of the diagnosis is the error on the held-out blocks of the diagnosis. If the pressure is recorded, the measured pressure is the input of the models (`--drive measured`); otherwise the command is the input. If the pressure is recorded, the diagnosis finds causes in the valve by a comparison of the measured pressure with the command."""
 
 
@@ -173,8 +173,8 @@ def write(path, results, planned, command, variation, version):
     rows_path = path.with_suffix(".jsonl")
     rows_path.write_text("".join(sorted(json.dumps(r) + "\n" for r in results)))
     bars_path.write_text(blind_page.bars(rows))
-    # The picture leaves out the causes that a finger has even without a hidden effect, because they are
-    # almost always named correctly.
+    # The picture omits the causes that a finger has even without a hidden effect, because the diagnosis names them
+    # correctly in almost all worlds.
     plain = [{**r, "named": [], "rivals": []} for r in rows]
     for r, full in zip(plain, rows):
         for name, rivals in zip(full["named"], full["rivals"]):
@@ -183,7 +183,7 @@ def write(path, results, planned, command, variation, version):
                 r["rivals"].append(rivals)
     confusion_path.write_text(blind_page.confusion(plain))
     lines = [*results_page.head("Textbook campaign", meaning(rows), version, command, made(results, planned)),
-             f"Every outcome is a line of [{rows_path.name}]({rows_path.name}). If you copy this file to `DIR/textbook.jsonl`, the command continues from it.",
+             f"Every outcome is a line of [{rows_path.name}]({rows_path.name}). If you copy `{rows_path.name}` to `DIR/textbook.jsonl`, `scripts/textbook_campaign.py` continues from it.",
              "", *INTRODUCTION.splitlines(), "", variation, "",
              *table(("measure", "wanted", "measured (95 % interval)", "cases"), summary(rows)),
              "## Without an effect", "", *clean_table(rows), "## By cause, hidden alone", "", *cause_table(rows),

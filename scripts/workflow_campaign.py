@@ -4,7 +4,8 @@ plain loop.
 
     scripts/workflow_campaign.py --work DIR [--rows 1000] [--cores 2] [--batch 25] [--page docs/results/workflow-campaign.md]
 
-Each row is `softgrip identify` of a simulated log of 25 s at 20 Hz, with a different finger. Slurm needs root.
+Each row runs `softgrip identify` for a simulated log of 25 s at 20 Hz. Each log comes from a different finger. Slurm
+needs root.
 """
 import argparse
 import csv
@@ -71,8 +72,8 @@ def rows_of(out):
 
 
 def killed(args, out):
-    """Kills a run when half of its rows are done, and continues it. Returns the time until the kill, the duration of
-    the second run, and the number of rows that ran twice."""
+    """Kills a run when half of its rows are done, and continues the run. Returns the time until the kill, the
+    duration of the continuation, and the number of rows that ran twice."""
     shutil.rmtree(out, ignore_errors=True)
     began = time.monotonic()
     child = subprocess.Popen([str(word) for word in command(args, out)], start_new_session=True, stdout=subprocess.DEVNULL)
@@ -103,20 +104,19 @@ def page(args, figures):
     first_s, second_s, done, twice = figures["killed"]
     lines = [*results_page.head(
                  "The workflow compared with a plain loop",
-                 f"On {rows} short rows the workflow takes {seconds[1] / seconds[0]:.1f} times as long as a plain loop. After a kill it "
-                 f"repeats {twice} of the {done} rows that were done.", results_page.version_of(args.build),
+                 f"On {rows} short rows the workflow takes {seconds[1] / seconds[0]:.1f} times as long as a plain loop. After a kill, the "
+                 f"workflow repeats {twice} of the {done} rows that were done.", results_page.version_of(args.build),
                  f"scripts/workflow_campaign.py --work DIR --rows {rows} --cores {args.cores} --batch {args.batch} --page {args.page}",
                  f"{os.cpu_count()} processors, which other programs used, too"),
-             "The column *load* is the 1-minute load of the machine. Each row of the workflow runs `softgrip identify --threads 1` for a different simulated finger, with a log of 25 s at 20 Hz. Short rows are the worst case of the workflow, because the "
-             "overhead per row does not depend on the duration of a row.", "",
+             "The column *load* is the 1-minute load of the machine. Each row of the workflow runs `softgrip identify --threads 1` for a different simulated finger, with a log of 25 s at 20 Hz. Short rows are the worst case of the workflow, because the overhead per row does not depend on the duration of the row.", "",
              "| method | wall time | per row | load | models, hash over all |", "|---|---|---|---|---|"]
     for name, seconds, (digest, count), load in figures["ways"]:
         lines.append(f"| {name} | {seconds:.0f} s | {seconds / rows:.2f} s | {load:.1f} | {count}, `{digest}` |")
     whole_s = figures["whole_s"]
     lines += ["", f"The models of all methods are {'identical, byte by byte' if same else 'NOT identical'}.", "",
-              f"A workflow was killed with SIGKILL after {first_s:.0f} s, when {done} of {rows} rows were done, and started again. It took "
-              f"{second_s:.0f} s more, in total {first_s + second_s:.0f} s, compared with {whole_s:.0f} s for an undisturbed workflow directly "
-              f"before. Of the rows that were done, {twice} {'was' if twice == 1 else 'were'} run twice."]
+              f"A workflow was killed with SIGKILL after {first_s:.0f} s, when {done} of {rows} rows were done, and started again. The "
+              f"second start took {second_s:.0f} s, so the workflow took {first_s + second_s:.0f} s in total. An undisturbed workflow directly "
+              f"before took {whole_s:.0f} s. Of the rows that were done, {twice} {'was' if twice == 1 else 'were'} run twice."]
     return "\n".join(lines) + "\n"
 
 
@@ -140,7 +140,7 @@ def main():
         print(name, f"{seconds:.1f} s", figures["ways"][-1][2], flush=True)
 
     loop = args.work / "loop"
-    told("a plain loop, one after the other", plain_loop(args, program, loop), [loop / name for name in names])
+    told("a plain loop that runs one row after another", plain_loop(args, program, loop), [loop / name for name in names])
     for name, out, words in (
             (f"the workflow, `--cores {args.cores}`", args.work / "cores", []),
             (f"the workflow on a Slurm of this machine, {args.batch} rows per job", args.work / "slurm",

@@ -1,4 +1,5 @@
-"""Identifies the demo's finger with SciPy: identify.py FIT.csv PREDICT.csv... (20 starts; needs simulator.so beside it)."""
+"""Identifies the demo's finger with SciPy from 20 start points: identify.py FIT.csv PREDICT.csv... (simulator.so must
+be in the same folder)."""
 import ctypes
 import json
 import pathlib

@@ -1,4 +1,5 @@
-"""Writes the results page of bench/foreign.py: required and reached values, followed by the cases of each judge."""
+"""Writes the results page of bench/foreign.py. The page contains the required and the reached values, followed by the
+cases of each judge."""
 import math
 import pathlib
 import sys
@@ -102,7 +103,7 @@ def pair_tables(values, judge, more_head, more_cells):
 PLAIN_TEXT = [
     "*fitted*, *left out* and *later* are RMSE values of the plain identified model (`softgrip identify` without `--structure`). *fitted* is the RMSE on the baseline runs.",
     "*left out* is the largest RMSE on a baseline run that was left out of the fit. *later* is the RMSE on the later run.",
-    "*bound* is the one-sided 95 % prediction bound (Student's t) for the error on a further healthy run. It is computed from",
+    "*bound* is the one-sided 95 % prediction bound (Student's t) for the error on a further healthy run. The bound is computed from",
     "the errors on the baseline runs that were left out.",
     "*ratio* is *later* divided by *bound*. With 1 baseline run there is no bound, and *ratio* is *later* divided by *fitted*."]
 
@@ -144,7 +145,7 @@ IDENTIFICATION_TEXT = [
     "The authors knew the held-out errors on `piezo` and `hydraulic` when they chose the rule for the initial state of the linear model.",
     "The authors knew the errors on `asu_softarm` and `hydraulic` when they added these functions to *auto*: the start at rest, the bounded response, the second lag, the",
     "rate limit and the resonance. The counts on these two sets are therefore not an independent evaluation of these functions.",
-    "The smallest error of each row is bold. The column *linear better* contains yes if the error of the linear model is more than 10 % smaller than that of *auto*.",
+    "The smallest error of each row is bold. The column *linear better* contains yes if the error of the linear model is more than 10 % smaller than the error of *auto*.",
     "In the column *structure of auto*, a creep ladder is a chain of Kelvin-Voigt elements."]
 
 
@@ -185,7 +186,7 @@ def failures_section(values):
 
 
 def meaning(values):
-    """Returns sentences with counts that show how reliable the answers of softgrip on such data are."""
+    """Returns sentences with the numbers of right and wrong answers of softgrip on these data."""
     summary, parts = values.get("summary", {}), []
     if "runs" in summary.get("repeats", {}):
         part = summary["repeats"]["runs"]
@@ -193,13 +194,13 @@ def meaning(values):
     if "changes" in summary:
         part = summary["changes"]
         parts.append(f"the labelled cause is named or listed for {of(part.get('listed', '-'), part['cases'])} labelled changes, and "
-                     f"only a wrong cause is named for {of(part['wrong_alone'], part['cases'])}")
+                     f"only a wrong cause is named for {of(part['wrong_alone'], part['cases'])} labelled changes")
     if "stiction" in summary:
         part = summary["stiction"]["sticking"]
-        parts.append(f"stiction is named in {of(part['stiction_named'], part['cases'])} sticking valves")
+        parts.append(f"stiction is named for {of(part['stiction_named'], part['cases'])} sticking valves")
     if "identification" in summary:
         part = summary["identification"]
-        parts.append(f"the error of a linear model is more than 10 % smaller than that of `auto` in {of(part['linear_better']['auto'], part['rows'])} "
+        parts.append(f"the error of a linear model is more than 10 % smaller than the error of `softgrip identify --structure auto` in {of(part['linear_better']['auto'], part['rows'])} "
                      "fits")
     parts = parts or ["nothing was evaluated"]
     return " ".join([f"On data of other laboratories, {parts[0]}.", *(f"{part[0].upper()}{part[1:]}." for part in parts[1:])])

@@ -1,4 +1,5 @@
-"""Reads logs as arrays, and defines how models of other programs are tested on a part of a log that was not fitted."""
+"""Reads logs as arrays. Defines how a model of another program is tested on a part of a log to which the model was not
+fitted."""
 import numpy as np
 
 # The first 5 % of a log, but at least 2 s, may be used to estimate the offset and the initial state of the log.
@@ -6,8 +7,8 @@ START_SHARE, START_S = 0.05, 2.0
 
 
 def read(path):
-    """Returns time [s], input [kPa] and reading [mm] of a log. The input is the measured pressure if the log contains it,
-    otherwise the command."""
+    """Returns time [s], input [kPa] and reading [mm] of a log. The input is the measured pressure if the log contains a
+    measured pressure, otherwise the command."""
     data = np.genfromtxt(path, delimiter=",", names=True)
     drive = data["pressure_kpa"] if "pressure_kpa" in data.dtype.names else data["pressure_command_kpa"]
     known = np.isfinite(drive)

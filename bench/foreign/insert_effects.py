@@ -1,15 +1,15 @@
 #!/usr/bin/python3
-"""Inserts known effects into real repeated runs, as data sets for bench/foreign.py.
+"""Inserts known effects into recorded repeated runs, and writes the results as data sets for bench/foreign.py.
 
     bench/foreign/insert_effects.py --out DIR [--data DIR] [--pulses]
     bench/foreign.py --data DIR --only changes --out RESULTS --page PAGE
 
-The runs are those that a laboratory recorded without a change between them (`repeats` in the table of a data set). An effect
-is inserted into the readings of the later run. The baseline runs remain as recorded. So the finger, the valve, the noise and
-the differences between runs are real, and only the effect is artificial. DIR contains 1 new data set for each data set of
---data. With --pulses, the pulses of one recording are used in place of runs: 1 healthy pulse, and the next pulse with an
-effect. Sizes of effects are shares of the stroke (highest minus lowest reading). If the inserted effect removes noise from
-the readings, white noise is added (0.1 % of the stroke, seed 1).
+The runs are those between which a laboratory changed nothing (`repeats` in the table of a data set). An effect is
+inserted into the readings of the later run. The baseline runs remain as recorded. Therefore, the finger, the valve, the
+noise and the differences between runs are real, and only the effect is artificial. DIR contains 1 new data set for each
+data set of --data. With --pulses, the pulses of one recording are used in place of runs: 1 healthy pulse, and the next
+pulse with an effect. Sizes of effects are shares of the stroke (highest minus lowest reading). An effect that removes
+noise from the readings is followed by new white noise (0.1 % of the stroke, seed 1).
 """
 import argparse
 import pathlib
@@ -83,7 +83,7 @@ def filled(values):
 
 
 def inserted(log, effect):
-    """Returns the columns of a log into which an effect was inserted."""
+    """Returns the columns of a log after an effect was inserted into the readings."""
     readings = filled(log.columns["displacement"])
     low, stroke = readings.min(), np.ptp(readings)
     columns = {**log.columns, "displacement": EFFECTS[effect][2](log.time_s, readings, low, stroke)}
@@ -122,7 +122,7 @@ def write_set(data_set, pairs, folder):
 
 
 def chosen(pairs, pulses=False):
-    """Returns, for each later run, the pair with the largest number of baseline runs."""
+    """Returns, for each later run, the pair of `repeats` with the largest number of baseline runs."""
     most = {}
     for pair in pairs:
         if (pair.group != "runs") == pulses and len(pair.baseline) > len(getattr(most.get(pair.later), "baseline", [])):

@@ -1,8 +1,8 @@
-"""Judges 1 and 2: repeated runs between which nothing changed, and changes that the laboratory labelled.
+"""Implements judges 1 and 2: repeated runs between which nothing changed, and changes that the laboratory labelled.
 
-Each pair is diagnosed by `softgrip diagnose --healthy BASELINE --data LATER` with the model that `softgrip identify` fits to
-the baseline. The change is also measured without a diagnosis: the error of this model on the later run is compared with the
-errors on healthy runs that were left out of the fit.
+Each pair is diagnosed by `softgrip diagnose --healthy BASELINE --data LATER` with the model that `softgrip identify`
+fits to the baseline. The change is also measured without a diagnosis. For this purpose, the error of the model on the
+later run is compared with its errors on healthy runs that were left out of the fit.
 """
 import math
 import statistics
@@ -17,8 +17,8 @@ PROBABILITY = 0.95
 
 
 def healthy_bound(errors):
-    """Returns an upper bound for the error of 1 further healthy run: the error is below the bound with PROBABILITY
-    (one-sided prediction bound, Student's t)."""
+    """Returns an upper bound for the error of one additional healthy run. The error is below this bound with the
+    probability PROBABILITY (one-sided prediction bound, Student's t)."""
     n = len(errors)
     if n < 2:
         return None
@@ -27,8 +27,8 @@ def healthy_bound(errors):
 
 
 def plain_model(runner, data_set, healthy, later):
-    """Identifies the healthy runs. Returns the folder of the model, and its errors [mm] on the fitted, the left-out and
-    the later runs."""
+    """Identifies a model from the healthy runs. Returns the folder of the model, and the errors of the model [mm] on
+    the fitted, the left-out and the later runs."""
     folder, outcome = runner.identify(data_set, healthy, [later])
     answer = result_of(outcome)
     errors = {"fitted_mm": rms(list(answer["rmse_mm"].values())), "later_mm": answer["validation"]["rmse_mm"][later.key],
@@ -45,7 +45,8 @@ def plain_model(runner, data_set, healthy, later):
 
 
 def judged_label(pair, names, exceeds):
-    """Judges the answer to a labelled change. Returns the additional keys of a case of the judge `changes`."""
+    """Judges the diagnosis of a labelled change. Returns the keys that a case of the judge `changes` has in addition to
+    the common keys."""
     alternatives = {rival for rivals in names["alternatives"] for rival in rivals}
     named = bool(set(pair.causes) & set(names["named"]))
     listed = named or bool(set(pair.causes) & alternatives)

@@ -1,8 +1,9 @@
-"""Judge 4: identification compared with a linear output-error model and with a Bouc-Wen fit by SciPy.
+"""Implements judge 4: identification compared with a linear output-error model and with a Bouc-Wen fit by SciPy.
 
-Each method fits the first part of a log and predicts the rest, with a simulation from the start of the log. For some logs,
-it fits a whole log and predicts another log. A log with a command and a measured pressure is identified twice: once with the
-command as the input (the measured pressure is removed), and once with the measured pressure as the input.
+Each method fits the first part of a log and predicts the rest, with a simulation from the start of the log. For some
+logs, each method fits the whole log and predicts another log. A log with a command and a measured pressure is
+identified twice: once with the command as the input (the measured pressure is removed), and once with the measured
+pressure as the input.
 """
 import json
 import pathlib
@@ -34,7 +35,7 @@ def softgrip(runner, data_set, log, test, split, drive, words):
 
 
 def library(runner):
-    """Compiles the simulator of the SciPy fit if necessary. Returns its path."""
+    """Compiles the simulator of the SciPy fit if necessary. Returns the path of the simulator."""
     path = runner.out / "simulator.so"
     if not path.exists() or path.stat().st_mtime < SIMULATOR.stat().st_mtime:
         output_of(["cc", "-O2", "-shared", "-fPIC", "-o", path, SIMULATOR, "-lm"], runner.at_most_s)
@@ -42,7 +43,7 @@ def library(runner):
 
 
 def peer(runner, data_set, log, test, script, words):
-    """Runs a program that shares no code with softgrip, for comparison. Returns its result."""
+    """Runs a program for comparison that shares no code with softgrip. Returns the result of the program."""
     files = [log.path, *([test.path] if test else [])]
     sources = [script, HELD_OUT, SIMULATOR]
     name = f"{script.stem} {log.name} {test.name if test else ''} {log.path.parent.name}"

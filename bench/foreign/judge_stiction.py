@@ -1,7 +1,7 @@
-"""Judge 3: control loops whose valves engineers labelled as sticking or not.
+"""Implements judge 3: control loops whose valves engineers labelled as sticking or not sticking.
 
-Each loop is identified and diagnosed as a user would do: first `softgrip identify`, then `softgrip diagnose` with the
-identified model. Horch's phase test (horch.py) is applied to the same signals for comparison.
+Each loop is identified with `softgrip identify`. After that, it is diagnosed with `softgrip diagnose` and the
+identified model, as a user would do. Horch's phase test (horch.py) is applied to the same signals for comparison.
 """
 import csv
 
@@ -13,7 +13,7 @@ STICTION, DRIFT = {"valve_deadband"}, "sensor_drift"
 
 
 def signals(path):
-    """Returns command and reading of the samples that have both."""
+    """Returns command and reading of the samples that have a command and a reading."""
     with path.open(newline="") as file:
         rows = [(row["pressure_command_kpa"], row["displacement_mm"]) for row in csv.DictReader(file)]
     known = [(float(u), float(y)) for u, y in rows if u and y]
@@ -21,7 +21,8 @@ def signals(path):
 
 
 def judged_names(names):
-    """Judges the answer for one loop. Returns the additional keys of its case."""
+    """Judges the diagnosis of one control loop. Returns the keys that the case of this loop has in addition to the
+    common keys."""
     alternatives = {rival for rivals in names["alternatives"] for rival in rivals}
     named, drift = bool(STICTION & set(names["named"])), DRIFT in names["named"]
     return {"stiction_named": named, "stiction_listed": named or bool(STICTION & (alternatives | set(names["partial"]))),

@@ -1,5 +1,5 @@
-"""Converts a measured log to the log format of softgrip (docs/how-to/identify.md). The table's entry for the log describes
-its format."""
+"""Converts a measured log to the log format of softgrip (docs/how-to/identify.md). An entry of the table describes the
+original format of the log."""
 import csv
 import dataclasses
 import datetime
@@ -12,7 +12,7 @@ from units import QUANTITIES, TIME_POINT, ZEROS, unit_in, units_of
 MISSING = {"", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "inf", "-inf", "+inf"}
 COMMENTS = ("#", "%", "//")
 SEPARATORS = (",", ";", "\t", "|", " ")
-FAR_ENOUGH = 200  # number of lines in which the header is searched
+FAR_ENOUGH = 200  # number of lines at the start of a file in which the header is searched
 MOST_SAID = 5
 MOST_MISSING = 0.2  # largest share of samples without a displacement that `softgrip identify` accepts
 # A hole, as in `softgrip identify`: an interval that is longer than HOLE_S and longer than HOLE_INTERVALS usual intervals, and
@@ -23,7 +23,7 @@ OUTPUT = {"command": "pressure_command_kpa", "displacement": "displacement_mm", 
 
 
 class Spoiled(Exception):
-    """The log cannot be used. The message states the file, the line and the expected content."""
+    """A log cannot be used. The message states the file, the line and the expected content."""
 
 
 @dataclasses.dataclass
@@ -83,7 +83,7 @@ class Reader:
         else:
             self.more += 1
 
-    # The positions of the columns
+    # Positions of the columns
 
     def find_header(self):
         """Finds the first line that contains the names of all columns that the table gives by name. Returns the separator,
@@ -199,8 +199,8 @@ class Reader:
     # Units
 
     def factor(self, column, quantity):
-        """Returns the factor from the unit of the column to the unit of the log format, and the zero of the quantity in the
-        unit of the column."""
+        """Returns two numbers for a column: the factor from its unit to the unit of the log format, and the zero of the
+        quantity in the unit of the column."""
         written = {unit_in(name, column.quantity) for name in column.names} - {""}
         unit = column.unit.lower() or (written.pop() if len(written) == 1 else "")
         if column.unit and written and not {unit} >= written and unit in QUANTITIES[column.quantity]:
@@ -284,8 +284,8 @@ class Reader:
         return filled
 
     def with_readings(self, keep, readings):
-        """Removes the samples without a reading if their share is above MOST_MISSING. This happens if the sensor is slower
-        than the log."""
+        """Removes the samples without a reading if their share is above MOST_MISSING. Such a share occurs if the sensor
+        delivers readings at a lower rate than the log."""
         read = [i for i in keep if not math.isnan(readings[i])]
         if not read or len(read) >= (1 - MOST_MISSING) * len(keep):
             return keep

@@ -1,7 +1,7 @@
 """Reads and checks the table that describes measured logs. Every message states the line of the mistake.
 
-A mistake in the description of one log is stored in `problems` of this log, and the other logs remain usable. `Unusable` is
-raised if the table as a whole cannot be read. docs/how-to/measure.md lists the keys.
+A mistake in the description of one log is stored in `problems` of this log, and all other logs remain usable.
+`Unusable` is raised if the complete table cannot be read. docs/how-to/measure.md lists the keys.
 """
 import dataclasses
 import difflib
@@ -21,7 +21,7 @@ COLUMNS = ("time", "command", "pressure", "displacement", "temperature", "supply
 
 
 class Unusable(Exception):
-    """The table as a whole cannot be used. The message states the position and the expected content."""
+    """The complete table cannot be used. The message states the position of the mistake and the expected content."""
 
 
 class Map(dict):
@@ -34,8 +34,8 @@ class Map(dict):
 
 @dataclasses.dataclass
 class Column:
-    """The columns of a quantity, and the conversion of their values to the unit of the log format. If there are several
-    columns, their values are averaged."""
+    """The columns of a quantity, and the conversion of their values to the unit of the log format. The values of
+    several columns are averaged."""
     quantity: str
     names: list = dataclasses.field(default_factory=list)  # names of columns, or column numbers from 1
     unit: str = ""
@@ -232,8 +232,8 @@ def refuse_what_says_nothing(path, values, known):
 
 
 def read_table(path, data, more_keys=()):
-    """Reads the table at `path`, which describes logs in the folder `data`. `more_keys` are the further keys that the caller
-    reads from the table."""
+    """Reads the table at `path`, which describes logs in the folder `data`. `more_keys` are additional keys that the
+    caller reads from the table."""
     path, data = pathlib.Path(path), pathlib.Path(data)
     values = values_of(path)
     refuse_what_says_nothing(path, values, (*TABLE_KEYS, *more_keys))

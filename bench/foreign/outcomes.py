@@ -8,8 +8,8 @@ import resource
 import subprocess
 import time
 
-NOT_ACCEPTABLE = 6  # the exit code of a program that finished and wrote its answer
-UNREADABLE = (ValueError, KeyError, TypeError, IndexError, StopIteration)  # raised by an answer in an unexpected format
+NOT_ACCEPTABLE = 6  # exit code of a program that finished, but whose result is not acceptable
+UNREADABLE = (ValueError, KeyError, TypeError, IndexError, StopIteration)  # raised for output in an unexpected format
 
 
 class Failed(Exception):
@@ -30,7 +30,7 @@ def checksum(*parts):
 
 
 def output_of(command, at_most_s):
-    """Runs a program and returns its standard output. Raises Failed if its exit code is neither 0 nor NOT_ACCEPTABLE."""
+    """Runs a program and returns its standard output. Raises Failed if the exit code differs from 0 and NOT_ACCEPTABLE."""
     try:
         run = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=at_most_s)
     except subprocess.TimeoutExpired as error:
@@ -68,9 +68,9 @@ def described(error):
 
 
 def outcome_in(folder, of, function, in_words=described):
-    """Returns the outcome of function(folder), and True if the outcome was read from the folder and not computed. The
-    outcome is a dict with the keys "of", "wall_s", "processor_s", "load_1min", and "result" or "error". A stored outcome is
-    used if it has a result and if its checksum of the inputs equals `of`."""
+    """Returns the outcome of function(folder), and True if a stored outcome was used. The outcome is a dict with the
+    keys "of", "wall_s", "processor_s", "load_1min", and "result" or "error". A stored outcome is used if it has a
+    result and if its checksum of the inputs equals `of`."""
     kept = folder / "outcome.json"
     known = read_json(kept)
     if known and known.get("of") == of and "result" in known:

@@ -4,12 +4,13 @@ below.
 
     output_error.py LOG.csv SPLIT ORDER [TEST.csv]     prints JSON: RMSE of the fitted and of the predicted part [mm]
 
-The model has ORDER poles and ORDER zeros and is stable (L. Ljung, System Identification, 2nd edition, section 4.2). It
-The fit minimises the squared error of the simulation. A search finds the poles; for each set of poles, linear least squares
-gives the residues, direct term, offset and initial state (variable projection: Golub and Pereyra, SIAM J. Numer. Anal. 10,
-1973, 413-432). Two forms are fitted: in one, all poles are real; in the other, 1 pair is complex. The form with the smaller
-error on the fitted part is used. On TEST, the first 5 % (at least 2 s) determine the offset and the initial state. The prior
-of the initial state of TEST has the size of the initial state of LOG. The program shares no code with softgrip.
+The model has ORDER poles and ORDER zeros and is stable (L. Ljung, System Identification, 2nd edition, section 4.2). The
+fit minimises the squared error of the simulation. A search finds the poles; for each set of poles, linear least squares
+gives the residues, direct term, offset and initial state (variable projection: Golub and Pereyra, SIAM J. Numer. Anal.
+10, 1973, 413-432). Two forms of the model are fitted: one in which all poles are real, and one in which 1 pair of poles
+is complex. The form with the smaller error on the fitted part is used. On TEST, the first 5 % (at least 2 s) determine
+the offset and the initial state. The prior of the initial state of TEST has the size of the initial state of LOG. The
+program shares no code with softgrip.
 """
 import itertools
 import json
@@ -24,10 +25,10 @@ except ImportError as error:
 
 from held_out import beginning, first_share, read, rmse
 
-# starting points: grids over the range that the sampling can resolve
+# start points of the search: a grid over the range that the sampling can resolve
 TIMES, FREQUENCIES, DAMPINGS = 7, 8, (0.05, 0.3, 0.9)
-NEARLY_CANCELS = 1e-4  # limit of the singular values, relative to the largest singular value
-REFINED = 4  # number of the best starting points from which the search continues
+NEARLY_CANCELS = 1e-4  # smallest singular value that is used, relative to the largest singular value
+REFINED = 4  # number of best start points from which the search continues
 MOST_SAMPLES = 200000  # largest number of points of the grid on which a log is simulated
 
 
@@ -48,7 +49,7 @@ class Signals:
         return np.interp(self.time, self.grid, values)
 
     def forced(self, numerator, denominator):
-        """Returns the response of a transfer function in s to the drive, which is linear between samples."""
+        """Returns the response of a transfer function in s to the input, which is linear between samples."""
         b, a, _ = cont2discrete((numerator, denominator), self.step, "foh")
         return self.at_samples(lfilter(np.ravel(b), a, self.drive))
 
@@ -159,7 +160,7 @@ class Fit:
 
 
 def fitted(time, drive, reading, mask, order):
-    """Fits all forms of a model of this order. Returns the fit with the smallest error."""
+    """Fits all forms of the model with this order. Returns the fit with the smallest error."""
     signals = Signals(time, drive)
     length = float(time[mask][-1] - time[0])
     forms = [Form(order, False, signals.step, length)]

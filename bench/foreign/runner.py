@@ -1,12 +1,12 @@
-"""Runs softgrip on the logs of data sets. The result of each call is stored (outcomes.py), so that several judges can use
-one identification."""
+"""Runs softgrip on the logs of data sets. The result of each call is stored (outcomes.py). Therefore, several judges
+can use the result of one identification."""
 import json
 import re
 
 from log_reading import Spoiled, read_log
 from outcomes import Failed, checksum, described, outcome_in, output_of, write_whole
 
-MOST_NAME = 100  # the largest number of characters of a folder's name
+MOST_NAME = 100  # largest number of characters in the name of a folder
 
 
 def slug(text):
@@ -57,21 +57,21 @@ class Runner:
         self.prepared, self.calls = {}, []
 
     def cost(self):
-        """Returns the time and the highest machine load of the calls since the last call of cost(). If the outcome of a call
-        was stored earlier, its values are those of the run in which the call was made."""
+        """Returns the time and the highest machine load of the calls since the last call of cost(). For a stored
+        outcome, these values are those of the run in which the call was made."""
         calls, self.calls = self.calls, []
         return {"wall_s": round(sum(call["wall_s"] for call in calls), 2),
                 "processor_s": round(sum(call["processor_s"] for call in calls), 2),
                 "load_1min": max((call["load_1min"] for call in calls), default=None)}
 
     def kept(self, folder, of, function, in_words=described):
-        """Returns the outcome of outcome_in() and adds its time and load to the next cost()."""
+        """Returns the outcome of outcome_in(), and adds its time and load to the result of the next cost()."""
         outcome = outcome_in(folder, of, function, in_words)[0]
         self.calls.append(outcome)
         return outcome
 
     def log(self, data_set, name, drive=""):
-        """Returns the prepared log. Raises Failed if the file or its entry in the table has a mistake."""
+        """Returns the prepared log. Raises Failed if the log file, or the entry for it in the table, has a mistake."""
         key = (data_set.name, name, drive)
         if key not in self.prepared:
             folder = self.out / data_set.name / ("logs" + (f"-{drive}" if drive else ""))
@@ -82,7 +82,8 @@ class Runner:
         return self.prepared[key]
 
     def call(self, folder, command, files, words, logs):
-        """Runs `softgrip command words --out folder`. Returns the outcome, whose result is the JSON output."""
+        """Runs `softgrip COMMAND WORDS --out FOLDER`. Returns the outcome, whose result is the JSON output of the
+        command."""
         of = checksum(*files, self.program, command, *words)
 
         def answer(out):
@@ -114,7 +115,7 @@ class Runner:
         return folder, self.call(folder, "identify", files, options, (*logs, *validated))
 
     def diagnose(self, folder, model, logs, healthy=()):
-        """Runs `softgrip diagnose` with the given model. With `healthy` logs, it diagnoses the change since these logs."""
+        """Runs `softgrip diagnose` with the given model. With `healthy` logs, diagnoses the change since these logs."""
         options = ["--model", model, "--data", *(log.path for log in logs)]
         if healthy:
             options += ["--healthy", *(log.path for log in healthy)]

@@ -3,10 +3,11 @@
 
     scipy_bouc_wen.py LOG.csv SPLIT SIMULATOR.so [TEST.csv]     prints JSON: RMSE of the fitted and of the predicted part [mm]
 
-The program shares no code with softgrip: the simulator is the compiled bench/sysid_peer_simulator.c, and the optimiser is
-scipy.optimize.least_squares. The input is the measured pressure if the log contains it, otherwise the command. The finger is
-assumed to be at rest at the first pressure. The zero of the readings is fitted together with the other eight parameters. The
-result is the best of the fits from four start points. With TEST, the whole of LOG is fitted and TEST is predicted.
+The program shares no code with softgrip: the simulator is the compiled bench/sysid_peer_simulator.c, and the optimiser
+is scipy.optimize.least_squares. The input is the measured pressure if the log contains a measured pressure, otherwise
+the command. The finger is assumed to be at rest under the first pressure. The zero of the readings is fitted together
+with the other eight parameters. The result is the best of the fits from four start points. With TEST, the whole of LOG
+is fitted and TEST is predicted.
 """
 import ctypes
 import json
@@ -20,7 +21,7 @@ except ImportError as error:
 
 from held_out import first_share, read, rmse, rmse_with_own_offset
 
-K0 = 1e12  # stiffness of the elastic spring, so large that the spring has no effect; alpha has the same effect
+K0 = 1e12  # stiffness of the elastic spring: so large that the spring has no effect, because alpha already models it
 STARTS, EVALUATIONS = 4, 200
 POINTER = ctypes.POINTER(ctypes.c_double)
 

@@ -1,7 +1,8 @@
 """Reads a data set and its table. The table describes the logs, as in log_table.py, and the known facts that the judges use.
 
-A mistake in a log, a pair or a loop is reported with its file and line. The cases that use this entry are not judged, but all
-other cases are. If the table as a whole cannot be read, log_table.Unusable is raised. docs/how-to/measure.md lists the keys.
+A mistake in a log, a pair or a loop is reported with its file and line. The cases that use a wrong entry are not
+judged; all other cases are judged. If the complete table cannot be read, log_table.Unusable is raised.
+docs/how-to/measure.md lists the keys.
 """
 import csv
 import dataclasses
@@ -18,7 +19,7 @@ CAUSES = ("transport_delay", "valve_lag", "valve_deadband", "pressure_saturation
           "stress_softening", "slow_creep", "thermal_gain", "ageing", "contact", "inertia", "backlash", "payload",
           "sensor_lag", "sensor_drift", "sensor_nonlinearity", "sensor_saturation", "periodic_disturbance", "outliers",
           "clock_offset", "sampling")
-OWN_TABLE = "foreign.yaml"  # name of the table in a data folder; if it is missing, sets/NAME_OF_THE_FOLDER.yaml is used
+OWN_TABLE = "foreign.yaml"  # name of the table in a data folder; without this file, sets/NAME_OF_THE_FOLDER.yaml is used
 
 
 @dataclasses.dataclass
@@ -48,11 +49,11 @@ class Loop:
 
 @dataclasses.dataclass
 class Fit:
-    """A log that is identified. Either the model is fitted to the first part of the log, or it is fitted to the whole log
-    and tested on another log."""
+    """A log that is identified. The model is fitted to the first part of this log, or it is fitted to the whole log and
+    tested on another log."""
     log: str
     test: str = ""
-    order: int = 0  # order of the linear model; 0: the default
+    order: int = 0  # order of the linear model; 0: default order
     problems: list = dataclasses.field(default_factory=list)
 
     @property
@@ -181,7 +182,7 @@ def is_log(path):
 
 def set_without_table(folder, scratch):
     """Returns a data set for a folder that has no table. Each CSV file in the log format is a case of the judge
-    `identification`; the other judges have no cases."""
+    `identification`. All other judges have no cases."""
     files = [path for path in sorted(folder.glob("*.csv")) if is_log(path)]
     if not files:
         return None

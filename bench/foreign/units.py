@@ -1,7 +1,7 @@
-"""Defines the usual units, and converts values to the units of the log format."""
+"""Defines the common units of measured columns, and their conversion to the units of the log format."""
 import re
 
-TIME_POINT = "datetime"  # dates with times of day, ISO 8601
+TIME_POINT = "datetime"  # unit of a column that contains dates with times of day (ISO 8601)
 
 # for each quantity: unit in lower case -> units of the log format (s, kPa, mm) per unit
 QUANTITIES = {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Checks that numbers and names in documents agree with the sources. Checks the stated numbers of threads, fingers
-and simulated worlds, and the files that are said to include Ceres. The figures of README.md must be on the pages to
-which README.md links."""
+"""Checks that numbers and names in documents agree with the sources. Checks the stated numbers of threads, fingers and
+simulated test cases, and the files that include Ceres according to the documents. The figures of README.md must be on
+the pages to which README.md links."""
 
 import re
 import sys
@@ -50,8 +50,8 @@ def fingers():
 
 
 def worlds():
-    """Returns two numbers of rows in the tables of simulated worlds in tests/blind: the rows that every test run
-    uses, and the rows that a run with --all uses."""
+    """Returns two numbers of rows in the tables of simulated test cases in tests/blind: the rows that every test
+    run uses, and the rows that a run with --all uses."""
     counts = {"": 0, "more_": 0}
     for more in counts:
         for folder, name, world in (("", "fixed_worlds", WORLD), ("textbook/", "fixed_worlds", WORLD),
@@ -67,13 +67,13 @@ def worlds():
 def includes_of_ceres():
     files = [name for name in sources("") if "#include <ceres/" in text(name) and not name.startswith("tests/")]
     row = next(line for line in text("docs/explanation/libraries.md").splitlines() if line.startswith("| Ceres |"))
-    if len(files) != 1 or f"Only `{files[0]}` includes it" not in row:
+    if len(files) != 1 or f"Only `{files[0]}` includes Ceres" not in row:
         yield f"libraries.md: Ceres is included by {', '.join(files)}"
 
 
 def front_page():
-    """Checks the figures of README.md. Each version hash, count and comparison must be on a page to which its table
-    row or sentence links."""
+    """Checks the figures of README.md. Each version hash, count and comparison must be on a page to which the table
+    row or sentence of the figure links."""
     body = text("README.md").split("## Four results")[1]
     for part in re.split(r"\n(?=[|-]|\n)", body):
         linked = " ".join(one_line(re.sub(r"#.*", "", link)) for link in re.findall(r"\]\(([^)]+\.md[^)]*)\)", part))

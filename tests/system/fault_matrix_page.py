@@ -7,8 +7,8 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import results_page
 
 EXPLANATION = """\
-The table shows the result of every fault (row) in every phase of a grip (column). It also shows how many cycles of the control loop passed until the fault was detected, and what the board did with its outputs.
-`tests/system/fault_matrix.yaml` defines the required result of each cell. If the measured result of a cell differs from the required result, the cell is marked **WRONG** and the command fails. The test `system.test_fault_matrix` repeats some of the cells in every test run.
+The table shows the result of every fault (row) in every phase of a grip (column). The table also shows how many cycles of the control loop passed until the fault was detected, and what the board did with its outputs.
+`tests/system/fault_matrix.yaml` defines the required result of each cell. If the measured result of a cell differs from the required result, the cell is marked **WRONG** and `scripts/fault_matrix.sh` fails. The test `system.test_fault_matrix` repeats some of the cells in every test run.
 
 - **F103 20/22 vent**: the daemon latched fault F103 20 cycles after the first effect of the fault, and vented the outputs. The thresholds below allow 22 cycles.
 *board*: the watchdog of the board vented the outputs, because no write was possible. A cycle is a tick in the recording. The cycles are counted from the first affected message to the tick in which the fault latched.

@@ -30,8 +30,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("SOFTGRIP_BUILD", ROOT / "build" / "release"))
 PAGE = ROOT / "docs/reference/foreign-files.md"
 
-# The original signals, sampled at 100 Hz for three seconds. The command rises to 60 kPa and falls to 0. The
-# measured pressure follows the command with a lag, and a finger follows the pressure.
+# The original signals: three seconds, sampled at 100 Hz. The command rises to 60 kPa and falls to 0. The measured
+# pressure follows the command with a lag, and the displacement of a finger follows the pressure.
 COUNT = 300
 PSI, BAR = 6.894757293168361, 100.0
 
@@ -94,8 +94,8 @@ def without(rows):
     return kept | {"time_s": [round(t - first, 9) for t in kept["time_s"]]}
 
 
-# MATLAB 5 files. This code writes them by the specification (MAT-File Format, The MathWorks), without the
-# library with which softgrip reads them.
+# Writes MATLAB 5 files. The code follows the specification (MAT-File Format, The MathWorks). It does not use the
+# library with which softgrip reads these files.
 
 def element(kind, data):
     return struct.pack("<II", kind, len(data)) + data + b"\0" * (-len(data) % 8)
@@ -123,7 +123,7 @@ def text_matrix(text):
 
 
 def structures(name, elements):
-    """Returns an array of MATLAB structures. The caller has already encoded the values of the fields."""
+    """Returns an array of MATLAB structures. The values of the fields are given in encoded form."""
     names = b"".join(field.encode().ljust(32, b"\0") for field in elements[0])
     return headed(2, (1, len(elements)), name, struct.pack("<HHi", 5, 4, 32) + element(1, names)
                   + b"".join(value for fields in elements for value in fields.values()))
@@ -240,7 +240,7 @@ def mcap(messages):
 
 
 class File:
-    """One external file, with the function that makes it, the import options, and the required result."""
+    """One external file: the function that writes the file, the import options, and the required result."""
 
     def __init__(self, name, about, content, options="", *, columns=None, refused="", says="", left_out=None, joined=0,
                  tolerance=1e-9):
@@ -288,7 +288,7 @@ def spreadsheets():
         File("idle_sheet.csv", "the option --sheet for a file without sheets", PLAIN, "--sheet Run", says="--sheet has no effect"),
         File("word.xlsx", "a word among the numbers of a sheet", workbooks.book(stuck),
              refused="sheet 'Run':102:10: displacement: cell C102: 'stuck' is not a number"),
-        File("cut_off.xlsx", "a workbook, cut off", workbooks.book([names] + rows)[:3000], refused="broken or cut off"),
+        File("cut_off.xlsx", "a workbook with a missing end", workbooks.book([names] + rows)[:3000], refused="broken or cut off"),
         File("spreadsheet.ods", "an OpenDocument spreadsheet", opendocument, refused="an OpenDocument spreadsheet (.ods)"),
         File("old.xls", "an old spreadsheet", b"\xd0\xcf\x11\xe0" + bytes(508), refused="this is an old spreadsheet (.xls)"),
         File("locked.xlsx", "a workbook with a password", b"\xd0\xcf\x11\xe0" + bytes(508) + "EncryptedPackage".encode("utf-16-le"),
@@ -297,7 +297,7 @@ def spreadsheets():
 
 
 def measurements():
-    """Returns .tdms files, the binary format of LabVIEW."""
+    """Returns files in the binary format of LabVIEW (.tdms)."""
     times = {"t": tdms.Channel(T, {"unit_string": "s"}), "set": tdms.Channel(COMMAND, {"unit_string": "kPa"}),
              "tip": tdms.Channel(TIP, {"unit_string": "mm"})}
     ramp = [k - 150 for k in range(COUNT)]
@@ -314,7 +314,7 @@ def measurements():
              says="'log/comment' is skipped: a text", tolerance=1e-6),
         File("waveform.tdms", "LabVIEW TDMS: waveforms", tdms.file([tdms.segment("log", steps)]),
              says="'wf_time' is computed from wf_start_offset in steps of wf_increment"),
-        File("cut_off.tdms", "LabVIEW TDMS, interleaved and cut off", tdms.file([tdms.segment("log", times, interleaved=True)])[:-100 * 24 - 5],
+        File("cut_off.tdms", "LabVIEW TDMS: interleaved channels, with a missing end", tdms.file([tdms.segment("log", times, interleaved=True)])[:-100 * 24 - 5],
              columns={key: TRUTH[key][:199] for key in BASIC}, says="the file is cut off", left_out={"cut_off_line": 1}),
         File("daqmx.tdms", "LabVIEW TDMS: raw values of DAQmx", whole[:4] + bytes([whole[4] | 128]) + whole[5:],
              refused="raw values of DAQmx"),
@@ -401,7 +401,7 @@ def reports():
         File("unread_time.csv", "a time, and dates with the month first", table(
             ["time_s", "Timestamp", *names[1:]], [T, times("2024-05-31T12:00:00", "%m/%d/%Y %H:%M:%S.%f"), COMMAND, TIP]),
              says="the column 'Timestamp' looks like a time and cannot be read ('05/31/2024 12:00:00.000')"),
-        File("long_minutes.csv", "minutes above 59", table(
+        File("long_minutes.csv", "times with more than 59 minutes", table(
             ["Time", *names[1:]], [[f"{(3598 + t) // 60:.0f}:{(3598 + t) % 60:05.2f}" for t in T], COMMAND, TIP])),
         File("noon.csv", "p.m. in lower case across one o'clock",
              table(["Time", *names[1:]], [[text[:12].lstrip("0") + " p.m." for text in clock], COMMAND, TIP])),
@@ -411,9 +411,9 @@ def reports():
         File("zones.csv", "dates with a time-zone offset", table(
             ["Date", *names[1:]], [[text + "+02:00" for text in times("2024-05-31T23:59:59", "%Y-%m-%dT%H:%M:%S.%f")],
                                    COMMAND, TIP])),
-        File("slow_readings.csv", "one reading in 20 rows", table(names, [T, COMMAND, slow_cells]),
+        File("slow_readings.csv", "a reading in every 20th row", table(names, [T, COMMAND, slow_cells]),
              refused="95.0 % of the samples have no reading"),
-        File("slow_readings_long.csv", "one reading in 20 rows, in a file with ten times as many rows", table(
+        File("slow_readings_long.csv", "a reading in every 20th row, in a file with ten times as many rows", table(
             names, [[i / 100 for i in range(10 * COUNT)], COMMAND * 10, slow_cells * 10]),
              columns={"time_s": [i / 100 for i in range(10 * COUNT)], "pressure_command_kpa": COMMAND * 10,
                       "displacement_mm": slow * 10}, says="95.0 % of the samples have no reading"),
@@ -424,13 +424,13 @@ def reports():
         File("stamps_of_20_ms.csv", "time stamps with a resolution of 20 ms in a log of 100 Hz, with the rate as an option", table(
             names, [[round(0.02 * (i // 2), 6) for i in range(COUNT)], COMMAND, TIP]), "--rate-hz 100",
              says="the column 'time_s' looks like a time and is not used, because --rate-hz replaces this column"),
-        File("cut_off.lvm", "a LabVIEW measurement, cut off", lvm_text[:-20], columns={key: TRUTH[key][:-1] for key in BASIC},
+        File("cut_off.lvm", "a LabVIEW measurement with a missing end", lvm_text[:-20], columns={key: TRUTH[key][:-1] for key in BASIC},
              says="the last line is cut off and left out", left_out={"cut_off_line": 1}),
         File("nul_tail.lvm", "a LabVIEW measurement with NUL bytes at its end", lvm_text.encode() + bytes(100),
              says="100 NUL bytes at the end of the file are left out"),
-        File("cut_metadata.tdms", "LabVIEW TDMS: the third segment is cut off in its metadata",
+        File("cut_metadata.tdms", "LabVIEW TDMS: the file ends in the metadata of the third segment",
              tdms.file(parts)[:-100 * 24 - 30], columns=first, says="is cut off in its metadata"),
-        File("cut_block.tdms", "LabVIEW TDMS: the third segment is cut off in its values", tdms.file(parts)[:-100 * 16 - 80],
+        File("cut_block.tdms", "LabVIEW TDMS: the file ends in the values of the third segment", tdms.file(parts)[:-100 * 16 - 80],
              columns=first, says="incomplete rows or blocks of values are left out: 720 bytes", left_out={"cut_off_line": 90}),
         File("nested_cells.mat", "MATLAB 5: a cell array of structures", matlab_5(cells("runs", [structures("", [
             {"t_ms": matrix("", ms), "set_kPa": matrix("", COMMAND), "tip_mm": matrix("", TIP)}])]))),
@@ -460,7 +460,8 @@ def other_fingers_and_clocks():
     names = ("time_s", "finger", "set_kPa", "tip_mm")
     readings = table(["time_s", "set_kpa", "finger"], [T, COMMAND, TIP])
     one_x = lvm("No", 1)
-    # The second channel starts 20 ms later than the first, has half its sample rate, and ends earlier.
+    # The second channel starts 20 ms after the first channel. It has half the sample rate of the first channel and ends
+    # earlier.
     own_x = lvm("Multi", 1).replace("kPa\tmm", "kPa\t\tmm").replace(
         "12:59:50,938\t12:59:50,938", "12:59:50,938\t\t12:59:50,958").replace("2024/06/13\t2024", "2024/06/13\t\t2024").replace(
         "X_Value\tSet\tTip", "X_Value\tSet\tX_Value\tTip")
@@ -472,12 +473,12 @@ def other_fingers_and_clocks():
     fast = {name: tdms.Channel(values, {"unit_string": unit}) for name, values, unit in (("t", T, "s"), ("set", COMMAND, "kPa"))}
     stamp = [1717156800 + int(t) for t in T], [round(t % 1 * 1e9) for t in T]
     return [
-        File("psi_as_kpa.csv", "psi in a column that is labelled kPa", table(["time_s", "set_kpa", "tip_mm"], [T, scaled(COMMAND, PSI), TIP]),
+        File("psi_as_kpa.csv", "a pressure in psi, in a column that is labelled kPa", table(["time_s", "set_kpa", "tip_mm"], [T, scaled(COMMAND, PSI), TIP]),
              columns=BASIC_OF | {"pressure_command_kpa": scaled(COMMAND, PSI)}, says="The largest value of `set_kpa` is 8.7"),
         File("finger_rows.csv", "rows of two fingers, whose names are in a column that is not called channel", by_word, refused="the file has 2 channels: 'left', 'right'"),
-        File("finger_rows_left.csv", "two fingers, one of them selected", by_word, "--channel left", **of_first),
-        File("finger_numbers.csv", "fingers in rows by their number", by_number, "--channel 1", **of_first),
-        File("finger_rows.mat", "MATLAB 5: fingers in rows by their number", matlab_5(structures("run", [
+        File("finger_rows_left.csv", "rows of two fingers, whose names are in a column that is not called channel, one finger selected", by_word, "--channel left", **of_first),
+        File("finger_numbers.csv", "rows of several fingers, each with the number of its finger", by_number, "--channel 1", **of_first),
+        File("finger_rows.mat", "MATLAB 5: rows of several fingers, each with the number of its finger", matlab_5(structures("run", [
             {name: matrix("", values) for name, values in zip(names, zip(*rows))}])),
              refused="the rows belong to 2 fingers: 'run.finger' has 1, 2"),
         File("finger_readings.csv", "readings in a column called finger", readings, "--displacement finger --unit displacement=mm"),
@@ -516,7 +517,7 @@ def signals(stamp):
         return [(name, t + late_s, {"data": value}) for t, value in list(zip(T, values))[::every]]
 
     def stamped(name, key, values, late_s=0.0, begin=0):
-        # The time at which a message was logged is later than the stamp in the message.
+        # The time at which a message was logged is later than the time stamp inside the message.
         return [(name, t + late_s, {"header": {"stamp": {"sec": sec - begin, "nanosec": rest}}, key: value})
                 for t, sec, rest, value in zip(T, *stamp, values)]
     half = {"time_s": sorted([*T, *(round(t + 0.002, 6) for t in T[::2])])}
@@ -541,7 +542,7 @@ def signals(stamp):
             stamped("/valve", "set_kpa", COMMAND)[100:] + [(name, t + 10, content) for name, t, content in both[:100]]
             + stamped("/laser", "tip_mm", TIP)), refused="the time goes back"),
         File("signals_fingers.mcap", "MCAP: a topic per signal of two fingers", mcap(fingers), refused="the columns belong to 2 fingers: 'left', 'right'"),
-        File("signals_left.mcap", "two fingers, one of them selected", mcap(fingers), "--channel left", joined=COUNT, left_out={"empty": 2 * COUNT}),
+        File("signals_left.mcap", "MCAP: a topic per signal of two fingers, one finger selected", mcap(fingers), "--channel left", joined=COUNT, left_out={"empty": 2 * COUNT}),
         File("signals_nobody.mcap", "MCAP: a topic per signal of two fingers, and the option --channel with a name that no finger has", mcap(fingers), "--channel middle",
              refused="no finger has the name 'middle'"),
     ]
@@ -559,23 +560,23 @@ def files():
     pairs = list(zip(T, COMMAND, TIP))
     broken_bar = [None if i == 50 else value for i, value in enumerate(COMMAND)]
     return [
-        File("names_psi.csv", "names other than those of a log, psi, units in brackets",
+        File("names_psi.csv", "names that differ from the names in a log, pressures in psi, units in brackets",
              table(["Time (s)", "P set [psi]", "P meas [psi]", "Tip [mm]"], [T, scaled(COMMAND, PSI),
                                                                              scaled(PRESSURE, PSI), TIP]),
              columns=MEASURED),
-        File("bar_semicolon.csv", "bar, semicolons, cm",
+        File("bar_semicolon.csv", "pressures in bar, a displacement in cm, columns separated by semicolons",
              table(["t_s", "Sollwert_bar", "Weg_cm"], [T, scaled(COMMAND, BAR), scaled(TIP, 10)], ";")),
-        File("volts.csv", "volts of a laser and a regulator, with scales",
+        File("volts.csv", "a laser sensor and a regulator in V, with scale factors",
              table(["time_ms", "valve_V", "laser_V"], [[round(1000 * t) for t in T], scaled(COMMAND, 25),
                                                        [round(2 + tip / 2.5, 12) for tip in TIP]]),
              "--scale command=25 --scale displacement=2.5 --zero displacement=2"),
-        File("volts_unsaid.csv", "volts without a scale", table(["time_s", "set_kpa", "laser_V"], [T, COMMAND, TIP]),
+        File("volts_unsaid.csv", "a displacement in V without a scale factor", table(["time_s", "set_kpa", "laser_V"], [T, COMMAND, TIP]),
              refused="'V' is not a unit of displacement"),
         File("unit_unsaid.csv", "a column without a unit", table(["time_s", "set_kpa", "tip"], [T, COMMAND, TIP]),
              refused="'tip' has no unit"),
         File("unit_said.csv", "a column without a unit, with the unit as an option",
              table(["time_s", "set_kpa", "tip"], [T, COMMAND, TIP]), "--unit displacement=mm"),
-        File("milliseconds_tabs.tsv", "milliseconds, tabs",
+        File("milliseconds_tabs.tsv", "times in milliseconds, columns separated by tabs",
              table(["Time ms", "Setpoint kPa", "Position mm"], [[round(1000 * t) for t in T], COMMAND, TIP], "\t")),
         File("savetxt.txt", "columns separated by blanks, with the names in a comment (numpy.savetxt)",
              "# bench 3\n# t_s p_cmd_kpa tip_mm\n" + table([], [T, COMMAND, TIP], " ")),
@@ -626,9 +627,9 @@ def files():
         File("fixed_width.txt", "columns separated by blanks, names with blanks",
              "Time s      Set kPa     Tip mm\n" + "".join(f"{t:<12.2f}{c:<12.6f}{y:.6f}\n"
                                                       for t, c, y in zip(T, COMMAND, TIP))),
-        File("no_names.csv", "a file without names: columns by number", table([], [T, COMMAND, TIP]),
+        File("no_names.csv", "a file without names, with columns selected by number", table([], [T, COMMAND, TIP]),
              "--time 1 --command 2 --displacement 3 --unit time=s --unit command=kPa --unit displacement=mm"),
-        File("no_time.csv", "a file without times: the rate as an option", table(["set_kpa", "tip_mm"], [COMMAND, TIP]), "--rate-hz 100"),
+        File("no_time.csv", "a file without times, with the rate as an option", table(["set_kpa", "tip_mm"], [COMMAND, TIP]), "--rate-hz 100"),
         File("no_displacement.csv", "a file without a displacement", table(["time_s", "set_kpa"], [T, COMMAND]),
              refused="no column looks like a displacement"),
         File("pressure_alone.csv", "a measured pressure without a command", table(["time_s", "pressure_kpa", "tip_mm"],
@@ -643,7 +644,7 @@ def files():
              columns={key: TRUTH[key] for key in BASIC} | {
                  "displacement_mm": [math.nan if tip is None else tip for tip in slow]},
              says="of the samples have no reading"),
-        File("command_gap.csv", "one missing command",
+        File("command_gap.csv", "one missing commanded pressure",
              table(["time_s", "set_kpa", "tip_mm"], [T, broken_bar, TIP]),
              columns={key: TRUTH[key] for key in BASIC} | {"pressure_command_kpa": [
                  COMMAND[49] if i == 50 else value for i, value in enumerate(COMMAND)]},
@@ -655,14 +656,14 @@ def files():
              table(["time_s", "set_kpa", "tip_mm"], dropped([T, COMMAND, TIP], set(range(80, 150)))),
              columns={key: without(set(range(150)))[key] for key in BASIC}, says="the longest segment is kept",
              left_out={"hole": 80}),
-        File("stretch.csv", "a part of the file", PLAIN, "--from-s 1 --to-s 1.99",
+        File("stretch.csv", "a file of which only a part is imported", PLAIN, "--from-s 1 --to-s 1.99",
              columns={key: without(set(range(100)) | set(range(200, 300)))[key] for key in BASIC},
              left_out={"outside_stretch": 200}),
         File("two_runs.csv", "two runs in one file", PLAIN + table([], [T, COMMAND, TIP]), refused="the time goes back"),
         File("cut_off.csv", "the last line is cut off", PLAIN[:-12],
              columns={key: TRUTH[key][:-1] for key in BASIC}, says="the last line is cut off and left out",
              left_out={"cut_off_line": 1}),
-        File("ragged.csv", "a row with a cell too many", changed(PLAIN, 120, ",", ",,"),
+        File("ragged.csv", "a row with one cell too many", changed(PLAIN, 120, ",", ",,"),
              refused="4 cells where the rows above have 3"),
         File("word.csv", "a word among the numbers", changed(PLAIN, 77, "0.75,", "0.75x,"),
              refused="'0.75x' is not a number"),
@@ -673,8 +674,8 @@ def files():
         File("wrong_unit.csv", "a measured pressure in psi, in a column that is labelled kPa",
              table(["time_s", "set_kpa", "actual_pressure_kpa", "tip_mm"], [T, COMMAND, scaled(PRESSURE, PSI), TIP]),
              columns=MEASURED | {"pressure_kpa": scaled(PRESSURE, PSI)}, says="which is the conversion factor between psi and kPa"),
-        File("packed.csv.gz", "gzip", gzip.compress(PLAIN.encode(), mtime=0)),
-        File("packed_cut.csv.gz", "gzip, cut off", gzip.compress(PLAIN.encode(), mtime=0)[:-300],
+        File("packed.csv.gz", "a text file that is compressed by gzip", gzip.compress(PLAIN.encode(), mtime=0)),
+        File("packed_cut.csv.gz", "a text file that is compressed by gzip and whose end is missing", gzip.compress(PLAIN.encode(), mtime=0)[:-300],
              refused="the gzip file is cut off"),
         File("vectors.mat", "MATLAB 5: vectors",
              matlab_5(matrix("time_s", T), matrix("p_cmd_psi", scaled(COMMAND, PSI)), matrix("tip_mm", TIP))),
@@ -694,7 +695,7 @@ def files():
         File("old.mat", "MATLAB 4", matlab_4("time_s", T) + matlab_4("set_bar", scaled(COMMAND, BAR))
              + matlab_4("tip_mm", TIP)),
         File("v73.mat", "MATLAB 7.3", matlab_73, "--unit time=s", columns=MEASURED),
-        File("cut_off.mat", "MATLAB 5, cut off", matlab_5(matrix("time_s", T))[:-900],
+        File("cut_off.mat", "MATLAB 5, with a missing end", matlab_5(matrix("time_s", T))[:-900],
              refused="not contain two arrays of numbers"),
         File("groups.h5", "HDF5: groups, compressed, units as attributes", hdf5_datasets, columns=MEASURED),
         File("compound.h5", "HDF5: a table of compounds", hdf5_compound),
@@ -722,7 +723,7 @@ def files():
         File("two_fields_said.csv", "minutes and seconds, with the unit as an option",
              table(["Time", "set_kpa", "tip_mm"], [[f"{i // 60:02}:{i % 60:02}" for i in range(COUNT)], COMMAND, TIP]),
              "--unit time=mm:ss", columns={key: TRUTH[key] for key in BASIC} | {"time_s": list(range(COUNT))}),
-        File("half_days.csv", "AM and PM across noon",
+        File("half_days.csv", "times of day with AM and PM, across noon",
              table(["Time", "set_kpa", "tip_mm"],
                    [[text[:12] + (" AM" if text < "12" else " PM")
                      for text in times("2024-05-31T11:59:58", "%H:%M:%S.%f")], COMMAND, TIP])),
@@ -739,7 +740,7 @@ def files():
         File("coarser_times.csv", "time stamps with a resolution of 1 s in a log of 100 Hz",
              table(["time_s", "set_kpa", "tip_mm"], [[i // 100 for i in range(COUNT)], COMMAND, TIP]),
              refused="too few rows can be used: 300 rows: 3 used, 297 left out (297 with the time of the previous row)"),
-        File("rows_of_commands.csv", "commands in separate rows",
+        File("rows_of_commands.csv", "commanded pressures in separate rows",
              table(["time_s", "set_kpa", "tip_mm"],
                    [T, [value if i % 10 == 0 else None for i, value in enumerate(COMMAND)],
                     [None if i % 10 == 0 else tip for i, tip in enumerate(TIP)]]),
@@ -757,8 +758,8 @@ def files():
         File("two_times_chosen.csv", "two times that differ, one of them selected by an option",
              table(["time_a_s", "time_b_s", "set_kpa", "tip_mm"], [T, [round(0.5 * t, 6) for t in T], COMMAND, TIP]),
              "--time time_a_s", says="the column 'time_b_s' looks like a time and is not used, because its times differ"),
-        File("fingers.csv", "two fingers in the columns", fingers, refused="the columns belong to 2 fingers: 'left', 'right'"),
-        File("fingers_right.csv", "two fingers, one of them selected", fingers, "--channel right", columns=right,
+        File("fingers.csv", "columns of two fingers", fingers, refused="the columns belong to 2 fingers: 'left', 'right'"),
+        File("fingers_right.csv", "columns of two fingers, one finger selected", fingers, "--channel right", columns=right,
              says="not used: 'P_left (kPa)', 'tip_left (mm)'"),
         File("fingers_none.csv", "columns of two fingers, and the option --channel with a name that no finger has", fingers, "--channel thumb",
              refused="no finger has the name 'thumb': the columns belong to 'left', 'right'"),
@@ -771,7 +772,7 @@ def files():
              says="512 NUL bytes at the end of the file are left out"),
         File("extra_separator.csv", "a separator at the end of each row of numbers", PLAIN.replace("\n", ",\n").replace(
             "tip_mm,\n", "tip_mm\n")),
-        File("bad_lines.csv", "a row with a word and a row with a cell too many, both skipped",
+        File("bad_lines.csv", "a row with a word and a row with one cell too many, both skipped",
              changed(changed(PLAIN, 120, ",", ",,"), 77, "0.75,", "0.75x,"), "--skip-bad-lines",
              columns={key: values for key, values in without({75, 118}).items() if key in BASIC}, says="--skip-bad-lines leaves out 1 lines with a different number of cells: 120",
              left_out={"bad_line": 2}),
@@ -783,20 +784,20 @@ def files():
         File("fingers_a_b.csv", "fingers A and B", table(
             ["t_s", "Finger A set (kPa)", "Finger A tip (mm)", "Finger B set (kPa)", "Finger B tip (mm)"],
             [T, *other, COMMAND, TIP]), "--channel B"),
-        File("angle.csv", "degrees", table(["time_s", "set_kpa", "tip (deg)"], [T, COMMAND, TIP]), columns=BENT),
+        File("angle.csv", "a bending angle in degrees", table(["time_s", "set_kpa", "tip (deg)"], [T, COMMAND, TIP]), columns=BENT),
         File("angle_sign.csv", "a bending angle with the sign of degrees", table(
             ["time_s", "set_kpa", "bend [\u00b0]"], [T, COMMAND, TIP]), columns=BENT),
-        File("angle_rad.csv", "radians", table(
+        File("angle_rad.csv", "a bending angle in radians", table(
             ["time_s", "set_kpa", "theta_rad"], [T, COMMAND, scaled(TIP, math.degrees(1), 15)]), columns=BENT),
         File("angle_volts.csv", "a bend sensor with 18 degrees per volt", table(
             ["time_s", "set_kpa", "flex_V"], [T, COMMAND, scaled(TIP, 18)]),
              "--displacement flex_V --scale displacement=18 --unit displacement=deg", columns=BENT),
-        File("angle_beside.csv", "a tip in mm, and the angle of the bend", table(
+        File("angle_beside.csv", "the displacement of a tip in mm, and a bending angle", table(
             ["time_s", "set_kpa", "angle (deg)", "tip (mm)"], [T, COMMAND, scaled(TIP, 0.3), TIP]),
              says="not used: 'angle (deg)'"),
         File("angle_gon.csv", "an unknown unit of angles", table(
             ["time_s", "set_kpa", "angle (gon)"], [T, COMMAND, TIP]), refused="'gon' is not a unit of displacement"),
-        File("angle_scaled.csv", "degrees, as the path of a tip 45 mm from the bend",
+        File("angle_scaled.csv", "a bending angle in degrees, converted to the path of a tip 45 mm from the bend",
              table(["time_s", "set_kpa", "tip (deg)"], [T, COMMAND, scaled(TIP, math.radians(45))]),
              f"--scale displacement={math.radians(45)!r}"),
         File("recording", "a recording of softgripd, one channel selected", recording, "--channel left",
@@ -805,7 +806,7 @@ def files():
         File("run.mcap", "a recording exported as MCAP, one channel selected", exported(bytes), "--channel left",
              columns=MEASURED, says="not used: 'state'", left_out={"other_channel": 300}),
         File("both.mcap", "a recording exported as MCAP, no channel selected", exported(bytes), refused="2 channels: 'left', 'right'"),
-        File("cut_off.mcap", "a recording exported as MCAP, cut off", exported(lambda whole: whole[:whole.index(b'"time_s":2.0') - 40]),
+        File("cut_off.mcap", "a recording exported as MCAP, with a missing end", exported(lambda whole: whole[:whole.index(b'"time_s":2.0') - 40]),
              "--channel left", columns={key: TRUTH[key][:201] for key in MEASURED}, says="the file is cut off: its last",
              left_out={"other_channel": 200, "cut_off_line": 1}),
         File("changed.mcap", "a recording exported as MCAP, with a changed byte",
@@ -826,8 +827,8 @@ def read_csv(path):
 
 
 def furthest(got, wanted):
-    """Returns the largest relative difference between a log and the original signals, or the reason why there is no
-    difference to compute."""
+    """Returns the largest relative difference between a log and the original signals. If no difference can be computed,
+    returns the reason."""
     if set(got) != set(wanted):
         return math.inf, f"columns {sorted(got)} instead of {sorted(wanted)}"
     worst = 0.0
@@ -873,7 +874,7 @@ def outcome(file, folder):
 
 HEAD = """# External files
 
-This page shows how `softgrip import` converts external files. This command writes it:
+This page shows how `softgrip import` converts external files. This command writes the page:
 
 ```
 $ tests/system/foreign_files.py --page
@@ -881,7 +882,7 @@ $ tests/system/foreign_files.py --page
 
 The script writes every file, imports it, and compares each value with the original. An import passes if each deviation is at
 most 1e-9 of the largest value of its column. A file that must be refused passes if the import states the reason and writes
-no output. "As they are" means that all samples passed this comparison. If the column "options" is empty, the import used the
+no output. "As they are" means that all samples are equal to the original in this sense. If the column "options" is empty, the import used the
 columns that it had proposed from names and units (`--yes`). The test `system.test_import` repeats the imports and compares
 them with this page. [How to import](../how-to/import.md) contains the rules.
 

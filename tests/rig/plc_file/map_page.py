@@ -21,7 +21,7 @@ def finger_table(registers):
     fingers = registers["fingers"]
     rows = [dict(row, address=f"{fingers['first'] + row['address']} + {fingers['each']} n")
             for row in registers["finger"]]
-    return (f"Finger n counts from 0; there are registers for {fingers['most']}.\n\n" + table(rows))
+    return (f"Finger n counts from 0; registers exist for {fingers['most']} fingers.\n\n" + table(rows))
 
 
 def page():
