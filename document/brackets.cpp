@@ -31,8 +31,8 @@ class Scan {
   [[nodiscard]] std::vector<Bracket> open() const { return open_; }
 
  private:
-  /// Reads the character at `i`. Returns the number of characters after it that are read together with it, as
-  /// in `\"`.
+  /// Reads the character at index `i`. Returns the number of characters after this character that are read
+  /// together with it: 1 for the backslash of `\"`.
   std::size_t step(std::string_view text, std::size_t i, int number) {
     const char c = text[i];
     if (quote_ != 0) {
@@ -58,8 +58,8 @@ class Scan {
   std::vector<Bracket> open_;
   char quote_ = 0;
   bool begins_value_ = true;
-  bool folded_ = false;  // true: the text is inside a `|` or `>` block. The line that opened the block has
-                         // the indentation folded_indent_.
+  bool folded_ = false;  // true: the text is inside a `|` or `>` block; folded_indent_ is the indentation of
+                         // the line that opened the block
   std::size_t folded_indent_ = 0;
 };
 

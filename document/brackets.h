@@ -16,9 +16,9 @@ struct Bracket {
   Location at;
 };
 
-/// Returns the brackets that are open before `place`, the innermost last. Brackets in quotes, comments,
-/// folded texts and in the middle of plain texts are ignored. A closing bracket of the other type does not
-/// close a bracket: in `[1}`, the `[` is still open.
+/// Returns the brackets that are open before `place`, the innermost bracket last. Brackets in quotes,
+/// comments, folded texts and in the middle of plain texts are ignored. A closing bracket does not close a
+/// bracket of the other type: in `[1}`, the `[` is still open.
 [[nodiscard]] std::vector<Bracket> open_brackets(std::string_view text, Location place);
 
 }  // namespace softgrip::document

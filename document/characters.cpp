@@ -12,8 +12,8 @@ constexpr std::uint8_t byte_of(char c) {
 
 struct Lead {
   std::size_t length;
-  std::uint8_t second_lower;  // lower end of the allowed range of the second byte; the range excludes
-                              // overlong forms and surrogates
+  std::uint8_t second_lower;  // lower end of the allowed range of the second byte of a character; the range
+                              // excludes overlong forms and surrogates
   std::uint8_t second_upper;
 };
 

@@ -42,7 +42,7 @@ std::size_t Edit::line_end(std::size_t offset) const {
   return end;
 }
 
-/// Returns the offset after the end of a plain scalar, or of a list of plain scalars in brackets. Returns
+/// Returns the offset of the end of a plain scalar, or of a list of plain scalars in brackets. Returns
 /// nothing for other nodes.
 std::optional<std::size_t> Edit::end_of(const Node& node) const {
   const std::string& text = document_.text;
@@ -111,8 +111,8 @@ bool Edit::comment_above(const Node::Entry& entry, std::string_view mark, std::s
 
 std::string Edit::text() const {
   std::vector<Change> changes = changes_;
-  // The changes are applied from the end of the text to its beginning, so that each change leaves the offsets
-  // of the others valid. Two changes at the same offset keep their order.
+  // The changes are applied from the end of the text to its beginning, so that a change does not move the
+  // offsets of the changes that remain. Two changes at the same offset keep their order.
   std::stable_sort(changes.begin(), changes.end(),
                    [](const Change& a, const Change& b) { return a.offset < b.offset; });
   std::string text = document_.text;

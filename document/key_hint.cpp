@@ -12,8 +12,8 @@ namespace softgrip::document {
 
 namespace {
 
-/// A unit as it appears in keys. `to_base` is the factor from this unit to the project's unit of the same
-/// quantity.
+/// A unit as it appears in keys. `to_base` is the factor from this unit to the unit that the project uses for
+/// the same quantity.
 struct Unit {
   std::string_view name;
   std::string_view quantity;
@@ -57,8 +57,8 @@ std::string rounded(double number) {
   return {buffer.data(), end};
 }
 
-/// Returns true if `candidate` is `key` followed by its unit, as `delay_s` is for `delay`. All words that
-/// `candidate` has in addition must be units of the project or `per`.
+/// Returns true if `candidate` is `key` with a unit added, as `delay_s` is `delay` with a unit. All words
+/// that `candidate` has in addition must be units of the project or `per`.
 bool lacks_unit(std::string_view key, std::string_view candidate) {
   if (candidate.size() <= key.size() + 1 || candidate.substr(0, key.size()) != key ||
       candidate[key.size()] != '_') {
@@ -71,12 +71,12 @@ bool lacks_unit(std::string_view key, std::string_view candidate) {
   });
 }
 
-/// The units of two keys that differ in exactly one word. This word is a unit in both keys, and both units
+/// The units of two keys that are equal except for one word. This word is a unit in both keys, and both units
 /// measure the same quantity.
 struct OtherUnit {
   const Unit* used;
   const Unit* wanted;
-  double factor;  // factor that converts a value in `used` to a value in `wanted`
+  double factor;  // factor that converts a value in the unit `used` to a value in the unit `wanted`
 };
 
 std::optional<OtherUnit> other_unit(std::string_view key, std::string_view candidate) {
@@ -152,7 +152,7 @@ std::string_view unit_at_end(std::string_view key) {
 std::string hint_for_range(std::string_view key, double value, double lower, double upper) {
   const Unit* const wanted = unit_named(words_of(key).back());
   if (wanted == nullptr || key.find("_per_") != std::string_view::npos || value == 0) return {};
-  // Units that users often write in place of the unit of the key. The function suggests no other units.
+  // Units that users often write in place of the unit of the key. A hint names no units except these.
   constexpr std::array<std::string_view, 4> usual{"ms", "bar", "m", "ua"};
   for (const std::string_view name : usual) {
     const Unit* const other = unit_named(name);

@@ -9,14 +9,14 @@
 
 namespace softgrip::document {
 
-/// The known key that the user probably meant by an unknown key, and a hint; both texts are empty if there is
-/// no such key.
+/// The known key that the user probably meant by an unknown key, and a hint for the message. Both texts are
+/// empty if no known key is similar.
 struct KeyHint {
   std::string key;
   std::string hint;
 };
 
-/// Returns the known key that was probably meant, and a hint for the message.
+/// Returns the known key that the user probably meant, and a hint for the message.
 /// @param key    the unknown key
 /// @param value  the value of the unknown key
 /// @param known  permitted keys that the map does not contain
@@ -27,8 +27,8 @@ struct KeyHint {
 /// empty text if the key does not end with a unit of the project.
 [[nodiscard]] std::string_view unit_at_end(std::string_view key);
 
-/// Returns a hint such as "the unit is seconds: 130 ms would be 0.13" for a number out of range. The hint
-/// exists if the number is in range after it is converted from a related unit to the unit of `key`.
+/// Returns a hint for a number out of range, such as "the unit is seconds: 130 ms would be 0.13". There is a
+/// hint if the number would be in range after a conversion from a related unit to the unit of `key`.
 /// Otherwise, the text is empty.
 [[nodiscard]] std::string hint_for_range(std::string_view key, double value, double lower, double upper);
 

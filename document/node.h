@@ -10,28 +10,28 @@
 
 namespace softgrip::document {
 
-/// Upper limits for a document. A document that exceeds one of the limits is refused before it needs much
-/// time or memory.
+/// Upper limits for a document. A document that exceeds a limit is refused before reading it takes much time
+/// or memory.
 struct Bounds {
   std::size_t bytes = 256 * 1024;
   std::size_t nodes = 20'000;
   int depth = 12;
 };
 
-/// A node of the tree: a scalar, a sequence or a map, with its place in the text.
+/// A node of the tree: a scalar, a sequence or a map, with its location in the text.
 struct Node {
   enum class Kind { null, scalar, sequence, map };
   struct Entry;
 
   Kind kind = Kind::null;
   Location at;
-  std::string scalar;          ///< text of a scalar, without its quotes
-  bool quoted = false;         ///< true: the scalar was quoted, so it is a text and never a number
-  std::string stands_for;      ///< name of the parameter if the file has a parameter with `$` in place of
-                               ///< this value; otherwise empty
-  bool refused = false;        ///< true: a problem of the node was already reported, or the node is
-                               ///< truncated; the node is not checked again
-  std::vector<Node> items;     ///< items of a sequence node
+  std::string scalar;       ///< text of a scalar, without its quotes
+  bool quoted = false;      ///< true: the scalar was quoted, so it is a text and never a number
+  std::string stands_for;   ///< name of the parameter, if the file contains `$` and this name in place of the
+                            ///< value; otherwise empty
+  bool refused = false;     ///< true: the node is not checked again, because one of its problems was already
+                            ///< reported or because the node is truncated
+  std::vector<Node> items;  ///< items of a sequence node
   std::vector<Entry> entries;  ///< entries of a map in the order of the text, with unique keys
 };
 struct Node::Entry {
@@ -45,8 +45,8 @@ struct Document {
   std::string file;
   std::string text;
   Node root;
-  /// False if parsing stopped before the end of the text. In this case, readers do not report missing keys,
-  /// because these keys may be in the unread rest.
+  /// false: parsing stopped before the end of the text. Readers then do not report missing keys, because
+  /// these keys may be in the unread part.
   bool complete = true;
 
   /// Returns a problem at the location `at`. The problem contains the text of the line at `at`.

@@ -66,8 +66,8 @@ bool one_of(std::string_view word, std::initializer_list<std::string_view> words
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Returns the text with each `from` replaced by `to`, to remove separators of digits or to change the
-/// decimal mark. Returns an empty text if the result is not a number.
+/// Replaces each `from` in the text by `to`, to remove separators of digits or to change the decimal mark.
+/// Returns the new text, or an empty text if the new text is not a number.
 std::string repaired(std::string_view text, char from, std::string_view to) {
   if (text.find(from) == std::string_view::npos) return {};
   std::string out;
@@ -109,8 +109,8 @@ Parsed<T> refused(std::string message, std::string hint) {
   return {std::nullopt, std::move(message), std::move(hint)};
 }
 
-/// Returns the parts of the decimal number in a node. If the node does not contain a decimal number, stores a
-/// message in `out`.
+/// Returns the parts of the decimal number in a node. If the node does not contain a decimal number, stores
+/// the reason in `out`.
 template <class T>
 std::optional<Decimal> decimal_of(const Node& node, std::string_view wanted, Parsed<T>& out) {
   const std::string must = "must be " + std::string(wanted) + ", found ";

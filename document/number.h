@@ -1,6 +1,6 @@
 #pragma once
-// Converts texts to numbers. Only plain decimal numbers are accepted, independent of the locale. For any
-// other text, the result contains the reason of the refusal.
+// Converts texts to numbers. A number must be a plain decimal number; the locale has no effect. For any other
+// text, the result contains the reason of the refusal.
 
 #include <cstdint>
 #include <optional>
@@ -15,7 +15,7 @@ namespace softgrip::document {
 template <class T>
 struct Parsed {
   std::optional<T> value;
-  std::string message;  ///< message to be written after the key: "must be a number, found `fast`"
+  std::string message;  ///< message that follows the key: "must be a number, found `fast`"
   std::string hint;
 };
 
@@ -27,12 +27,12 @@ struct Parsed {
 /// Reads a truth value: `true` or `false`.
 [[nodiscard]] Parsed<bool> parse_boolean(const Node& node);
 
-/// Returns "the decimal mark is a point: 0.5" if a comma between two nodes of one line was probably a decimal
-/// mark. Examples are `[0,5]` and `{hold_s: 0,5}`. Otherwise returns an empty text. `after` is the location
-/// after the comma.
+/// Returns "the decimal mark is a point: 0.5" if the comma between two nodes of one line was probably meant
+/// as a decimal mark. Examples are `[0,5]` and `{hold_s: 0,5}`. Otherwise returns an empty text. `after` is
+/// the location after the comma.
 [[nodiscard]] std::string hint_for_comma(const Node& before, Location after, std::string_view text_after);
 
-/// Returns what a node is, as a text that follows "found" in a message: "a list", "a map", "nothing" or
+/// Returns a description of a node that follows "found" in a message: "a list", "a map", "nothing" or
 /// "`text`".
 [[nodiscard]] std::string found(const Node& node);
 

@@ -16,9 +16,9 @@ namespace softgrip::document {
 
 namespace {
 
-/// Thrown from an event handler of the parser when the document exceeds a limit, to end the parser at this
-/// event. It also limits the recursion of the parser, because the parser reports each level before it
-/// descends to the next one.
+/// Thrown by an event handler when the document exceeds a limit; the exception ends the parser. This also
+/// limits the recursion of the parser, because the parser reports each level before it descends to the next
+/// level.
 struct Abandoned {};
 
 Location location_of(const YAML::Mark& mark) {
@@ -90,7 +90,8 @@ class TreeBuilder final : public YAML::EventHandler {
   /// Returns the innermost map or sequence that is still open, or nullptr.
   [[nodiscard]] const Node* open_node() const { return frames_.empty() ? nullptr : &frames_.back().node; }
 
-  /// Moves the incomplete nodes of the stack into the tree after the parser has stopped early.
+  /// Moves the incomplete nodes of the stack into the tree. Called when the parser has stopped before the end
+  /// of the text.
   void fold() {
     while (!frames_.empty()) {
       const Frame* parent = frames_.size() > 1 ? &frames_[frames_.size() - 2] : nullptr;
@@ -98,8 +99,8 @@ class TreeBuilder final : public YAML::EventHandler {
       if (is_key) {
         frames_.pop_back();
       } else {
-        // After an early stop, a list such as `[1, 2` may lack items, so the list is refused. A list in block
-        // style contains complete items only.
+        // If the parser stopped early, a list such as `[1, 2` may lack items, so this list is refused. A list
+        // in block style contains complete items and is accepted.
         frames_.back().node.refused = frames_.back().flow;
         close();
       }
@@ -120,10 +121,10 @@ class TreeBuilder final : public YAML::EventHandler {
     Node node;
     bool flow = false;       // for a sequence: true if it is written as `[...]`
     bool has_key = false;    // for a map: the key was read; its value is the next event
-    bool key_wanted = true;  // for a map: true if the key was not refused
+    bool key_wanted = true;  // for a map: true if the key was accepted
     std::string key;
     Location key_at;
-    std::map<std::string, std::size_t> index;  // for a map: index of the entry by key
+    std::map<std::string, std::size_t> index;  // for a map: index of the entry for each key
   };
 
   void refuse(Location at, std::string message, std::string hint) {
@@ -141,8 +142,8 @@ class TreeBuilder final : public YAML::EventHandler {
       throw Abandoned{};
     }
     if (anchor != 0) refuse(at, "an anchor (`&name`) is not accepted here", "remove it");
-    // The parser reports the tag "?" for a plain node and "!" for a quoted node. It reports "!" also for a
-    // node with a `!` in the text, so the `!` is searched in the text.
+    // The parser reports the tag "?" for a plain node and "!" for a quoted node. It also reports "!" for a
+    // node with a written `!`. To distinguish the last two cases, the text is searched for the `!`.
     const auto position = static_cast<std::size_t>(std::max(mark.pos, 0));
     const bool written = position < document_.text.size() && document_.text[position] == '!';
     if ((!tag.empty() && tag != "?" && tag != "!") || (tag == "!" && written)) {
@@ -153,7 +154,7 @@ class TreeBuilder final : public YAML::EventHandler {
   }
 
   /// Returns false if a quoted text starts at `mark` and is not closed before the end of the file. The parser
-  /// does not report such a text as an error if it contains a line break.
+  /// accepts an unclosed text that contains a line break, so this function must detect it.
   [[nodiscard]] bool is_closed(const YAML::Mark& mark) const {
     const std::string& text = document_.text;
     auto position = static_cast<std::size_t>(std::max(mark.pos, 0));
@@ -170,8 +171,8 @@ class TreeBuilder final : public YAML::EventHandler {
     return false;
   }
 
-  /// Returns the location of a missing value: the end of the text before this value. The parser reports the
-  /// location of the next token, which may be several lines below.
+  /// Returns the location of a missing value, which is the end of the text before this value. The parser
+  /// reports the location of the next token, which may be several lines below.
   [[nodiscard]] Location empty_value_at(const YAML::Mark& mark) const {
     const std::string& text = document_.text;
     auto position = std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), text.size());
@@ -259,7 +260,7 @@ class TreeBuilder final : public YAML::EventHandler {
   Location last_at_;
 };
 
-/// Returns the location that the error contains. If the error contains none, returns the last location that
+/// Returns the location in the exception. If the exception has no location, returns the last location that
 /// the parser reached.
 Location place_of(const YAML::ParserException& error, const TreeBuilder& builder) {
   return error.mark.is_null() ? builder.last_at() : location_of(error.mark);
@@ -307,8 +308,8 @@ Document parse_file(const std::string& path, Problems& problems, const Bounds& b
   document.file = path;
   document.complete = false;
   const auto file = open_regular(path);
-  // Reads one byte more than allowed. If the file is too large, check_text() detects it by this byte, so the
-  // rest of the file need not be read.
+  // One byte more than the permitted size is read. If the file is too large, check_text() detects this from
+  // the additional byte, so the rest of the file need not be read.
   auto text = file ? read_start(*file, bounds.bytes + 1) : tl::unexpected(file.error());
   if (!text) {
     problems.add({path, {}, {}, "the file cannot be read: " + text.error(), {}});

@@ -9,7 +9,8 @@ namespace softgrip::document {
 
 namespace {
 
-// A line that is longer than this is shown only near the column of the problem [bytes].
+// Longest line that is shown completely [bytes]. Of a longer line, the part near the column of the problem is
+// shown.
 constexpr std::size_t line_bytes = 100;
 
 /// The part of `line` to show: the whole line, or a window around `column` (from 0). The window begins and
@@ -27,8 +28,8 @@ Window window_of(std::string_view line, std::size_t column) {
   std::size_t begin = column < line_bytes / 2 ? 0 : std::min(column, line.size()) - line_bytes / 2;
   begin = std::min(begin, line.size() - line_bytes);
   std::size_t end = begin + line_bytes;
-  // Each end of the window moves to the start of the next character. The move is limited to three bytes: a
-  // text that is not UTF-8 may have no start of a character.
+  // Each end of the window moves to the start of the next character, but by at most three bytes: a text that
+  // is not UTF-8 may have no start of a character.
   for (int i = 0; i < 3 && inside_character(begin); ++i) ++begin;
   for (int i = 0; i < 3 && inside_character(end); ++i) ++end;
   return {begin, end};
@@ -140,8 +141,8 @@ std::string Problems::format() const {
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
-  // At most a third of the letters may differ, but one different letter is always accepted. With more
-  // different letters, a typing error is improbable.
+  // At most a third of the letters may be different, but one different letter is always accepted. If more
+  // letters are different, a typing error is improbable.
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t longer = std::max(word.size(), candidate.size());

@@ -24,14 +24,15 @@ struct Problem {
   std::string line_text;  ///< text of the line that contains the problem, without its line break; may be
                           ///< empty
   std::string message;    ///< the problem in one sentence
-  std::string hint;       ///< what the user probably meant; empty if it is unknown
+  std::string hint;       ///< text that the user probably meant; empty if it is unknown
 
   bool operator==(const Problem&) const = default;
 };
 
 /// All problems of one or several documents, in the order in which they were found. A document with an error
 /// is refused. A document that has only warnings is accepted, and its warnings are shown. The first `most`
-/// errors and the first `most` warnings are stored. All further errors and warnings are only counted.
+/// errors and the first `most` warnings are stored. Errors and warnings after these are counted but not
+/// stored.
 class Problems {
  public:
   static constexpr std::size_t most = 200;
@@ -39,10 +40,10 @@ class Problems {
   void add(Problem problem);
   void warn(Problem problem);
 
-  /// empty() and size() consider errors only, including errors that were counted but not stored.
+  /// empty() and size() count errors, including those that were not stored. Warnings are not counted.
   [[nodiscard]] bool empty() const noexcept { return error_count_ == 0; }
   [[nodiscard]] std::size_t size() const noexcept { return error_count_; }
-  /// Returns true if no further error will be stored, so that a further check of the document is useless.
+  /// Returns true if no more errors will be stored, so that the caller can stop to check the document.
   [[nodiscard]] bool full() const noexcept { return error_count_ >= most; }
   [[nodiscard]] const std::vector<Problem>& list() const noexcept { return errors_; }
   [[nodiscard]] const std::vector<Problem>& warnings() const noexcept { return warnings_; }
@@ -53,7 +54,8 @@ class Problems {
   /// line break.
   [[nodiscard]] std::string format() const;
 
-  /// Returns the problems without repetitions. A problem is repeated if a file was read more than once.
+  /// Returns the problems, each of them once. A problem occurs more than once if a file was read more than
+  /// once.
   [[nodiscard]] Problems without_repeats() const;
 
  private:

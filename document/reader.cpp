@@ -244,7 +244,8 @@ void MapReader::warn(std::string_view key, std::string message, std::string hint
 }
 
 void MapReader::report_unknown(const Node::Entry& entry) {
-  // The unknown key cannot mean a key that the map already contains, so such keys are no candidates.
+  // The user cannot have meant a key that the map already contains, so the candidates are the missing keys
+  // and the keys that may be absent.
   std::vector<std::string> candidates = missing_;
   for (const std::string& key : known_) {
     if (!has(key) && std::find(missing_.begin(), missing_.end(), key) == missing_.end()) {
@@ -256,8 +257,8 @@ void MapReader::report_unknown(const Node::Entry& entry) {
     std::string comma = hint_for_comma((&entry - 1)->value, entry.key_at, entry.key);
     if (!comma.empty()) hint = {"", std::move(comma)};
   }
-  // The unknown key explains why the key of the hint is missing. Without this removal, one mistake would be
-  // reported twice.
+  // The unknown key explains why the key of the hint is missing. This key is removed from the missing keys,
+  // so that one mistake is not reported twice.
   std::erase(missing_, hint.key);
   if (hint.hint.empty() && !known_.empty() && known_.size() <= 12)
     hint.hint = "known here: " + listed(known_);

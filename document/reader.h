@@ -1,6 +1,6 @@
 #pragma once
-// Reads the values of a parsed document and checks their types and ranges. Each key that is not read is
-// reported as unknown.
+// Reads the values of a parsed document and checks their types and ranges. Reports each key that was not read
+// as unknown.
 
 #include <cstdint>
 #include <limits>
@@ -24,9 +24,9 @@ struct Range {
 
 /// Reads one map. Each getter marks its key as known. finish() reports all other keys as unknown, together
 /// with the most similar known key. This known key may be the unknown key with a unit (`delay_s` for `delay`)
-/// or with another unit (`delay_s` for `delay_ms`). finish() also reports a missing key, unless an unknown
-/// key explains why it is missing. Getters do not throw. They add a problem and return a harmless value, so
-/// that all errors of a document are found together.
+/// or with another unit (`delay_s` for `delay_ms`). finish() also reports each missing key, except a key that
+/// is the probable meaning of an unknown key. Getters do not throw. After a problem, a getter returns a
+/// harmless value, so that all errors of a document are found together.
 class MapReader {
  public:
   /// `what` is the name of the map in messages ("channel 'left'"). If the node is not a map, exactly one
@@ -39,9 +39,9 @@ class MapReader {
   /// Calls finish() if it has not been called yet.
   ~MapReader();
 
-  /// Reads a required number in `range`. If the number is missing, not finite or out of range, or if the
-  /// value is not a number, adds a problem. In these cases, returns the nearest allowed value (or 0 limited
-  /// to the range).
+  /// Reads a required number in `range`. Adds a problem if the number is missing, not finite or out of range,
+  /// or if the value is not a number. After a problem, returns the nearest allowed value, or 0 limited to the
+  /// range if there is no number.
   double number(std::string_view key, Range range);
   /// Reads a number in `range` under a key that may be absent. number() describes the result for a wrong
   /// value.
@@ -50,7 +50,8 @@ class MapReader {
   }
   /// Reads a required whole number from `lower` to `upper`.
   std::int64_t integer(std::string_view key, std::int64_t lower, std::int64_t upper);
-  /// The ends of `range` must be whole numbers. An end that is not given has no limit.
+  /// Reads a required whole number in `range`, whose ends must be whole numbers. An infinite end means that
+  /// there is no limit.
   std::int64_t integer(std::string_view key, Range range);
   std::optional<std::int64_t> optional_integer(std::string_view key, std::int64_t lower, std::int64_t upper) {
     return given(key) ? std::optional(integer(key, lower, upper)) : std::nullopt;
@@ -70,11 +71,11 @@ class MapReader {
   std::optional<std::size_t> optional_choice(std::string_view key, const std::vector<std::string>& choices) {
     return given(key) ? std::optional(choice(key, choices)) : std::nullopt;
   }
-  /// Returns the node under a key; the node may be of any kind. If the key is absent, returns nullptr. In
-  /// this case, reports a problem if `required` is true.
+  /// Returns the node under a key; the node may be of any kind. Returns nullptr if the key is absent, and
+  /// reports a problem in this case if `required` is true.
   const Node* child(std::string_view key, bool required);
-  /// Returns the items of a sequence under a key. If the key is absent, returns an empty list. In this case,
-  /// reports a problem if `required` is true.
+  /// Returns the items of a sequence under a key. Returns an empty list if the key is absent, and reports a
+  /// problem in this case if `required` is true.
   std::vector<const Node*> sequence(std::string_view key, bool required);
   /// Reads a required list of `count` numbers in `range`, for example `at_v: [0, 10]`. The result always has
   /// `count` numbers, also after a problem.
@@ -83,7 +84,7 @@ class MapReader {
     return given(key) ? std::optional(numbers(key, count, range)) : std::nullopt;
   }
 
-  /// Returns true if the map contains the key. The call does not mark the key as known.
+  /// Returns true if the map contains the key. This call does not mark the key as known.
   [[nodiscard]] bool has(std::string_view key) const;
   /// Returns true if the map contains the key and its getter found no problem. Call good() before a check
   /// that combines the values of several keys.
@@ -92,9 +93,10 @@ class MapReader {
   [[nodiscard]] std::vector<std::string> keys() const;
   /// Returns the location of a key, or the location of the map if it does not contain the key.
   [[nodiscard]] Location where(std::string_view key) const;
-  /// Reports a problem with the value of a key, for problems that only the caller can detect.
+  /// Reports a problem with the value of a key. The caller uses this function for problems that no getter
+  /// detects.
   void report(std::string_view key, std::string message, std::string hint = {});
-  /// Reports a warning about the value of a key: the value is permitted but probably not meant.
+  /// Reports a warning about the value of a key that is permitted but probably not meant.
   void warn(std::string_view key, std::string message, std::string hint = {});
   /// Reports keys that were not read and required keys that are missing. No getter may be called after
   /// finish().

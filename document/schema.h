@@ -1,6 +1,6 @@
 #pragma once
-// Declares the keys of a map, each key once. The strict reader of the map, its list of known keys for hints,
-// and its table on a reference page follow from the declaration.
+// Declares the keys of a map, each key once. The declaration is used for the strict reader of the map, for
+// the list of known keys in hints, and for the table of a reference page.
 
 #include <chrono>
 #include <concepts>
@@ -30,30 +30,32 @@ struct Allowed {
   std::vector<std::string> words;
 };
 
-/// A key as a reference page describes it.
+/// Description of a key for a reference page.
 struct KeyFacts {
   std::string name;
   std::string values;    ///< permitted values, for example "0.001 to 100"
-  std::string fallback;  ///< value of an omitted key, for example "0.1"; empty: the key is required
+  std::string fallback;  ///< value that is used if the key is omitted, for example "0.1"; empty: the key is
+                         ///< required
   std::string meaning;
 
   [[nodiscard]] bool required() const noexcept { return fallback.empty(); }
 };
 
-/// One key of a map whose values are stored in an `S`.
+/// One key of a map whose values are stored in a struct of type `S`.
 template <class S>
 struct Key {
   KeyFacts facts;
   std::function<void(MapReader& reader, const KeyFacts& facts, S& settings)> read;
 
   Key(KeyFacts described, decltype(read) reading) : facts(std::move(described)), read(std::move(reading)) {}
-  /// Declares a key whose value the caller reads. read_keys() only marks it as known.
+  /// Declares a key whose value the caller reads. read_keys() marks such a key as known, but does not read
+  /// its value.
   Key(std::string name, std::string values, std::string fallback, std::string meaning)
       : facts{std::move(name), std::move(values), std::move(fallback), std::move(meaning)},
         read([](MapReader& reader, const KeyFacts& key, S&) {
           (void)reader.child(key.name, key.required());
         }) {}
-  /// Key of a base class of the settings.
+  /// Creates a key from a key of a base class of the settings `S`.
   template <class Base>
   requires(std::derived_from<S, Base> && !std::same_as<S, Base>) Key(Key<Base> base)
       : facts(std::move(base.facts)), read(std::move(base.read)) {}
@@ -61,14 +63,15 @@ struct Key {
 template <class S>
 using Keys = std::vector<Key<S>>;
 
-/// Reads all keys of a map in the order of the declaration. An omitted optional key keeps its value in
-/// `settings`, except for a std::optional, which is reset.
+/// Reads all keys of a map in the order of the declaration. If an optional key is omitted, its member in
+/// `settings` keeps its value; a std::optional member is reset.
 template <class S>
 void read_keys(MapReader& reader, const Keys<S>& keys, S& settings) {
   for (const Key<S>& key : keys) key.read(reader, key.facts, settings);
 }
 
-/// Appends the descriptions of the keys for a reference page. `map` precedes their names: "listen: port".
+/// Appends the descriptions of the keys for a reference page. The text `map` is put before the name of each
+/// key: "listen: port".
 template <class S>
 void append_facts(std::vector<KeyFacts>& facts, const Keys<S>& keys, const std::string& map = "") {
   for (const Key<S>& key : keys) {
@@ -77,7 +80,7 @@ void append_facts(std::vector<KeyFacts>& facts, const Keys<S>& keys, const std::
   }
 }
 
-/// Reads the value of a key that is required or present.
+/// Reads the value of a key. The key is required, or the caller has checked that it is present.
 template <class T>
 void read_value(MapReader& reader, std::string_view key, const Allowed& allowed, T& value) {
   if constexpr (std::is_same_v<T, bool>) {
@@ -102,7 +105,7 @@ void read_value(MapReader& reader, std::string_view key, const Allowed& allowed,
   return allowed.words.empty() ? text_of(allowed.range) : enumerated(allowed.words, " or ", in_backticks);
 }
 
-/// Returns the default of an optional key as text. Returns "none" for a default without a text.
+/// Returns the default of an optional key as text. Returns "none" if the default has no text.
 template <class T>
 std::string default_text(const T& value, const Allowed& allowed) {
   if constexpr (std::is_enum_v<T> || std::is_same_v<T, bool>) {

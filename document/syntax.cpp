@@ -40,8 +40,8 @@ SyntaxMessage misplaced(const Document& document, const Node* open, Location at,
   return result;
 }
 
-/// Returns a message if the key at `at` does not start in the same column as the other keys of its map;
-/// otherwise nothing.
+/// Returns a message if the key at the location `at` does not start in the same column as the other keys of
+/// its map; otherwise returns nothing.
 std::optional<SyntaxMessage> misaligned(const Document& document, const Node* open, Location at) {
   if (open == nullptr || open->kind != Node::Kind::map || at.line <= open->at.line) return std::nullopt;
   const std::string_view first = line_of(document.text, open->at.line);
@@ -146,7 +146,8 @@ SyntaxMessage translated(const Document& document, std::string_view said, const 
 
 SyntaxMessage syntax_message(const Document& document, std::string_view said, const Node* open, Location at) {
   SyntaxMessage result = translated(document, said, open, at);
-  // If a closing bracket is missing, the parser often reports a different error several lines below.
+  // If a closing bracket is missing, the parser often reports a different error several lines below the
+  // bracket.
   const std::vector<Bracket> brackets = open_brackets(document.text, at);
   if (!result.hint.empty() || brackets.empty()) return result;
   if (result.message.find(" is not closed") != std::string::npos) return result;

@@ -16,7 +16,7 @@ struct SyntaxMessage {
 /// Returns the message and the hint for a syntax error.
 /// @param said  the message of the parser
 /// @param open  the innermost map or sequence that is not complete, or nullptr
-/// @param at    where the parser stopped
+/// @param at    the location at which the parser stopped
 [[nodiscard]] SyntaxMessage syntax_message(const Document& document, std::string_view said, const Node* open,
                                            Location at);
 

@@ -68,8 +68,8 @@ void for_each_line(std::string_view text, See&& see) {
   }
 }
 
-/// Returns the location of a directive, such as `%YAML 1.2`; nothing if there is none. Directives precede the
-/// document.
+/// Returns the location of a directive, such as `%YAML 1.2`; nothing if the text has no directive. A
+/// directive can only precede the document.
 std::optional<Location> find_directive(std::string_view text) {
   std::optional<Location> found;
   for_each_line(text, [&](std::string_view line, int number) {

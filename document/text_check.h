@@ -5,8 +5,8 @@
 
 namespace softgrip::document {
 
-/// Checks size, UTF-8, byte order mark, control characters, tabs in the indentation and directives. Adds the
-/// problems that it finds. Returns false if the text must not be parsed.
+/// Checks size, UTF-8, byte order mark, control characters, tabs in the indentation and directives. Adds each
+/// problem to `problems`. Returns false if the text must not be parsed.
 [[nodiscard]] bool check_text(const Document& document, const Bounds& bounds, Problems& problems);
 
 }  // namespace softgrip::document

@@ -78,7 +78,7 @@ class BoardReader {
     return static_cast<drivers::WordOrder>(in.choice("word_order", names));
   }
 
-  /// Returns the address in Modbus requests that belongs to the key `address` of the file.
+  /// Returns the address to use in Modbus requests for the key `address` of the file.
   std::uint16_t address(MapReader& in, std::int64_t registers) {
     const std::int64_t base = map_.address_base;
     const std::int64_t number = in.integer("address", base, base + last_address);
@@ -111,7 +111,7 @@ class BoardReader {
     const std::string key = "is" + std::string(suffix_of(block.unit));
     const std::vector<double> electrical = in.numbers(key, 2, {-1000, 1000});
     block.scaling = {raw[0], electrical[0], raw[1], electrical[1]};
-    // If one of the values could not be read, the two scaling points cannot be compared.
+    // If at_raw or the electrical values could not be read, the two scaling points are not compared.
     if (problems_.size() != before || !in.has("at_raw") || !in.has(key)) return;
     if (raw[0] == raw[1]) in.report("at_raw", "the values of the two scaling points must differ");
     if (electrical[0] == electrical[1]) in.report(key, "the values of the two scaling points must differ");
@@ -198,7 +198,8 @@ class BoardReader {
     map_.read_back = block;
   }
 
-  /// Reads one write. If `heartbeat` is true, the write may have a second value, which is used alternately.
+  /// Reads one write. If `heartbeat` is true, the write may have a second value: the board then gets the two
+  /// values alternately.
   drivers::FixedWrite fixed_write(const Node& node, const std::string& what, bool heartbeat = false) {
     MapReader in(document_, node, problems_, what);
     drivers::FixedWrite write;
@@ -217,8 +218,8 @@ class BoardReader {
     return write;
   }
 
-  /// Reads the value of a write. For the texts functions_1_to_16 and functions_17_to_32, computes the bit
-  /// mask of the function codes in this group that feed the watchdog.
+  /// Reads the value of a write. The value may also be the text functions_1_to_16 or functions_17_to_32. For
+  /// such a text, computes the bit mask of the function codes in this group that feed the watchdog.
   std::uint16_t value_of(MapReader& in, std::int64_t largest) {
     const Node* const node = in.child("value", true);
     if (node == nullptr) return 0;
@@ -266,7 +267,7 @@ class BoardReader {
     drivers::BoardWatchdog& watchdog = map_.watchdog;
     const std::size_t before = problems_.size();
     if (in.choice("kind", {"communication_timeout", "none"}) == 1) return;
-    // If the kind is misspelt, the presence of other keys shows that the map describes a watchdog.
+    // If the kind is misspelt, other keys of the map show that it describes a watchdog.
     if (problems_.size() != before && in.keys().size() <= 1) return;
     watchdog.kind = drivers::BoardWatchdog::Kind::communication_timeout;
     watchdog.timeout_s = in.number("timeout_s", {0.001, 3600});
@@ -296,14 +297,15 @@ class BoardReader {
       if (code.has_value()) functions.push_back(static_cast<std::uint8_t>(*code));
     }
     const std::uint8_t used = map_.has_fc23 ? std::uint8_t{23} : map_.outputs.registers.function;
-    if (used < fc_write_register) return;  // the error was already reported at the outputs
+    if (used < fc_write_register) return;  // the error was already reported for the outputs
     if (std::find(functions.begin(), functions.end(), used) == functions.end()) {
       in.report("functions", "the outputs are written by function " + std::to_string(used) +
                                  ", but this function does not reset the watchdog");
     }
   }
 
-  /// Reports keys that need outputs if the board has no outputs. Does the same for inputs.
+  /// Reports keys that need outputs if the board has no outputs, and keys that need inputs if it has no
+  /// inputs.
   void check_directions(MapReader& in) {
     const auto needs = [&](std::string_view key, const std::string& direction) {
       if (in.has(key) && !in.has(direction)) {
@@ -332,7 +334,7 @@ class BoardReader {
   }
 
   /// Checks that one request can read a complete number. If two requests were needed, the two halves of the
-  /// number could come from different times.
+  /// number could be of different times.
   void check_max_registers(MapReader& in) {
     if (!in.good("max_registers")) return;
     std::uint16_t least = 1;

@@ -15,7 +15,7 @@ namespace softgrip::rig {
 [[nodiscard]] std::optional<drivers::BoardMap> read_board_map(const document::Document& document,
                                                               document::Problems& problems);
 
-/// Reads a file with parse_file() and read_board_map().
+/// Reads a board map from a file, with parse_file() and read_board_map().
 [[nodiscard]] std::optional<drivers::BoardMap> load_board_map(const std::string& path,
                                                               document::Problems& problems);
 

@@ -11,7 +11,7 @@ namespace {
 using document::Location;
 using document::Node;
 
-/// Returns true if the location `at` belongs to an item of a list in `node`, at any depth.
+/// Returns true if an item of a list is at the location `at`. The list may be at any depth in `node`.
 bool has_item_at(const Node& node, Location at) {
   const auto entry_at = [&](const Node::Entry& entry) {
     return entry.key_at == at || entry.value.at == at || has_item_at(entry.value, at);
@@ -24,8 +24,8 @@ bool has_item_at(const Node& node, Location at) {
 }
 
 /// Marks the node at a location as refused, so that no further problem is reported for this node. If the node
-/// is an unknown key, also marks the map that contains it, because the unknown key may be a misspelt key that
-/// is now missing. Returns true if the location is in `map`.
+/// is an unknown key, also marks the map that contains the key: the unknown key may be a misspelt required
+/// key, which would otherwise be reported as missing. Returns true if the location is in `map`.
 bool settle_in(Node& map, Location at) {
   const auto unknown = std::find_if(map.entries.begin(), map.entries.end(),
                                     [&](const Node::Entry& entry) { return entry.key_at == at; });

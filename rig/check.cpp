@@ -42,8 +42,8 @@ const std::array<Signature, 6>& signatures() {
   return all;
 }
 
-/// Returns the number of points that a document gets for one kind of file: 2 points for each key of this
-/// kind, and 1 point for each misspelt key.
+/// Returns the score of a document for one kind of file: 2 points for each key of this kind, and 1 point for
+/// each misspelt key.
 std::size_t score(const document::Document& document, const Signature& signature) {
   std::size_t points = 0;
   for (const document::Node::Entry& entry : document.root.entries) {
@@ -70,7 +70,7 @@ struct ReadRig {
   RigReading reading;
 };
 
-/// The rigs and sequences that were read. After all files are read, they are checked against each other.
+/// The rigs and sequences that were read. After all files are read, each sequence is checked with each rig.
 struct Read {
   std::vector<ReadRig> rigs;
   std::vector<control::Sequence> sequences;
@@ -115,7 +115,7 @@ void read_as(const document::Document& document, bool parsed, std::span<const co
 }
 
 /// Returns a substitute for a channel whose model, feedforward, gains or limits could not be read. The limits
-/// of the substitute are so wide that every sequence is within them.
+/// of the substitute are so wide that every sequence respects them.
 control::ChannelSettings anything(const control::ChannelSettings& known) {
   constexpr double wide = 1e6;
   control::ChannelSettings channel;
@@ -225,7 +225,7 @@ FileKind kind_of(const document::Document& document, document::Problems& problem
       best_points = points;
     }
   }
-  // A document that is incomplete has a syntax error, which was already reported.
+  // An incomplete document has a syntax error, which was already reported.
   if (best == FileKind::unknown && document.complete) report_unknown(document, problems);
   return best;
 }

@@ -20,36 +20,37 @@ enum class FileKind : std::uint8_t { unknown, rig, board_map, model, sequence, p
 /// correct key. If the document has no known key, a problem is reported.
 [[nodiscard]] FileKind kind_of(const document::Document& document, document::Problems& problems);
 
-/// One file that was checked, and the result of its check.
+/// A checked file and the result of its check.
 struct CheckedFile {
   std::string path;
   FileKind kind = FileKind::unknown;
-  std::string name;          ///< value of the key `name` in the file; empty if the file has no such key
-  std::size_t errors = 0;    ///< number of errors in this file; errors in other files to which this file
+  std::string name;        ///< value of the key `name` in the file; empty if the file has no such key
+  std::size_t errors = 0;  ///< number of errors in this file; errors in a file to which this file refers are
+                           ///< not counted
+  std::size_t warnings = 0;  ///< number of warnings in this file; warnings in a file to which this file
                              ///< refers are not counted
-  std::size_t warnings = 0;  ///< number of warnings in this file; warnings in other files to which this file
-                             ///< refers are not counted
-  bool passed_over = false;  ///< true: skipped, because it was found in a folder and is of no known kind
+  bool passed_over = false;  ///< true: the file was skipped, because it was found in a folder and its kind is
+                             ///< unknown
 };
 
 /// The result of check_files().
 struct CheckReport {
   std::vector<CheckedFile> files;
-  /// Problems of all files, and of the files to which they refer. Each problem is contained once.
+  /// Problems of all checked files, and of the files to which they refer. Each problem occurs once.
   document::Problems problems;
-  bool has_rig = false;  ///< true: one of the files is a rig, so the sequences were checked with it
+  bool has_rig = false;  ///< true: one of the files is a rig, so the sequences were checked with this rig
 
   /// Returns true if there are no errors. In this case, the exit code of `softgrip check` is 0, otherwise 3.
   [[nodiscard]] bool accepted() const noexcept { return problems.empty(); }
 };
 
-/// Reads each file as a file of the kind that its keys show. If the files include rigs and sequences, each
-/// sequence is checked with each rig. The rig must have the channels of the sequence, and the targets must be
-/// within the limits of the rig. This check is made for the default values of the parameters, and for the
-/// ends of their ranges. If a rig has errors, its readable part is used. Values that are permitted but
-/// implausible cause warnings (rig/rig_comparison.h). `arguments` replace the defaults in each sequence, and
-/// each sequence must have these parameters. In a folder, all files *.yaml and *.yml at any depth are read.
-/// In a folder, files of an unknown kind are not reported, and names that begin with a dot are skipped.
+/// Reads each file as a file of the kind that its keys show. If the files include rigs and sequences, checks
+/// each sequence with each rig. The rig must have the channels of the sequence, and the targets must be
+/// within the limits of the rig. The check is made for the default values of the parameters, and for the ends
+/// of their ranges. If a rig has errors, its readable part is used. Values that are permitted but implausible
+/// cause warnings (rig/rig_comparison.h). `arguments` replace the defaults in each sequence, and each
+/// sequence must have these parameters. In a folder, all files *.yaml and *.yml at any depth are read. Files
+/// of an unknown kind in a folder are not reported, and names that begin with a dot are skipped.
 [[nodiscard]] CheckReport check_files(std::span<const std::string> paths,
                                       std::span<const control::Argument> arguments = {});
 

@@ -16,9 +16,10 @@ struct GpioSettings {
   /// True: the enable output is switched off while a fault is latched. An emergency stop switches it off in
   /// any case.
   bool enable_drops_on_fault = true;
-  std::vector<drivers::GpioLineSettings> lines;  ///< settings of the lines; at most one line for each purpose
-  std::vector<document::Problem> places;         ///< for each line, its location in the rig file, as a
-                                                 ///< problem without a message
+  std::vector<drivers::GpioLineSettings> lines;  ///< settings of the digital lines; at most one line for each
+                                                 ///< purpose
+  std::vector<document::Problem> places;  ///< location of each line in the rig file, stored as a problem
+                                          ///< without a message
 
   [[nodiscard]] bool has(drivers::GpioRole role) const noexcept {
     for (const drivers::GpioLineSettings& line : lines) {

@@ -23,16 +23,17 @@ namespace softgrip::rig {
 /// is the period minus bus_offset. rig/rig_keys.cpp declares the meaning and the range of each member.
 struct LoopSettings {
   double bus_offset_fraction = 0.25;
-  /// Longest duration of one exchange [s]. If the board is slower, the exchange times out and the session is
-  /// opened again. The duration may exceed the period. An exchange that takes longer than the period is an
-  /// overrun of the bus thread. Its readings are older than usual, and the controller checks their age.
+  /// Longest duration of one exchange [s]. If the board needs more time, the exchange times out and the
+  /// session is opened again. The duration may exceed the period of the bus thread. An exchange that takes
+  /// longer than the period is an overrun of the bus thread. The readings of such an exchange are older than
+  /// usual, and the controller checks their age.
   double exchange_deadline_s = 0.05;
   std::uint32_t max_missed_commands = 10;
 };
 
 /// Returns the safety margin of the board's watchdog time [ns]. If a gap between exchanges is longer than the
 /// watchdog time minus this margin, the daemon assumes that the watchdog has tripped. The margin is needed
-/// because a request may reach the board as late as the deadline of its exchange. The margin is at most half
+/// because a request may reach the board just before the deadline of its exchange. The margin is at most half
 /// of the watchdog time.
 [[nodiscard]] inline std::chrono::nanoseconds watchdog_margin(const LoopSettings& loop,
                                                               std::chrono::nanoseconds watchdog) noexcept {
@@ -43,7 +44,7 @@ struct LoopSettings {
 struct ReconnectSettings {
   std::chrono::nanoseconds connect_deadline = std::chrono::milliseconds(500);
   std::chrono::nanoseconds first_pause = std::chrono::milliseconds(100);
-  /// Longest pause between two attempts. The pause doubles after each failed attempt, up to this value.
+  /// Longest pause between two attempts [ns]. The pause doubles after each failed attempt, up to this value.
   std::chrono::nanoseconds longest_pause = std::chrono::seconds(5);
 };
 

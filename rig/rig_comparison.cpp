@@ -29,7 +29,7 @@ const Node* channel_node(const document::Document& document, std::size_t channel
   return channels != nullptr && channel < channels->items.size() ? &channels->items[channel] : nullptr;
 }
 
-/// Returns the location of the key that applies to a channel. The key is in the channel, in
+/// Returns the location of the key that applies to a channel. The key may be in the channel, in
 /// `channel_defaults`, or at the top level of the file.
 Location place_of(const document::Document& document, std::size_t channel, std::string_view map,
                   std::string_view key) {
@@ -49,8 +49,8 @@ std::string about(double value) {
   return significant(std::round(value / unit) * unit, 6);
 }
 
-/// The keys and the values of one end of the pressure range, and of the end of the displacement range that
-/// the finger reaches there.
+/// One end of the pressure range, and the end of the displacement range that the finger reaches at this
+/// pressure: keys and values of both.
 struct Reach {
   const char* pressure;
   const char* displacement;
@@ -93,7 +93,7 @@ void compare_speed(const document::Document& document, const control::ChannelSet
           " would reject jumps of the sensor and still permit the jump of a finger that loses its part"));
 }
 
-/// Returns which change of the rig file or of the wiring makes a burst pressure line detectable.
+/// Returns the change of the rig file or of the wiring that makes a burst pressure line detectable.
 std::string remedy(const RigFile& rig, std::size_t channel) {
   if (!rig.settings.channels[channel].pressure_measured) {
     return "connect the monitor output of the valve, or a pressure sensor, to an input of the board, and add "

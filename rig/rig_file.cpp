@@ -16,8 +16,8 @@ namespace softgrip::rig {
 
 namespace {
 
-/// Returns the path of the file whose name is most similar to the name of the missing file `path`, from the
-/// same folder.
+/// Returns the path of an existing file in the folder of the missing file `named`: the file with the most
+/// similar name.
 std::string nearest_file(const std::string& named, const std::string& path) {
   const std::filesystem::path wanted(path);
   std::error_code error;
@@ -31,14 +31,14 @@ std::string nearest_file(const std::string& named, const std::string& path) {
   return near.empty() ? std::string{} : std::filesystem::path(named).replace_filename(near).string();
 }
 
-/// Returns the errno of the error that reading the file would cause; 0 if the file is readable.
+/// Returns the error number (errno) that reading the file would cause; 0 if the file is readable.
 int reading_error(const std::string& path) {
   if (::access(path.c_str(), R_OK) != 0) return errno;
   std::error_code error;
   return std::filesystem::is_directory(path, error) ? EISDIR : 0;
 }
 
-/// Returns the text of a stored file; null if this file is not stored.
+/// Returns the text of a stored file; null if the file `path` is not among the stored files.
 const std::string* stored_text(const std::vector<InputFile>& stored, const std::string& path) {
   const auto found =
       std::find_if(stored.begin(), stored.end(), [&](const InputFile& file) { return file.path == path; });
@@ -95,7 +95,7 @@ void read_board_and_channels(Context& context, MapReader& top) {
   if (kind != nullptr && kind->after_channels) read_board();
 }
 
-/// Reads a map of the file with the function `read`. Returns true if the map is present and has no error.
+/// Reads a map of the rig file with the function `read`. Returns true if the map is present and has no error.
 bool reads_well(Context& context, MapReader& top, std::string_view key,
                 void (*read)(Context& context, MapReader& top)) {
   const std::size_t before = context.problems.size();

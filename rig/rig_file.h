@@ -29,11 +29,11 @@ enum class PowerLoss : std::uint8_t { vents, holds };
 
 /// Properties of a channel's valve that do not depend on its wiring.
 struct ValveFacts {
-  double range_min_kpa = 0;  ///< lower end of the pressures that the valve can control; the limits of the rig
-                             ///< may be narrower
+  double range_min_kpa = 0;  ///< lower end of the pressure range that the valve can control [kPa]; the limits
+                             ///< of the rig may be narrower than this range
   double range_max_kpa = 0;
   PowerLoss on_power_loss = PowerLoss::vents;
-  double power_loss_kpa = 0;  ///< pressure after a power failure, if the valve vents
+  double power_loss_kpa = 0;  ///< pressure after a power failure [kPa], if the valve vents
 };
 
 /// A file on which the rig depends, and the text that was read from it. Recordings contain the hash of the
@@ -50,18 +50,18 @@ struct InputFile {
 /// board.
 struct RigFile {
   std::string name;
-  std::string path;                            ///< path of the rig file, as the user gave it
-  control::RigSettings settings;               ///< settings of the controller; channels are in the order of
-                                               ///< the file
-  std::vector<ValveFacts> valves;              ///< properties of the valves, one entry per channel
-  std::vector<drivers::ChannelWiring> wiring;  ///< one entry per channel, for every kind of board
+  std::string path;                ///< path of the rig file, as the user gave it
+  control::RigSettings settings;   ///< settings of the controller, with the channels in the order of the file
+  std::vector<ValveFacts> valves;  ///< properties of the valves, one entry per channel
+  std::vector<drivers::ChannelWiring> wiring;  ///< wiring of the channels, one entry per channel, for every
+                                               ///< kind of board
   std::variant<simulation::SimulatedBoardSettings, drivers::ModbusSettings, drivers::IioSettings> board;
-  std::optional<std::uint64_t> seed;  ///< seed of a simulated board, as in the file; empty if the file gives
-                                      ///< none
-  /// Text of `accept_no_watchdog`. With this key, the file accepts a board that does not vent by itself.
-  /// The text is empty if the file does not have the key.
+  std::optional<std::uint64_t> seed;  ///< seed of a simulated board from the file; empty if the file contains
+                                      ///< no seed
+  /// Text of the key `accept_no_watchdog`, by which the user accepts a board that does not vent when messages
+  /// stop. The text is empty if the file does not have the key.
   std::string accept_no_watchdog;
-  /// True: the file accepts a rate that the bus may not reach. Without this key, such a rate is an error.
+  /// true: the user accepts a rate that the bus may not reach; false: such a rate is an error
   bool accept_over_budget = false;
   LoopSettings loop;
   ReconnectSettings reconnect;
@@ -73,13 +73,14 @@ struct RigFile {
   std::vector<InputFile> inputs;  ///< all files that were read, each file once; the rig file is the first
 };
 
-/// The sentence that `accept_no_watchdog` must contain without any change.
+/// The sentence that a user must copy word for word into the value of `accept_no_watchdog`.
 inline constexpr std::string_view no_watchdog_words =
     "the outputs keep their last pressure when softgripd dies";
 
-/// Reads a rig from a parsed document. The paths of board maps and models in the file are relative to the
-/// folder of the document. Problems of these files are reported with the paths of these files. Returns
-/// nothing if there is an error. Warnings alone do not prevent a result; they are in `problems.warnings()`.
+/// Reads a rig from a parsed document. The paths of board maps and models in the document are relative to the
+/// folder of the document. A problem in a board map or a model is reported with the path of this file.
+/// Returns nothing if there is an error. If there are warnings but no errors, returns the rig; the warnings
+/// are in `problems.warnings()`.
 [[nodiscard]] std::optional<RigFile> read_rig(const document::Document& document,
                                               document::Problems& problems);
 
@@ -87,20 +88,21 @@ inline constexpr std::string_view no_watchdog_words =
 struct RigReading {
   RigFile rig;
   bool accepted = false;  ///< true: the file has no error, so read_rig() would return `rig`
-  /// True: the names of all channels, the rate, the detection and the rest settings are known. In this case,
-  /// sequences can be checked with `rig.settings`, except for channels with `motion_known` false.
+  /// true: the names of all channels, the rate, the detection settings and the rest settings are known. In
+  /// this case, sequences can be checked with `rig.settings`, except for channels whose `motion_known` is
+  /// false.
   bool fits_sequences = false;
   std::vector<bool> motion_known;  ///< one value per channel; true: model, feedforward, gains and limits are
                                    ///< known
 };
-/// Reads a rig as read_rig() does. If the rig has errors, returns its readable part.
+/// Reads a rig as read_rig() does. If the rig has errors, returns the readable part of the rig.
 [[nodiscard]] RigReading read_rig_so_far(const document::Document& document, document::Problems& problems);
 
-/// Reads a file with parse_file() and read_rig().
+/// Reads a rig from a file, with parse_file() and read_rig().
 [[nodiscard]] std::optional<RigFile> load_rig(const std::string& path, document::Problems& problems);
 
-/// Replaces the seeds of the simulated fingers by the seeds that a rig file with this `seed` would give.
-/// Returns false if the board is not simulated.
+/// Replaces the seeds of the simulated fingers by the seeds that they would have if the rig file contained
+/// this `seed`. Returns false if the board is not simulated.
 bool reseed(RigFile& rig, std::uint64_t seed);
 
 }  // namespace softgrip::rig

@@ -23,8 +23,8 @@ void check_limits(MapReader& reader, const control::LimitSettings& limits) {
           limits.displacement_max_mm);
 }
 
-/// Reads `rest_kpa`, the pressure of all safe states. If the key is missing, this pressure is 0 kPa, limited
-/// to the pressure range.
+/// Reads `rest_kpa`, the pressure of all safe states. If the key is missing, this pressure is 0 kPa, or the
+/// end of the pressure range that is nearest to 0 kPa.
 void read_rest_pressure(MapReader& reader, const std::string& who, control::LimitSettings& limits) {
   const bool limits_known = reader.good("limits") && limits.pressure_max_kpa > limits.pressure_min_kpa;
   read_keys(reader, rig_keys().rest_pressure, limits);
@@ -47,8 +47,8 @@ std::string read_channel_name(Context& context, MapReader& reader) {
 }
 
 void read_feedforward(Context& context, MapReader& reader, control::ChannelSettings& channel) {
-  // A command of the loop waits until the bus thread sends it. This is the delay of the bus thread relative
-  // to the loop.
+  // Adds the delay of the bus thread relative to the loop: a command of the loop waits for this time until
+  // the bus thread sends it.
   channel.feedforward.extra_latency_s = context.rig.loop.bus_offset_fraction * context.period_s();
   read_keys(reader, rig_keys().feedforward, channel.feedforward);
 }
@@ -105,8 +105,8 @@ void read_own_or_shared(Context& context, MapReader& reader, const std::string& 
                         control::ChannelSettings& channel) {
   if (!reader.has("plausibility")) channel.plausibility = shared.settings.plausibility;
   if (!reader.has("model_health")) channel.health = shared.settings.health;
-  // If the document is incomplete, the shared maps may be in the part that was not read, so they are not
-  // reported as missing.
+  // An incomplete document may contain the shared maps in its unread part, so these maps are not reported as
+  // missing.
   const bool judge = context.document.complete && !reader.keys().empty();
   read_plausibility(context, reader, channel.plausibility);
   read_model_health(context, reader, channel.health);
@@ -121,7 +121,7 @@ void check_feedforward_exists(Context& context, MapReader& reader, const control
   const auto exists =
       control::check_feedforward(channel.model, channel.feedforward, channel.limits, context.period_s());
   if (exists) return;
-  // Most models without an inverse can use the feedforward `planned`, because it needs no inverse.
+  // The feedforward `planned` needs no inverse of the model, so it suits most models that have no inverse.
   const control::FeedforwardSettings planned{control::FeedforwardKind::planned,
                                              channel.feedforward.extra_latency_s};
   const bool plannable =

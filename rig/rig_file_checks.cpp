@@ -1,4 +1,4 @@
-// Checks the parts of a rig file that can only be checked together.
+// Makes the checks of a rig file that combine several of its parts.
 
 #include <algorithm>
 #include <chrono>
@@ -12,8 +12,8 @@ namespace softgrip::rig {
 
 namespace {
 
-/// Returns the pressure that a valve has after the watchdog of its Modbus module has tripped; nothing if the
-/// module has no watchdog.
+/// Returns the pressure that a valve gets when the watchdog of its Modbus module trips; nothing if the module
+/// has no watchdog.
 std::optional<double> safe_value_kpa(const drivers::OutputWiring& valve, const ValveFacts& facts,
                                      const drivers::ModbusSettings& board) {
   if (valve.module >= board.modules.size()) return std::nullopt;
@@ -25,7 +25,8 @@ std::optional<double> safe_value_kpa(const drivers::OutputWiring& valve, const V
 }
 
 /// Returns nothing if the watchdog of a Modbus board sets each channel to its rest pressure. Otherwise
-/// returns the reason, which is appended to a message. If a module has no watchdog, this text is empty.
+/// returns the reason as a text that is appended to a message. If a module has no watchdog, the text is
+/// empty.
 std::optional<std::string> stays_away(const Context& context, const drivers::ModbusSettings& board) {
   for (std::size_t i = 0; i < context.wiring.size(); ++i) {
     const std::optional<double> safe_kpa =
@@ -82,9 +83,9 @@ double watchdog_time_s(const Context& context) {
   return simulated != nullptr ? simulated->watchdog_timeout_s : 0;
 }
 
-/// Checks that a gap in the communication causes the fault bus_down before the board's watchdog vents. If a
-/// gap is too short for this fault, the sequence continues after the gap. If the board had vented in the gap,
-/// the sequence would continue with vented fingers.
+/// Checks that a gap in the communication causes the fault bus_down before the board's watchdog vents. After
+/// a gap that is too short for this fault, the sequence continues. If the board had vented in this gap, the
+/// sequence would continue with vented fingers.
 void check_watchdog_time(Context& context, MapReader& top) {
   const double timeout_s = watchdog_time_s(context);
   const std::chrono::nanoseconds timeout(nanoseconds(timeout_s));
@@ -106,8 +107,8 @@ void check_watchdog_time(Context& context, MapReader& top) {
 }
 
 /// Checks that the bus is fast enough for the rate. The round-trip time of a network is an estimate, so a
-/// user who knows this time better may accept the rate. The transmission time on a serial line is exact. A
-/// rate that needs a shorter time can never be reached, so the user cannot accept it.
+/// user who knows this time better may accept the rate. The transmission time on a serial line is exact. If a
+/// period is shorter than this time, the rate can never be reached, so the user cannot accept it.
 void check_budget(Context& context, MapReader& top) {
   const auto* const settings = std::get_if<drivers::ModbusSettings>(&context.rig.board);
   if (settings == nullptr) return;

@@ -17,9 +17,9 @@ using drivers::GpioRole;
 /// Length of the longest line name in the kernel [bytes].
 constexpr std::size_t longest_name = 31;
 
-/// Checks the name of a line, and the word that identifies a chip. Reports a word that matches several chips
-/// of this computer. A word that matches no chip is accepted, because the rig may be connected to another
-/// computer.
+/// Checks the name of a line, and the word that identifies a chip. Reports an error if the word matches
+/// several chips of this computer. Accepts a word that matches no chip, because the rig may be connected to
+/// another computer.
 void check_which_line(MapReader& reader, const GpioLineSettings& line,
                       const std::vector<ComputerDevice>& there, const std::string& what) {
   const auto found = only_device(there, line.chip, "GPIO chip");
@@ -47,7 +47,8 @@ void check_broken_wire(MapReader& reader, const GpioLineSettings& line) {
               "normal operation");
 }
 
-/// Reads the line for a purpose, if the file contains it. `there` contains the chips of this computer.
+/// Reads the line for a purpose, if the file contains such a line. `there` contains the chips of this
+/// computer.
 void read_line(Context& context, MapReader& gpio, const std::vector<ComputerDevice>& there, GpioRole role) {
   const std::string name(drivers::name_of(role));
   const Node* const node = gpio.child(name, false);

@@ -36,8 +36,8 @@ class TerminalsReader {
     return terminals;
   }
 
-  /// Reads the heartbeat. This function is called after outputs(), because the heartbeat must differ from all
-  /// outputs.
+  /// Reads the heartbeat output. This function is called after outputs(), because the heartbeat must not be
+  /// one of the outputs.
   std::optional<drivers::IioHeartbeat> heartbeat(MapReader& iio) {
     const Node* const node = iio.child("heartbeat", false);
     if (node == nullptr) return std::nullopt;
@@ -79,8 +79,8 @@ class TerminalsReader {
                       "_voltage0_raw is voltage0");
   }
 
-  /// Reports a word that matches several converters of this computer, and a channel that is listed twice. A
-  /// word that matches no converter is accepted, because the rig may be connected to another computer.
+  /// Reports a word that matches several converters of this computer, and a converter channel that is listed
+  /// twice. Accepts a word that matches no converter, because the rig may be connected to another computer.
   void check_device(MapReader& reader, const drivers::IioTerminal& terminal, Known& known) const {
     if (!reader.good("device") || !reader.good("channel")) return;
     const auto device = only_device(there_, terminal.device, "converter");

@@ -1,4 +1,4 @@
-// Reads a Modbus board from a rig file: its modules are at network hosts or on a serial line.
+// Reads a Modbus board from a rig file. The modules of the board are at network hosts or on a serial line.
 
 #include <arpa/inet.h>
 
@@ -22,14 +22,14 @@ using drivers::ModbusModuleSettings;
 using drivers::ModbusSettings;
 
 constexpr int largest_tcp_unit = 255;
-// Largest permitted unit id. 0 is the broadcast address, to which no module responds, and 248 to 255 are
-// reserved (Modbus over Serial Line V1.02, 2.2).
+// Largest permitted unit id. The unit ids 248 to 255 are reserved, and 0 is the broadcast address, to which
+// no module responds (Modbus over Serial Line V1.02, 2.2).
 constexpr int largest_rtu_unit = 247;
-/// If an adapter delays responses by more than this time, a warning is given [s].
+/// Usual delay of the responses by an adapter [s]. If an adapter has a longer delay, a warning is given.
 constexpr double usual_latency_s = 0.0015;
 
-/// Checks for a numeric address. Host names are not accepted, because resolving a name may take an unlimited
-/// time.
+/// Checks that a host is a numeric address. Host names are not accepted, because resolving a name may take an
+/// unlimited time.
 void check_host(MapReader& reader, const std::string& host) {
   std::array<unsigned char, sizeof(in6_addr)> address{};
   if (host.empty() || ::inet_pton(AF_INET, host.c_str(), address.data()) == 1 ||
@@ -49,8 +49,8 @@ std::optional<drivers::BoardMap> read_module_map(Context& context, MapReader& re
   return map;
 }
 
-/// Reads the settings of the session that the Modbus specification does not contain. check_waits() compares
-/// them with the deadlines, which are read later.
+/// Reads the settings of a session that are not part of the Modbus specification. check_waits() later
+/// compares their waiting times with the deadlines.
 drivers::LinkHabits read_habits(Context& context, MapReader& reader) {
   drivers::LinkHabits habits;
   read_keys(reader, rig_keys().habits, habits);
@@ -163,8 +163,8 @@ class ModulesReader {
     return address;
   }
 
-  /// Returns the link to an address. If there is no such link yet, adds it. Modules at the same host and port
-  /// share a session, so their session settings in the file must be equal.
+  /// Returns the index of the link to an address. If there is no such link yet, adds it. Modules at the same
+  /// host and port share a session, so the rig file must contain equal session settings for these modules.
   std::size_t link_of(MapReader& reader, const drivers::TcpAddress& address) {
     auto& links = settings_.links;
     for (std::size_t link = 0; link < links.size(); ++link) {
@@ -195,7 +195,7 @@ void read_format(MapReader& reader, drivers::SerialLine& line) {
   (void)drivers::set_format(texts[reader.choice("format", texts)], line);
 }
 
-/// Warns of a device name that depends on the order in which adapters are connected.
+/// Warns of a device name that changes with the order in which the adapters are connected.
 void advise_on_name(MapReader& reader, const std::string& device) {
   if (device.rfind("/dev/ttyUSB", 0) != 0 && device.rfind("/dev/ttyACM", 0) != 0) return;
   reader.warn(
@@ -204,16 +204,17 @@ void advise_on_name(MapReader& reader, const std::string& device) {
       "use the permanent name of the adapter, which this command lists: ls -l /dev/serial/by-id");
 }
 
-/// Reports a device name that several adapters have. The system would use the adapter that was connected
-/// last. A name that does not exist is accepted, because the rig may be connected to another computer.
+/// Reports a device name that several adapters have. For such a name, the system would use the adapter that
+/// was connected last. Accepts a name that does not exist, because the rig may be connected to another
+/// computer.
 void check_device(MapReader& reader, const std::string& device) {
   if (!reader.good("device")) return;
   const auto unclear = drivers::unclear_serial_device(device);
   if (unclear && unclear->several) reader.report("device", unclear->message, unclear->hint);
 }
 
-/// If the file does not give the latency of the adapter, asks the kernel for that of the connected adapter.
-/// Warns of an adapter with a long latency.
+/// If the file does not contain the latency of the adapter, gets the latency of the connected adapter from
+/// the kernel. Warns of an adapter with a long latency.
 void find_adapter_latency(MapReader& reader, drivers::SerialLine& line) {
   const auto found = drivers::adapter_latency(line.device);
   if (found && !reader.has("adapter_latency_s")) line.adapter_latency_s = found->seconds;

@@ -16,12 +16,13 @@ namespace softgrip::rig {
 
 using document::MapReader;
 
-/// The readable part of a module of the board.
+/// The data of a board's module that could be read from the rig file.
 struct KnownModule {
   std::string name;
   std::optional<drivers::ModuleTerminals> terminals;
 };
-/// Locations in the file of the terminals that are already in use, by module and by number of the terminal.
+/// Location in the file of each terminal that is already in use. The key is the module and the number of the
+/// terminal.
 using UsedTerminals = std::map<std::pair<std::size_t, std::size_t>, document::Location>;
 
 /// The state that all functions share while a rig file is read.
@@ -43,8 +44,8 @@ struct Context {
 
   bool rate_known = false;  ///< true: rate_hz has no error, so other values can be compared with the period
 
-  /// Has one member for each part of the file, which is true if the part is present and has no error. A check
-  /// that needs several parts runs only if all of them have no error.
+  /// Has one member for each part of the file. A member is true if its part is present and has no error. A
+  /// check that needs several parts runs if all of these parts have no error.
   struct Sound {
     bool loop = false;
     bool faults = false;
@@ -55,12 +56,13 @@ struct Context {
     bool rest = false;
   };
   Sound sound;
-  /// One value per channel; true: model, feedforward, gains and limits are known.
+  /// One value per channel; true: model, feedforward, gains and limits of the channel are known.
   std::vector<bool> motion_known;
-  /// Texts of the files to which the rig refers. If the pointer is null, the files are read from the disk.
+  /// Texts of the files to which the rig refers. If the pointer is null, these files are read from the disk.
   const std::vector<InputFile>* stored = nullptr;
 
-  /// A waiting time of a Modbus session. It must be shorter than a deadline, which is read later.
+  /// A waiting time of a Modbus session, stored because it must be shorter than a deadline that is read
+  /// later.
   struct Wait {
     document::Location at;
     std::string_view key;
@@ -122,8 +124,8 @@ void read_recorder(Context& context, MapReader& top);
 void read_socket(Context& context, MapReader& top);
 void read_gpio(Context& context, MapReader& top);
 
-/// Returns 0 kPa if the rest pressure differs from 0 kPa only because the pressure range does not contain 0
-/// kPa. Otherwise returns the rest pressure.
+/// Returns 0 kPa if the pressure range does not contain 0 kPa and the rest pressure is the end of the range
+/// nearest to 0 kPa. Otherwise returns the rest pressure.
 [[nodiscard]] double vented_kpa(const control::LimitSettings& limits);
 /// Returns true if a pressure is between the rest pressure and vented_kpa(). A distance from this interval of
 /// up to 1 % of the pressure range is permitted.
@@ -142,8 +144,8 @@ void read_gpio(Context& context, MapReader& top);
 [[nodiscard]] drivers::InputWiring read_temperature_sensor(Context& context, const document::Node& node,
                                                            const std::string& who);
 
-/// Checks the wiring, the watchdog, the settings of the controller and the bus budget. Each check runs only
-/// if the parts of the file that it needs have no error.
+/// Checks the wiring, the watchdog, the settings of the controller and the bus budget. Each check runs if the
+/// parts of the file that the check needs have no error.
 void check_whole(Context& context, MapReader& top);
 /// Returns true if the board puts each channel to its rest pressure when messages stop.
 [[nodiscard]] bool board_vents_when_silent(const Context& context);

@@ -39,7 +39,7 @@ std::vector<int> read_cpus(Context& context, MapReader& reader) {
   return cpus;
 }
 
-/// Converts permissions in the form that `ls` prints, such as `rw-rw----`. Returns nothing for any other
+/// Converts permissions from the form that `ls` prints, such as `rw-rw----`. Returns nothing for any other
 /// text.
 std::optional<unsigned> in_letters(std::string_view text) {
   constexpr std::string_view letters = "rwxrwxrwx";
@@ -52,7 +52,7 @@ std::optional<unsigned> in_letters(std::string_view text) {
   return mode;
 }
 
-/// Converts permissions in the form that `chmod` accepts: three octal digits, with an optional leading 0.
+/// Converts permissions from the form that `chmod` accepts: three octal digits, with an optional leading 0.
 /// Returns nothing for any other text.
 std::optional<unsigned> octal(std::string_view text) {
   if (text.size() == 4 && text[0] == '0') text.remove_prefix(1);
@@ -90,7 +90,7 @@ void read_socket_mode(MapReader& reader, SocketFile& socket, bool moves) {
 /// Checks the path of a socket, and reads its permissions.
 void finish_socket_file(const Context& context, MapReader& reader, SocketFile& socket, bool moves) {
   socket.path = resolved(context, socket.path);
-  // sockaddr_un has 108 bytes for the path, including the final NUL.
+  // The path in sockaddr_un has space for 108 bytes, including the final NUL.
   if (socket.path.size() > 107) {
     reader.report("path",
                   "the path of the socket is longer than 107 bytes, the longest path that Linux permits");

@@ -13,8 +13,8 @@ namespace {
 
 using document::Node;
 
-/// Returns the seed of a channel; each channel has another seed. It is computed from the seed of the board by
-/// a step of SplitMix64 (Steele, Lea, Flood 2014).
+/// Returns the seed of a channel. A step of SplitMix64 (Steele, Lea, Flood 2014) computes it from the seed of
+/// the board and the index of the channel, so that channels have different seeds.
 std::uint64_t seed_of(std::uint64_t seed, std::uint64_t channel) {
   return scattered(seed + channel * 0x9e3779b97f4a7c15U);
 }

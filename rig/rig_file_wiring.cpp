@@ -17,8 +17,8 @@ namespace {
 using document::Node;
 using drivers::ElectricalUnit;
 
-/// Returns which values in V, mA or kPa a rig file may contain for a terminal, for any supported board. The
-/// limits of the board map are narrower than this range.
+/// Returns the range of values in V, mA or kPa that a rig file may contain for a terminal of any supported
+/// board. The limits of a particular board map are narrower than this range.
 constexpr document::Range range_of(ElectricalUnit unit) {
   return unit == ElectricalUnit::kilopascal ? document::Range{-200, 10'000} : document::Range{-100, 100};
 }
@@ -63,8 +63,8 @@ drivers::TwoPoints read_scaling(MapReader& reader, const ElectricalKey& at_key, 
   return {at[0], is[0], at[1], is[1]};
 }
 
-/// Returns the index of the module of a terminal. If the key `module` is present, it names the module.
-/// Otherwise, it is the only module that has terminals of this direction.
+/// Returns the index of the module that contains a terminal. If the key `module` is present, its value is the
+/// name of the module. Otherwise, the module is the only one that has terminals of this direction.
 std::size_t read_module(const Context& context, MapReader& reader, std::string_view key) {
   if (context.modules.size() <= 1) return 0;
   std::vector<std::string> names;
@@ -81,7 +81,8 @@ std::size_t read_module(const Context& context, MapReader& reader, std::string_v
   return reader.good("module") ? chosen : context.modules.size();
 }
 
-/// Returns a terminal of a module; null if the module could not be read, or if it has no such terminal.
+/// Returns a terminal of a module; null if the module could not be read, or if the module has no such
+/// terminal.
 const drivers::Terminal* terminal_of(const Context& context, std::string_view key, std::size_t module,
                                      std::size_t index) {
   if (module >= context.modules.size() || !context.modules[module].terminals) return nullptr;
@@ -156,8 +157,8 @@ drivers::InputWiring read_input(Context& context, MapReader& reader, const std::
   return wiring;
 }
 
-/// Checks that the pressure limits are within the ranges of the valve and of the board's output. Also checks
-/// that they use at least a fifth of the valve's range.
+/// Checks that the pressure limits are within the ranges of the valve and of the board's output, and that
+/// they use at least a fifth of the valve's range.
 void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
                  const drivers::OutputWiring& wiring, const control::LimitSettings& limits,
                  const ValveFacts& facts) {
@@ -179,8 +180,8 @@ void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
   }
   const drivers::Terminal* const terminal = terminal_of(context, "output", wiring.module, wiring.output);
   if (terminal == nullptr) return;
-  // The comparison needs a tolerance, because the nominal full scale of many boards corresponds to 1 more
-  // than the largest raw number.
+  // The comparison needs a tolerance of one raw number: on many boards, the nominal full scale corresponds to
+  // the largest raw number plus 1.
   const double slack = (terminal->highest - terminal->lowest) * 1e-3;
   for (const double pressure : {limits.pressure_min_kpa, limits.pressure_max_kpa}) {
     const double needed = wiring.scaling.x_at(pressure);

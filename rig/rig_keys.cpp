@@ -10,11 +10,11 @@ using document::MapReader;
 using document::optional;
 using document::required;
 
-/// Gauge pressures and displacements that a rig file may contain, for any supported finger. The limits of a
-/// rig are narrower than these ranges.
+/// Range of gauge pressures that a rig file may contain, for any supported finger. The limits of a particular
+/// rig are narrower than this range.
 const document::Allowed any_pressure_kpa{-100, 2000};
 const document::Allowed any_displacement_mm{-1000, 1000};
-/// Pressures at a valve or in its line.
+/// Range of pressures at a valve or in its line [kPa].
 const document::Allowed line_pressure_kpa{-200, 10'000};
 const document::Allowed cycles{1, 100'000};
 
@@ -123,7 +123,7 @@ void declare_wiring(RigKeys& keys) {
                "pressure without power of a valve that vents")};
 }
 
-/// Reads `overrun_cycles`. The deprecated name of this key is `slipped_cycles`.
+/// Reads `overrun_cycles`, whose deprecated name is `slipped_cycles`.
 void read_overrun_cycles(MapReader& reader, const KeyFacts& key, control::FaultSettings& faults) {
   constexpr document::Range any{0, 100'000};
   const std::string old_name = "slipped_cycles";

@@ -16,9 +16,9 @@ using document::Keys;
 /// Largest raw number of a converter of this computer.
 inline constexpr double largest_raw = (1 << 24) - 1;
 
-/// The keys of each map of a rig file; rig_tables() shows the map to which they belong. A key without a
-/// member of the settings is read by the function that reads its map. The conditions that combine several
-/// keys are in this function, too.
+/// The keys of each map of a rig file; rig_tables() shows the map to which each key belongs. A key without a
+/// member of the settings is read by the function that reads its map. This function also checks the
+/// conditions that combine several keys.
 struct RigKeys {
   Keys<control::RigSettings> rig, rest;
   Keys<LoopSettings> loop, exchange, commands;
@@ -54,7 +54,7 @@ struct RigKeys {
 };
 [[nodiscard]] const RigKeys& rig_keys();
 
-/// The keys of each table of docs/reference/rig-file.md, by the name of the table.
+/// Returns the keys of each table of docs/reference/rig-file.md, with the name of the table.
 [[nodiscard]] std::vector<std::pair<std::string, std::vector<document::KeyFacts>>> rig_tables();
 
 }  // namespace softgrip::rig

@@ -22,7 +22,7 @@ const Node* value_of(const Node* map, std::string_view key) {
 }  // namespace
 
 std::optional<std::string> socket_path_of(const std::string& rig_path, document::Problems& problems) {
-  document::Problems ignored;  // problems in the rest of the file are not reported
+  document::Problems ignored;  // problems in the other parts of the file are not reported
   const document::Document document = document::parse_file(rig_path, ignored);
   const Node* const path = value_of(value_of(&document.root, "socket"), "path");
   if (path != nullptr && path->kind == Node::Kind::scalar && !path->scalar.empty()) {

@@ -9,7 +9,7 @@ namespace softgrip::rig {
 /// The file of a Unix domain stream socket.
 struct SocketFile {
   std::string path;  ///< path of the socket file; empty: there is no such socket
-  /// Permissions of the socket file.
+  /// Permissions of the socket file (file mode).
   unsigned mode = 0660;
   /// Group of the socket file; empty: the group of the daemon.
   std::string group;
@@ -19,7 +19,7 @@ struct SocketFile {
 /// declares the meaning and the range of each member.
 struct SocketSettings : SocketFile {
   SocketSettings() { path = "/run/softgrip/softgripd.sock"; }
-  /// The socket for clients that may only read.
+  /// The socket for read-only clients.
   SocketFile look;
   std::size_t max_clients = 16;
   std::size_t max_line_bytes = 64 * 1024;

@@ -1,5 +1,5 @@
 #pragma once
-// Reads a rig from stored texts of its files, in place of the files.
+// Reads a rig from stored texts of its files, without access to the files.
 
 #include <optional>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace softgrip::rig {
 
-/// Reads a rig from the texts of its files (RigFile::inputs). The disk is not accessed. The returned problems
-/// equal the problems that load_rig() returns.
+/// Reads a rig from the stored texts of its files (RigFile::inputs), without access to the disk. Reports the
+/// same problems as load_rig() reports for the files.
 [[nodiscard]] std::optional<RigFile> read_stored_rig(const std::vector<InputFile>& inputs,
                                                      document::Problems& problems);
 

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Converts the alternatives of Value::json.
+/// Functions that convert each alternative of Value::json to JSON.
 struct ToJson {
   Json operator()(std::monostate) const { return nullptr; }
   Json operator()(double number) const { return std::isfinite(number) ? Json(number) : Json(nullptr); }

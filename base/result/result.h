@@ -1,8 +1,8 @@
 #pragma once
 // The result of a command as a tree of fields. A field states its JSON key, its title and its value once, so
-// a new field is added in one place. Three writers read the tree: json_text() writes the fields that have a
-// key. table_of() and terms_of() choose the fields that have a title, and text_of() and html_of() (table.h)
-// write these.
+// a new field is added in one place. Functions convert the tree to output: json_text() writes the fields that
+// have a key. table_of() and terms_of() select the fields that have a title, and text_of() and html_of()
+// (table.h) write the selected fields.
 
 #include <concepts>
 #include <cstdint>
@@ -24,7 +24,7 @@ namespace softgrip::result {
 struct Field;
 using Fields = std::vector<Field>;
 
-/// A value of a field: `json` is written to JSON, and `text` is shown to a reader.
+/// A value of a field: `json` is written to JSON files, and `text` is shown to readers.
 struct Value {
   using List = std::vector<Value>;
 
@@ -43,7 +43,7 @@ struct Value {
   Value(List items) : json(std::move(items)) {}
   Value(Fields fields) : json(std::move(fields)) {}
 
-  /// std::monostate is null. Fields are an object.
+  /// The value in JSON: std::monostate becomes null, and Fields becomes an object.
   std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, List, Fields> json;
   std::string text = "-";
   bool numeric = false;  ///< true: the text is right-aligned in a table
@@ -64,9 +64,10 @@ struct Field {
 [[nodiscard]] Value number(const std::optional<double>& value, int digits = 4, std::string_view unit = {});
 /// Returns a number whose text has `decimals` digits after the point.
 [[nodiscard]] Value decimals(double value, int decimals);
-/// Returns the value with another text. @param numeric  true: the text is right-aligned in a table.
+/// Returns the value with its text replaced by `text`.
+/// @param numeric  true: the text is right-aligned in a table.
 [[nodiscard]] Value shown(Value value, std::string text, bool numeric = false);
-/// Returns the text, which is null in JSON if it is empty.
+/// Returns a value with this text. If the text is empty, the value is null in JSON.
 [[nodiscard]] Value or_null(std::string text);
 
 /// Returns an object with one entry for each pair of a key and a value.
@@ -77,10 +78,10 @@ template <class Pairs>
   return fields;
 }
 
-/// Calls the function fields_of() of the namespace of an item.
+/// Calls fields_of() from the namespace of the item.
 inline constexpr auto fields_of_item = [](const auto& item) { return fields_of(item); };
 
-/// Returns an array with one element for each item; `to_value` returns this element.
+/// Returns an array with one element for each item. The function `to_value` returns the element for an item.
 template <std::ranges::range Items, class ToValue = decltype(fields_of_item)>
 [[nodiscard]] Value list_of(const Items& items, const ToValue& to_value = {}) {
   Value::List list;
@@ -92,7 +93,8 @@ template <std::ranges::range Items, class ToValue = decltype(fields_of_item)>
 /// Every row has the titled fields of `columns`, in the same order.
 [[nodiscard]] Table table_of(std::string caption, const Fields& columns, const std::vector<Fields>& rows);
 
-/// Returns a table with one row for each item; `to_fields` returns the fields of this row.
+/// Returns a table with one row for each item. The function `to_fields` returns the fields of the row for an
+/// item.
 template <std::ranges::range Items, class ToFields = decltype(fields_of_item)>
 [[nodiscard]] Table table_of(std::string caption, const Items& items, const ToFields& to_fields = {}) {
   std::vector<Fields> rows;
@@ -102,7 +104,7 @@ template <std::ranges::range Items, class ToFields = decltype(fields_of_item)>
   return table_of(std::move(caption), columns, rows);
 }
 
-/// Returns the titles and the texts of the titled fields.
+/// Returns the titles and the texts of the fields that have a title.
 [[nodiscard]] Terms terms_of(const Fields& fields);
 
 /// Returns the value as JSON. A number that is not finite is null.

@@ -1,5 +1,5 @@
 #pragma once
-// Tables and lists of terms of a result, written as text and as HTML.
+// Defines tables and lists of terms for the results of commands, and writes them as text and as HTML.
 
 #include <string>
 #include <string_view>
@@ -20,14 +20,14 @@ struct Table {
 /// Returns the table as lines of text with aligned columns. The first line is the caption.
 [[nodiscard]] std::string text_of(const Table& table);
 
-/// Terms and the value of each term.
+/// A list of pairs: a term and its value.
 using Terms = std::vector<std::pair<std::string, std::string>>;
 
 /// Returns `text` with entities in place of & < > " ', and with a replacement character in place of each
 /// control character. The result is safe as content and as a quoted attribute, for any `text`.
 [[nodiscard]] std::string escaped(std::string_view text);
 
-/// Returns an element that contains the text, which is escaped, and a line break.
+/// Returns an HTML element with the escaped text as its content, followed by a line break.
 /// @param name  tag of the element; this text is not escaped.
 [[nodiscard]] std::string element(std::string_view name, std::string_view text);
 

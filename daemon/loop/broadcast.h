@@ -37,7 +37,8 @@ class Broadcast {
     std::memcpy(words.data(), &item, sizeof(T));
     Slot& slot = slot_of(pushed_);
     slot.turn.store(writing, std::memory_order_relaxed);
-    // If a reader reads one of the new words, it must also see that the slot is being written.
+    // The release stores keep the order of the writes: a reader that sees a new word of the slot also sees
+    // that the slot is being written.
     for (std::size_t i = 0; i < words.size(); ++i) {
       if (i == words.size() / 2) Interruption::halfway();
       slot.words[i].store(words[i], std::memory_order_release);
@@ -46,7 +47,7 @@ class Broadcast {
     newest_.store(pushed_, std::memory_order_release);
   }
 
-  /// One reader. The first item that it returns is the oldest stored item.
+  /// A reader of the broadcast. Its first call of pop() returns the oldest stored item.
   class Reader {
    public:
     explicit Reader(const Broadcast& from) noexcept : from_(&from) {}
@@ -75,8 +76,8 @@ class Broadcast {
       }
     }
 
-    /// Returns the number of items that were lost, because the writer replaced them before this reader read
-    /// them.
+    /// Returns the number of items that this reader has lost, because the writer replaced them before this
+    /// reader read them.
     [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
 
    private:
@@ -95,7 +96,7 @@ class Broadcast {
   static constexpr std::uint64_t writing = UINT64_MAX;
 
   struct Slot {
-    std::atomic<std::uint64_t> turn{0};  ///< number of the item that this slot contains, from 1
+    std::atomic<std::uint64_t> turn{0};  ///< number of the item in this slot, counted from 1
     std::array<std::atomic<std::uint64_t>, std::tuple_size_v<Words>> words{};
   };
   [[nodiscard]] Slot& slot_of(std::uint64_t index) noexcept { return slots_[index & (slots_.size() - 1)]; }

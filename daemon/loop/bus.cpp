@@ -13,14 +13,14 @@ using drivers::BusStatus;
 
 namespace {
 
-/// Returns true if the board has responded to the request; a rejection is a response too.
+/// Returns true if the board has responded to the request. A rejection of the request is also a response.
 bool is_answer(BusStatus status) noexcept {
   return status != BusStatus::disconnected && status != BusStatus::closed_at_once &&
          status != BusStatus::timed_out && status != BusStatus::bad_reply;
 }
 
-/// Returns true if the connection cannot be used any more: the board may still send the response to an old
-/// request, or it waits for the set-up of a new connection.
+/// Returns true if the connection must be closed: the board may still send the response to an old request, or
+/// it waits until a new connection is set up.
 bool loses_session(BusStatus status) noexcept {
   return !is_answer(status) || status == BusStatus::watchdog_tripped;
 }
@@ -87,8 +87,8 @@ void Bus::step(Nanoseconds due) noexcept {
   if (!listen()) return;
   const bool connected = session_ != Session::none;
   if (ensure_session()) {
-    // Opening a connection takes time. The commands that arrived during this time are newer, so they are
-    // used.
+    // Opening a connection takes time, and the loop may have sent newer commands in this time. The bus uses
+    // the newest commands.
     if (!connected && shared_.commands.fetch()) unheard_ = 0;
     exchange();
   } else {
@@ -97,8 +97,8 @@ void Bus::step(Nanoseconds due) noexcept {
   publish();
 }
 
-/// Fetches the commands of the loop and detects if they time out. Returns false until the loop has sent its
-/// first commands.
+/// Fetches the newest commands of the loop and detects a time-out of the commands. Returns false before the
+/// loop has sent its first commands.
 bool Bus::listen() noexcept {
   if (shared_.commands.fetch()) {
     spoken_ = true;
@@ -132,7 +132,7 @@ bool Bus::ensure_session() noexcept {
   if (session_ != Session::none) return true;
   if (clock_.now() < next_attempt_) return false;
   report_.health.connected = false;
-  publish();  // connect() may take long, so the loop must know the state before the call
+  publish();  // connect() may take long, so the new state of the bus is published to the loop before the call
   statistics_.attempts.fetch_add(1, std::memory_order_relaxed);
   const BusStatus status = board_.connect(reconnect_.connect_deadline);
   if (status == BusStatus::ok) {
@@ -181,8 +181,8 @@ void Bus::exchange() noexcept {
     return;
   }
   report_.outputs_kpa = written_kpa_;
-  // If this thread was stopped during the exchange, the commands may have reached the board after the
-  // watchdog time. In this case, the board had already changed its outputs.
+  // If this thread was stopped during the exchange, the commands may have reached the board after the board's
+  // watchdog time. The board had then set its safe outputs before it received the commands.
   judge_gap(ended, 0);
   last_good_ = began;
   note_success(ended - began);
@@ -214,9 +214,9 @@ void Bus::note_success(Nanoseconds duration) noexcept {
   note_clients();
 }
 
-/// Reports another client once per connection, so that a client that reconnects often does not fill the log.
-/// This report is needed only if a client that reads feeds the board's watchdog. If only a client that writes
-/// feeds the watchdog, such a client is detected by the change of the outputs.
+/// Reports another client of the board once per connection, so that a client that reconnects often does not
+/// fill the log. The report is needed only for a client that feeds the board's watchdog by reading. A client
+/// that writes is detected by the change of the outputs.
 void Bus::note_clients() noexcept {
   if (told_clients_ || !board_.fed_by_readers()) return;
   const unsigned clients = board_.clients();
@@ -228,7 +228,7 @@ void Bus::note_clients() noexcept {
 }
 
 void Bus::note_failure(BusStatus status) noexcept {
-  // After a failed exchange, it is unknown if the board has applied the write.
+  // After a failed exchange, the bus does not know if the board has applied the written values.
   for (std::size_t i = 0; i < channels_; ++i) {
     report_.outputs_kpa[i] = control::no_further(rest_kpa_[i], written_kpa_[i], report_.outputs_kpa[i]);
   }
@@ -241,8 +241,8 @@ void Bus::note_failure(BusStatus status) noexcept {
   }
   const bool others = status == BusStatus::overwritten;
   if (others || status == BusStatus::watchdog_tripped) rest_outputs();
-  // A tripped watchdog changes the outputs too, so a change after it does not prove that there is another
-  // client.
+  // A tripped watchdog of the board also changes the outputs. A change of the outputs after a trip therefore
+  // does not prove that there is another client.
   const bool known = others && inhibited_ == FaultCode::board_watchdog_tripped;
   if (control::inhibits(fault_of(status)) && !known) inhibit(fault_of(status));
   statistics_.failures.add();
@@ -253,10 +253,10 @@ void Bus::note_failure(BusStatus status) noexcept {
   tell(BusEvent::Kind::failed, status, board_.detail());
 }
 
-/// Accepts the outputs that the board reports if they are nearer to rest than the written commands. Writing
-/// the last commands again would move these outputs away from rest. Outputs whose safe action is hold are not
-/// accepted, because a gateway that repeats an old reading must not open a grip. They are accepted again when
-/// commands with another safe action arrive.
+/// Uses the outputs that the board reports as the present outputs if they are nearer to rest than the written
+/// commands. Writing the last commands a second time would move these outputs away from rest. Outputs whose
+/// safe action is hold are not used in this way, because a gateway that repeats an old reading must not open
+/// a grip. The commands of such a channel count until commands with another safe action arrive.
 void Bus::respect_found_outputs() noexcept {
   const Commands& commands = shared_.commands.value();
   for (std::size_t i = 0; i < channels_; ++i) {
@@ -266,15 +266,16 @@ void Bus::respect_found_outputs() noexcept {
   }
 }
 
-/// Reports once per outage why no new connection can be opened, if the reason differs from the reason for the
-/// loss of the last connection. Example: a converter was removed, and another converter has its name.
+/// Reports once per outage why no new connection can be opened. Does not report if this reason equals the
+/// reason for the loss of the last connection. Example of a new reason: a converter was removed, and another
+/// converter now has its name.
 void Bus::note_refusal(BusStatus status) noexcept {
   if (told_refused_ || std::strncmp(told_.data(), board_.detail(), told_.size() - 1) == 0) return;
   told_refused_ = true;
   tell(BusEvent::Kind::not_connected, status, board_.detail());
 }
 
-/// If the board was not fed for longer than its watchdog time, assumes that it has set its safe outputs.
+/// Assumes that the board has set its safe outputs if it was not fed for longer than its watchdog time.
 void Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
   if (watchdog_ == 0 || !last_good_ || now - *last_good_ < watchdog_ - margin) return;
   rest_outputs();
@@ -285,7 +286,8 @@ void Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
                 seconds(now - *last_good_), seconds(watchdog_));
   tell(BusEvent::Kind::failed, BusStatus::watchdog_tripped, detail.data());
   told_failed_ = true;
-  last_good_.reset();  // once per gap; until the next successful exchange, the rest pressures are written
+  last_good_.reset();  // clears the time of the last exchange, so that each gap is handled once; the rest
+                       // pressures are written until the next successful exchange
 }
 
 void Bus::rest_outputs() noexcept {

@@ -84,37 +84,37 @@ class Bus {
   BusStatistics& statistics_;
   std::size_t channels_;
   std::array<double, control::max_channels> rest_kpa_{};
-  Nanoseconds watchdog_;         // watchdog time of the board; 0: the board has no watchdog
+  Nanoseconds watchdog_;         // watchdog time of the board [ns]; 0: the board has no watchdog
   Nanoseconds watchdog_margin_;  // longest time from the start of an exchange until its request reaches the
-                                 // board
+                                 // board [ns]
 
   /// State of the connection to the board.
   enum class Session : std::uint8_t {
-    none,      // closed; it is opened when the next attempt is due
-    opened,    // connect() succeeded, but there has been no exchange yet
+    none,      // the connection is closed; it is opened when the next attempt is due
+    opened,    // connect() succeeded, but no exchange has been tried yet
     answered,  // the board has responded to an exchange, but no exchange has been successful yet
     proven,    // an exchange with the board has been successful
   };
 
   BusReport report_;
   std::array<double, control::max_channels> written_kpa_ = BusReport::anything;
-  std::array<double, control::max_channels> found_kpa_ = BusReport::anything;  // outputs that the board
-                                                                               // reported with a rejected
-                                                                               // write since the last
-                                                                               // successful exchange
+  std::array<double, control::max_channels> found_kpa_ = BusReport::anything;  // outputs [kPa] that the board
+                                                                               // has reported after it
+                                                                               // rejected a write; reset by
+                                                                               // the next successful exchange
   Session session_ = Session::none;
   bool spoken_ = false;                                      // true: the loop has sent commands at least once
   control::FaultCode inhibited_ = control::FaultCode::none;  // reason why the bus is inhibited; `none` if the
                                                              // bus is not inhibited
-  std::uint32_t unheard_ = 0;                                // number of steps since the loop's last commands
-  std::optional<Nanoseconds> last_good_;                     // start time of the last successful exchange
-  bool told_failed_ = false;                                 // true: the present failure has been logged
-  bool told_refused_ = false;                                // true: the reason why no connection can be
-                                                             // opened has been logged
-  std::array<char, sizeof(BusEvent::detail)> told_{};        // text of the last failure in the log
+  std::uint32_t unheard_ = 0;             // number of bus steps since the loop last sent commands
+  std::optional<Nanoseconds> last_good_;  // start time of the last successful exchange
+  bool told_failed_ = false;              // true: the present failure of the bus has been logged
+  bool told_refused_ = false;             // true: the reason why no connection can be
+                                          // opened has been logged
+  std::array<char, sizeof(BusEvent::detail)> told_{};  // text of the last bus failure that was logged
   bool told_clients_ = false;  // true: another client of the board has been logged since the connection was
                                // opened
-  Nanoseconds pause_ = 0;      // pause between the next attempt to connect and the attempt after it
+  Nanoseconds pause_ = 0;      // pause between the next two attempts to connect [ns]
   Nanoseconds next_attempt_ = 0;
 };
 

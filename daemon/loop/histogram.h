@@ -1,5 +1,6 @@
 #pragma once
-// Histograms of durations that are always recorded. One thread adds durations, and any thread may read them.
+// Histograms of durations that are always recorded. One thread adds durations to a histogram, and any thread
+// may read the histogram.
 
 #include <array>
 #include <atomic>
@@ -11,17 +12,17 @@
 
 namespace softgrip::daemon {
 
-/// Numbers of durations per bin, in nanoseconds. A bin has a width of 1 ns below 128 ns. Above 128 ns, its
-/// width is 1/128 of the start of its octave, so the error is below 0.8 % up to 68 s. The bins need 30 kB. A
-/// negative duration is added to the bin of 0, and a duration above 68 s to the last bin. add() needs a few
-/// plain loads and stores. It uses no locks and no atomic additions.
+/// Number of durations in each bin. Durations are in nanoseconds. Below 128 ns, a bin is 1 ns wide. Above 128
+/// ns, a bin is as wide as 1/128 of the start of its octave, so the error is below 0.8 % for durations up to
+/// 68 s. The bins need 30 kB. A negative duration is added to the bin of 0, and a duration above 68 s to the
+/// last bin. add() needs a few plain loads and stores, no locks and no atomic additions.
 class Histogram {
  public:
-  /// Adds a duration. Only one thread may call this function.
+  /// Adds a duration to the histogram. One thread may call this function, and always the same one.
   void add(std::int64_t duration_ns) noexcept;
 
-  /// Returns a summary of all durations so far. If add() runs at the same time, the newest durations may be
-  /// missing.
+  /// Summary of all durations in the histogram. If add() runs during the call of summary(), the newest
+  /// durations may be missing.
   struct Summary {
     std::uint64_t count = 0;
     std::int64_t min_ns = 0;

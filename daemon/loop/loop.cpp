@@ -62,9 +62,9 @@ void Loop::read(control::TickInput& input) noexcept {
   input.bus = report.health;
   input.outputs_kpa = std::span(report.outputs_kpa).first(channels_);
   inhibit_ = report.health.inhibit;
-  // A blocked exchange reports nothing until its deadline, but the cycles in this time count as failed. One
-  // missing report is not a failure, because it can come from the jitter between the schedules of loop and
-  // bus.
+  // A blocked exchange reports nothing until its deadline, so the loop counts each cycle without a report as
+  // failed. One missing report is not a failure, because it can come from the jitter between the schedules of
+  // loop and bus.
   if (unreported_ > 1) input.bus.consecutive_failures += unreported_ - 1;
   input.emergency_stop = shared_.inputs.emergency_stop.load(std::memory_order_relaxed);
   input.interlock_open = shared_.inputs.interlock_open.load(std::memory_order_relaxed);

@@ -16,8 +16,8 @@ class RigController;
 
 namespace softgrip::daemon {
 
-/// No function of this class allocates memory, locks, logs, throws or calls the kernel, except to read the
-/// clock and to sleep.
+/// The control loop. Its functions do not allocate memory, lock, log or throw. They call the kernel for two
+/// purposes: to read the clock and to sleep.
 class Loop {
  public:
   /// Records a row in every `decimation`-th tick (>= 1). All referenced objects must exist longer than the
@@ -28,7 +28,8 @@ class Loop {
   /// Executes ticks on the schedule until shared.shutdown_requested is set, then calls leave().
   void run(PeriodicSchedule schedule) noexcept;
 
-  /// Executes a tick that was due at `due`. Callers that do not use run() call this function.
+  /// Executes a tick that was due at the time `due`. A caller that does not use run() calls this function for
+  /// each tick.
   void tick(Nanoseconds due) noexcept;
 
   /// Sends the safe outputs of the present phase, marks them as the last commands, and records them.
@@ -53,7 +54,7 @@ class Loop {
   std::uint64_t ticks_ = 0;
   std::uint32_t unreported_ = 0;      // number of ticks since the last report of the bus
   std::uint32_t inhibit_ = 0;         // newest value of BusHealth::inhibit that the bus has reported
-  std::uint32_t overrun_cycles_ = 0;  // number of cycles that were missed before the next tick
+  std::uint32_t overrun_cycles_ = 0;  // number of cycles that were missed just before the next tick
   Nanoseconds woken_ = 0;
   Nanoseconds ended_ = 0;
 };

@@ -46,7 +46,7 @@ void touch(volatile char* memory, std::size_t bytes) {
   for (std::size_t at = 0; at < bytes; at += static_cast<std::size_t>(page_bytes())) memory[at] = 1;
 }
 
-/// Returns the number of page faults while a heap block of this size is allocated and written.
+/// Returns the number of page faults that occur while a heap block of `bytes` bytes is allocated and written.
 long faults_of_a_heap_block(std::size_t bytes) {
   const long before = page_faults();
   const std::unique_ptr<char[]> block(new char[bytes]);
@@ -58,7 +58,7 @@ RealTimeStep prepare_heap(std::size_t bytes) {
   RealTimeStep step{"heap", Outcome::not_asked, "",
                     "a memory allocation in a thread other than the control loop may cause page faults"};
   if (bytes == 0) return step;
-  // Keeps freed blocks in the process. Large blocks also come from the heap, and not from new mappings.
+  // Keeps freed blocks in the process, and takes large blocks from the heap instead of new mappings.
   const bool accepted = mallopt(M_TRIM_THRESHOLD, -1) == 1 && mallopt(M_MMAP_MAX, 0) == 1;
   faults_of_a_heap_block(bytes);
   const long faults = faults_of_a_heap_block(bytes);
@@ -73,8 +73,8 @@ RealTimeStep prepare_heap(std::size_t bytes) {
   return step;
 }
 
-/// Tests on a new page if MCL_FUTURE works. Returns an empty text if the page is resident in memory,
-/// otherwise the reason why this is not certain.
+/// Checks with a new page if MCL_FUTURE works. Returns an empty text if the new page is resident in memory,
+/// otherwise the reason why MCL_FUTURE may not work.
 std::string doubt_of_a_new_mapping() {
   const auto bytes = static_cast<std::size_t>(page_bytes());
   void* page = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -109,7 +109,8 @@ RealTimeStep lock_memory(bool wanted) {
                     "several milliseconds"};
   if (!wanted) return step;
   step.outcome = Outcome::failed;
-  // If a limit applies, the lock might succeed now, but the kernel could refuse later mappings.
+  // If a limit on locked memory applies, mlockall() might succeed now, but the kernel could refuse memory
+  // mappings after the call.
   const bool unlimited = may_lock_without_limit();
   if (!unlimited || mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
     const int error = unlimited ? errno : EPERM;
@@ -187,8 +188,8 @@ RealTimeStep set_processors(const std::vector<int>& cpus, std::string_view who) 
 RealTimeStep set_scheduling(int priority, std::string_view who) {
   RealTimeStep step{fmt::format("scheduling of {}", who), Outcome::not_asked, "",
                     "other processes may delay the thread, so it may wake up several milliseconds late"};
-  // The timer slack matters only without SCHED_FIFO: the kernel may then delay each wake-up by 50 us to save
-  // power.
+  // The timer slack matters for threads without SCHED_FIFO: by default, the kernel may delay each of their
+  // wake-ups by 50 us to save power.
   prctl(PR_SET_TIMERSLACK, 1UL);
   if (priority <= 0) return step;
   step.outcome = Outcome::failed;
@@ -216,8 +217,8 @@ RealTimeStep set_scheduling(int priority, std::string_view who) {
   return step;
 }
 
-/// Writes to the part of the stack that the thread will need later. The compiler must not inline the
-/// function, because its own stack frame is this part.
+/// Writes to `bytes` bytes of the stack, so that the thread causes no page faults when it uses them. The
+/// compiler must not inline the function, because the function writes to its own stack frame.
 [[gnu::noinline]] long touch_stack(std::size_t bytes) {
   const long before = page_faults();
   auto* memory = static_cast<volatile char*>(__builtin_alloca(bytes));
@@ -226,7 +227,7 @@ RealTimeStep set_scheduling(int priority, std::string_view who) {
 }
 
 /// Returns the number of unused bytes of the calling thread's stack, minus a margin for the functions that
-/// are called next.
+/// the thread calls next.
 std::size_t stack_left() {
   constexpr std::size_t margin = 64 * 1024;
   pthread_attr_t attributes;

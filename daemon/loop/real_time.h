@@ -1,5 +1,5 @@
 #pragma once
-// Requests real-time settings from the operating system and reads each setting back.
+// Requests real-time settings from the operating system and verifies each setting by reading its value.
 
 #include <string>
 #include <string_view>
@@ -9,14 +9,14 @@
 
 namespace softgrip::daemon {
 
-/// One real-time setting that was requested, and its result.
+/// A requested real-time setting and its result.
 struct RealTimeStep {
   enum class Outcome { verified, failed, not_asked };
   std::string name;
   Outcome outcome = Outcome::not_asked;
-  std::string detail;  ///< value that was read back; after a failure, the reason of the failure and the usual
-                       ///< remedy
-  std::string cost;    ///< consequence if the setting failed, in one sentence
+  std::string detail;  ///< value of the setting that was read back; after a failure, the reason of the
+                       ///< failure and the usual remedy
+  std::string cost;    ///< consequence for the daemon if the setting failed, in one sentence
 };
 [[nodiscard]] std::string_view name_of(RealTimeStep::Outcome outcome) noexcept;
 
@@ -28,15 +28,16 @@ class RealTimeReport {
   [[nodiscard]] const std::vector<RealTimeStep>& steps() const noexcept { return steps_; }
   /// Returns true if a setting was requested but could not be verified.
   [[nodiscard]] bool degraded() const noexcept;
-  /// Returns one line per setting. A failed setting has a second line with the consequence of the failure.
+  /// Returns one line per setting. For a failed setting, adds a second line with the consequence of the
+  /// failure.
   [[nodiscard]] std::string format() const;
 
  private:
   std::vector<RealTimeStep> steps_;
 };
 
-/// Request to the kernel to keep the processors out of deep sleep states. It applies while this object
-/// exists.
+/// Request to the kernel to keep the processors out of deep sleep states. The request applies while this
+/// object exists.
 class ProcessorLatencyRequest {
  public:
   ProcessorLatencyRequest() = default;
@@ -55,12 +56,13 @@ class ProcessorLatencyRequest {
 [[nodiscard]] ProcessorLatencyRequest prepare_process(const rig::RealTimeSettings& settings,
                                                       RealTimeReport& report);
 
-/// Prepares the calling thread: its processors, its scheduling with `priority`, and its stack. `who` is the
-/// name of the thread in the report.
+/// Prepares the calling thread: its set of processors, its scheduling with `priority`, and its stack. `who`
+/// is the name of the thread in the report.
 void prepare_thread(const rig::RealTimeSettings& settings, int priority, std::string_view who,
                     RealTimeReport& report);
 
-/// Returns an entry that states if the running kernel is PREEMPT_RT. This entry is never a failure.
+/// Returns an entry that states if the running kernel is a PREEMPT_RT kernel. This entry never counts as a
+/// failure.
 [[nodiscard]] RealTimeStep kernel_step();
 
 }  // namespace softgrip::daemon

@@ -10,9 +10,9 @@
 
 namespace softgrip::daemon {
 
-/// A queue for a single producer and a single consumer. Neither of them waits: push() fails if there is no
-/// space, and pop() returns the items that are available. The constructor is the only function that allocates
-/// memory. T is a plain value.
+/// A queue for one producer and one consumer. Neither thread waits: push() fails if there is no space, and
+/// pop() returns the items that are available. Memory is allocated by the constructor and by no other
+/// function. T is a plain value.
 template <class T>
 class Ring {
  public:
@@ -21,8 +21,8 @@ class Ring {
 
   [[nodiscard]] std::size_t capacity() const noexcept { return items_.size(); }
 
-  /// For the producer. Adds `count` items and returns true; fill(item, index) writes each item into its place
-  /// in the queue. If there is no space for all items, adds none and returns false.
+  /// For the producer. Adds `count` items and returns true; fill(item, index) writes each item into its slot
+  /// of the queue. If there is no space for all `count` items, adds none of them and returns false.
   template <class Fill>
   bool push(std::size_t count, Fill&& fill) noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
@@ -50,7 +50,7 @@ class Ring {
   }
   bool pop(T& item) noexcept { return pop(std::span<T>(&item, 1)) == 1; }
 
-  /// For producer and consumer. Returns the number of waiting items, which may change at any time.
+  /// For producer and consumer. Returns the number of items in the queue, which may change at any time.
   [[nodiscard]] std::size_t size() const noexcept {
     const std::size_t head = head_.load(std::memory_order_acquire);
     return tail_.load(std::memory_order_acquire) - head;
@@ -64,14 +64,12 @@ class Ring {
   // The producer stores the position of the consumer that it last read, and the consumer stores the position
   // of the producer that it last read. Therefore, most calls do not access the cache line of the other
   // thread.
-  alignas(cache_line) std::atomic<std::size_t> head_{0};  // number of items taken so far; written by the
-                                                          // consumer
-  std::size_t known_tail_ = 0;                            // last position of the producer that the consumer
-                                                          // read
-  alignas(cache_line) std::atomic<std::size_t> tail_{0};  // number of items added so far; written by the
-                                                          // producer
-  std::size_t known_head_ = 0;                            // last position of the consumer that the producer
-                                                          // read
+  alignas(cache_line) std::atomic<std::size_t> head_{0};  // number of items that the consumer has taken so
+                                                          // far; written by the consumer
+  std::size_t known_tail_ = 0;  // position of the producer when the consumer last read it
+  alignas(cache_line) std::atomic<std::size_t> tail_{0};  // number of items that the producer has added so
+                                                          // far; written by the producer
+  std::size_t known_head_ = 0;  // position of the consumer when the producer last read it
 };
 
 }  // namespace softgrip::daemon

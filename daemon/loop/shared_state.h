@@ -23,9 +23,9 @@ struct Commands {
   std::array<double, control::max_channels> command_kpa{};
   /// Outputs that the bus writes if the loop stops sending commands.
   std::array<double, control::max_channels> safe_kpa{};
-  bool may_rise = false;      ///< true: a sequence runs; false: a command that is further from rest is an old
-                              ///< command that arrived late
-  std::uint32_t inhibit = 0;  ///< value of control::BusHealth::inhibit that the tick had read
+  bool may_rise = false;  ///< true: a sequence runs, so commands may move away from rest; false: a command
+                          ///< that is further from rest than the outputs is an old command that arrived late
+  std::uint32_t inhibit = 0;  ///< value of control::BusHealth::inhibit that the loop had read in this tick
   bool last = false;          ///< true: the loop has ended, and the bus writes these commands until the board
                               ///< confirms them
 };
@@ -55,12 +55,13 @@ struct BusEvent {
     loop_silent,     ///< the commands of the loop timed out, so the safe outputs are written
     loop_back,       ///< the commands of the loop are written again
     another_client,  ///< another client feeds the board's watchdog; `detail` is the number of clients
-    not_connected,   ///< no new connection can be opened, and the reason differs from the reason in `failed`
+    not_connected,   ///< no new connection can be opened, and the reason is not the reason that `failed` has
+                     ///< reported
   };
   Kind kind = Kind::connected;
   Nanoseconds at = 0;
   drivers::BusStatus status = drivers::BusStatus::ok;
-  std::array<char, 256> detail{};  ///< message of the board's driver, ended by 0
+  std::array<char, 256> detail{};  ///< message of the board's driver; ends with a zero byte
 };
 
 /// Passed from the loop to the recorder: a row of one channel.
@@ -84,7 +85,7 @@ struct Snapshot {
   std::uint64_t ticks = 0;
   control::State state = control::State::starting;
   control::Fault first_fault;
-  control::Fault cause;              ///< present condition that is a fault, or can become a fault if it lasts
+  control::Fault cause;  ///< present condition that is a fault, or can become a fault if the condition lasts
   std::uint32_t under_pressure = 0;  ///< channels under pressure that do not move; bit mask as in
                                      ///< control::TickOutput
   std::size_t channel_count = 0;
@@ -92,14 +93,15 @@ struct Snapshot {
   control::BusHealth bus;
 };
 
-/// Inputs that have a level; they are not requests. The thread that reads the digital lines
+/// Levels of the digital inputs, which the loop reads in each tick. The thread that reads the digital lines
 /// (daemon/panel/panel.h) writes them.
 struct InputLevels {
   std::atomic<bool> emergency_stop{false};
   std::atomic<bool> interlock_open{false};
-  std::atomic<bool> lost{false};          ///< true: the lines cannot be read
-  std::atomic<Nanoseconds> looked_at{0};  ///< time at which the lines were last read
-  /// If the last read is older than this, the lines count as lost [ns]; 0: the rig has no lines.
+  std::atomic<bool> lost{false};          ///< true: the digital lines cannot be read
+  std::atomic<Nanoseconds> looked_at{0};  ///< time at which the digital lines were last read
+  /// largest permitted age of the last read of the digital lines [ns]; if the read is older, the lines count
+  /// as lost; 0: the rig has no digital lines
   Nanoseconds longest_silence = 0;
 };
 
@@ -136,7 +138,8 @@ struct SharedState {
   Ring<control::Request> stops{16};  ///< requests to stop any running sequence; the loop reads this queue
                                      ///< second
   /// Requests to stop one particular start, at most one request per start; the loop reads this queue third.
-  /// The capacity is sufficient for all starts that wait and for some that were read just before.
+  /// The queue has space for a request for each waiting start, and for some starts that the loop has just
+  /// read.
   Ring<control::Request> named_stops{128};
   Ring<control::Request> requests{64};
   std::atomic<control::State> state{control::State::starting};  ///< state of the supervisor in the last tick
@@ -149,9 +152,10 @@ struct SharedState {
                                                   ///< lagged
   std::atomic<std::uint64_t> events_dropped{0};   ///< number of events that were dropped because one tick had
                                                   ///< too many events
-  std::atomic<bool> shutdown_requested{false};    ///< request to the loop: end after a last tick with the
-                                                  ///< safe outputs
-  std::atomic<bool> safe_state_confirmed{false};  ///< from the bus: the board has confirmed the last commands
+  std::atomic<bool> shutdown_requested{false};  ///< request to the loop to end after a last tick, which sends
+                                                ///< the safe outputs
+  std::atomic<bool> safe_state_confirmed{false};  ///< set by the bus when the board has confirmed the last
+                                                  ///< commands
 };
 
 }  // namespace softgrip::daemon

@@ -1,5 +1,5 @@
 #pragma once
-// Statistics of the loop and the bus. They are always recorded. Loop and bus write them, and any thread may
+// Statistics of the loop and the bus, which are always recorded. Loop and bus write them, and any thread may
 // read them.
 
 #include <atomic>
@@ -23,9 +23,9 @@ class Counter {
 
 /// Statistics of the loop. An overrun (missed cycle) is a period of the schedule in which no tick started.
 struct LoopStatistics {
-  Histogram wake_up;      ///< time from the scheduled time to the first instruction of the tick
-  Histogram compute;      ///< time from the first instruction to the end of the tick
-  Histogram reading_age;  ///< age of the oldest reading when the tick uses it
+  Histogram wake_up;      ///< time from the scheduled start of a tick to its first instruction
+  Histogram compute;      ///< time from the first instruction of a tick to the end of the tick
+  Histogram reading_age;  ///< age of the oldest reading at the time when a tick uses it
   Counter ticks;
   Counter overruns_woken_late;  ///< overruns because the thread woke up at least one period late
   Counter overruns_took_long;   ///< overruns because a tick took too long
@@ -34,7 +34,7 @@ struct LoopStatistics {
 struct BusStatistics {
   Histogram wake_up;
   Histogram exchange;  ///< duration of successful exchanges
-  Counter steps;       ///< number of steps of the schedule, with or without an exchange
+  Counter steps;       ///< number of steps of the bus schedule, with or without an exchange
   Counter exchanges;
   Counter failures;
   Counter overruns;

@@ -40,7 +40,7 @@ Thread::Thread(const Options& options, std::function<void()> body,
   const int error = pthread_create(&handle_, &attributes, run, start.get());
   pthread_attr_destroy(&attributes);
   if (error != 0) throw std::system_error(error, std::generic_category(), "thread " + options.name);
-  static_cast<void>(start.release());  // the new thread owns the object from here on
+  static_cast<void>(start.release());  // from here on, the new thread owns the object with the start data
   started_ = true;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Threads with a name and a stack of known size, whose exceptions are reported; a flag that wakes a sleeping
-// thread; and a check that threads are still running.
+// Defines three classes: threads with a name, a fixed stack size and reported exceptions; a flag that wakes a
+// sleeping thread; and a check that threads are still running.
 
 #include <chrono>
 #include <condition_variable>
@@ -17,12 +17,14 @@
 
 namespace softgrip::daemon {
 
-/// The destructor waits until the thread has ended. The function of the thread must end by itself on request.
+/// A thread. The destructor waits until the thread has ended, so the caller must first request the end of the
+/// thread's function.
 class Thread {
  public:
   struct Options {
-    std::string name;  ///< name that `ps -L` and the kernel show; at most 15 bytes
-    /// Size of the stack. The stack of a std::thread has 8 MiB, and mlockall() would make all of it resident.
+    std::string name;  ///< name of the thread for `ps -L` and the kernel; at most 15 bytes
+    /// Size of the thread's stack. A std::thread has a stack of 8 MiB, and mlockall() would make the complete
+    /// stack resident in memory.
     std::size_t stack_bytes = 1024 * 1024;
   };
 
@@ -59,8 +61,8 @@ class StopFlag {
   bool set_ = false;
 };
 
-/// Checks counters that the threads increase. Each counter has its own time-out. Opening a connection may
-/// block the bus thread for a long time, but nothing may block the loop.
+/// Checks counters that threads increase while they run. Each counter has its own time-out: the bus thread
+/// may block for a long time while it opens a connection, but the loop must never block.
 class Heartbeat {
  public:
   /// `patience` contains the time-out of each counter [ns]. The time-outs start with the first call of
@@ -68,7 +70,7 @@ class Heartbeat {
   explicit Heartbeat(const std::vector<Nanoseconds>& patience);
 
   /// Returns false if a counter has not changed for longer than its time-out. `counts` contains the counters
-  /// in the order of their time-outs.
+  /// in the order of the constructor's time-outs.
   [[nodiscard]] bool beats(Nanoseconds now, const std::vector<std::uint64_t>& counts);
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// Passes the newest value from one thread to another without a lock. Loop, bus and socket exchange their
-// values in this way.
+// Passes the newest value from one thread to another without a lock. Loop, bus and socket exchange values
+// with this class.
 
 #include <array>
 #include <atomic>
@@ -35,11 +35,11 @@ class TripleBuffer {
     publish();
   }
 
-  /// Fetches the newest value and returns true. Returns false if there is no new value since the last
-  /// fetch().
+  /// Fetches the newest value and returns true. Returns false if no value was published since the last call
+  /// of fetch().
   bool fetch() noexcept {
-    // The flag is read first. Without a new value, the exchange would replace the present value by an older
-    // one.
+    // The flag is read before the exchange. If there is no new value, an exchange would replace the present
+    // value by an older one.
     if ((middle_.load(std::memory_order_relaxed) & fresh) == 0) return false;
     const std::uint8_t taken = middle_.exchange(read_, std::memory_order_acq_rel);
     read_ = taken & index_mask;

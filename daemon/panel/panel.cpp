@@ -10,7 +10,7 @@ using drivers::GpioRole;
 
 namespace {
 
-/// Largest number of edges that are read in one call. The kernel stores up to 16 edges per line.
+/// Largest number of edges that one read returns. The kernel stores up to 16 edges per line.
 constexpr std::size_t edges_at_once = 32;
 
 /// Period of a lamp that blinks while fingers are pressurised: half on, half off [ns].
@@ -82,7 +82,8 @@ void Panel::read_inputs() noexcept {
   const auto count = lines_->wait(pause(clock_.now()), edges);
   if (!count) return lose(clock_.now());
   for (const drivers::GpioEdge& edge : std::span(edges).first(*count)) {
-    // The active level means "pressed" for the emergency stop, and "in position" for the part.
+    // The active level of the emergency stop means "pressed", and the active level of the part sensor means
+    // "in position".
     if (TripInput* const to = input(edge.role)) {
       to->edge(edge.active == (edge.role == GpioRole::emergency_stop), edge.at);
     }
@@ -133,16 +134,16 @@ bool Panel::loop_hangs(Nanoseconds now) noexcept {
   const bool hangs = !leaving && now - ticked_ > stale_after_;
   if (hangs && !hung_) {
     tell(PanelEvent::Kind::loop_hangs, now);
-    // If the stalled loop continues later, it must latch a fault.
+    // If the stalled loop runs again after this point, it must latch a fault.
     shared_.inputs.lost.store(true, std::memory_order_relaxed);
   }
   hung_ = hangs;
   return hangs;
 }
 
-/// Returns true if the enable output must be on. The output is switched on when the rig is ready. The rig
-/// file determines the output after a fault. An emergency stop, lost inputs and a stalled loop always switch
-/// the output off. While the rig is starting, the output does not change.
+/// Returns true if the enable output must be on. The output is switched on when the rig is ready. After a
+/// fault, the rig file determines if the output stays on. An emergency stop, lost inputs and a stalled loop
+/// always switch the output off. While the rig is starting, the output does not change.
 bool Panel::enable_wanted(State state, bool hangs) const noexcept {
   if (hangs || lost_ || shared_.inputs.emergency_stop.load(std::memory_order_relaxed)) return false;
   if (works(state)) return true;
@@ -160,7 +161,8 @@ void Panel::drive(Nanoseconds now) noexcept {
   shared_.enable_on.store(enable && !dropped_.load(), std::memory_order_relaxed);
   if (changed) tell(enable ? PanelEvent::Kind::enable_on : PanelEvent::Kind::enable_off, now);
   const bool broken = hangs || lost_;
-  // If the loop has stalled, the state of the fingers is unknown, so the fault lamp does not blink.
+  // If the loop has stalled, the state of the fingers is unknown. In this case the fault lamp is on and does
+  // not blink.
   const bool dark = !broken && shared_.under_pressure.load(std::memory_order_relaxed) && in_dark_half(now);
   write(GpioRole::ready_lamp, works(state) && !broken && !dark);
   write(GpioRole::fault_lamp, (state == State::faulted || broken) && !dark);
@@ -172,7 +174,8 @@ void Panel::write(GpioRole role, bool active) noexcept {
   const bool droppable = role != GpioRole::fault_lamp;
   if (droppable && active && dropped_.load()) return;
   const bool taken = lines_->write(role, active);
-  // Another thread may have called drop() after the check above, so the check is repeated.
+  // Another thread may have called drop() between the first check and the write, so the check is repeated
+  // after the write.
   if (droppable && dropped_.load()) lines_->write(role, false);
   written = active;
   if (!taken && !lost_) lose(clock_.now());

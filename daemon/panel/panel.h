@@ -1,6 +1,6 @@
 #pragma once
 // Handles the panel with buttons and lamps: reads the digital inputs for the loop, and sets the digital
-// outputs according to the state of the loop, also if the process crashes.
+// outputs according to the state of the loop. If the process crashes, the enable output is switched off.
 
 #include <array>
 #include <atomic>
@@ -42,8 +42,8 @@ class Panel {
   /// Calls step() repeatedly until stop() is called.
   void run() noexcept;
   void stop() noexcept { stopped_.store(true); }
-  /// Waits for an edge, but not longer than until the next action is due or the look interval is over. Then
-  /// acts.
+  /// Waits for an edge until the next action is due or the look interval is over. After this wait, reads the
+  /// lines and writes the outputs.
   void step() noexcept;
 
   /// Switches the enable output and the ready lamp off permanently. Any thread and any signal handler may
@@ -75,7 +75,7 @@ class Panel {
                           // start-up
   bool lost_ = false;
   std::uint64_t ticks_ = 0;  // number of ticks of the loop at the time ticked_; the number has not changed
-                             // since
+                             // since that time
   Nanoseconds ticked_ = 0;
   bool hung_ = false;
   std::array<std::optional<bool>, drivers::gpio_role_count> written_{};

@@ -15,9 +15,10 @@ std::atomic<Panel*> guarded{nullptr};
 std::array<struct sigaction, endings.size()> before;
 
 extern "C" void softgrip_drop_panel(int signal) {
-  // The driver library writes a line with one system call, and uses no locks and no allocation.
+  // The driver library writes a line with one system call, without locks and without allocation. The call is
+  // therefore safe in a signal handler.
   if (Panel* const panel = guarded.exchange(nullptr)) panel->drop();
-  // SA_RESETHAND has restored the default action of the signal, so raise() ends the process.
+  // SA_RESETHAND has restored the default action of the signal, so the raised signal ends the process.
   ::raise(signal);
 }
 

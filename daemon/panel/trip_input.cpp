@@ -19,12 +19,13 @@ void TripInput::change(bool trips, Nanoseconds at) noexcept {
   known_ = true;
   asks_ = trips;
   since_ = at;
-  // Any edge on a line at its clear level makes the line suspect, even if the opposite edge is missing.
+  // After any edge, a line at its clear level is suspect, even if the opposite edge was lost.
   if (suspect_ == never) suspect_ = at;
 }
 
 void TripInput::edge(bool trips, Nanoseconds at) noexcept {
-  // If the level was read after the edge occurred, the change of the level is already known.
+  // If the level was read after this edge occurred, the change of level that the edge reports is already
+  // known.
   if (known_ && at <= since_) {
     if (trips != asks_) change(trips, since_);
     return;

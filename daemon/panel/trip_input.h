@@ -1,5 +1,5 @@
 #pragma once
-// A digital input that stops the rig. It trips if its level is doubtful, and clears only after the level has
+// A digital input that stops the rig. The input trips if its level is doubtful. It clears after its level has
 // been steady.
 
 #include "base/periodic_schedule.h"
@@ -27,8 +27,8 @@ class TripInput {
   void level(bool trips, Nanoseconds now) noexcept;
 
   [[nodiscard]] bool tripped() const noexcept { return tripped_; }
-  /// Returns the time at which level() must be called next if no edge arrives before; INT64_MAX if no change
-  /// is pending.
+  /// Returns the time at which level() must be called if no edge arrives before that time; INT64_MAX if no
+  /// change is pending.
   [[nodiscard]] Nanoseconds due() const noexcept;
 
  private:
@@ -41,8 +41,8 @@ class TripInput {
   bool known_ = false;           // true: the level has been read at least once
   bool asks_ = true;             // true: the line is at its trip level
   Nanoseconds since_ = 0;        // time since which the line has had its present level
-  Nanoseconds suspect_ = never;  // while the input is clear: time of the first change of the line since the
-                                 // line was last steady
+  Nanoseconds suspect_ = never;  // time of the first edge since the line was last steady; valid while the
+                                 // input is clear
 };
 
 }  // namespace softgrip::daemon

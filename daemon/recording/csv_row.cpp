@@ -12,14 +12,15 @@ namespace softgrip::daemon {
 namespace {
 
 constexpr double decimals_scale = 1e6;
-constexpr double largest_scaled = 9e18;  // largest number of millionths that is written; it is below 2^63
+constexpr double largest_scaled = 9e18;  // largest absolute value, as a number of millionths, that fits into
+                                         // 63 bits
 constexpr std::string_view columns =
     "time_s,channel,pressure_command_kpa,displacement_mm,pressure_kpa,temperature_c,reference_mm,"
     "feedforward_kpa,feedback_kpa,residual_mm,"
     "deficit_mm,"  // words-ok: a documented column
     "age_s,state,step,validity,result,saturated,slewing";
 constexpr std::string_view pressure_column = "pressure_kpa,", temperature_column = "temperature_c,";
-/// Largest total length of the texts in a row, without numbers and the name of the channel.
+/// Largest total length of the texts in a row [bytes]. The numbers and the name of the channel do not count.
 constexpr std::size_t longest_words = 128;
 
 /// All pairs of digits, from "00" to "99".
@@ -32,7 +33,7 @@ constexpr std::array<char, 200> digit_pairs = [] {
   return pairs;
 }();
 
-/// Writes `fraction` as `digits` decimals without trailing zeros. If `fraction` is 0, writes nothing.
+/// Writes `fraction` with `digits` decimals and without trailing zeros. If `fraction` is 0, writes nothing.
 template <int digits>
 char* write_fraction(char* to, std::uint64_t fraction) noexcept {
   static_assert(digits % 2 == 0);

@@ -1,5 +1,5 @@
 #pragma once
-// Writes rows of run.csv with little computing time.
+// Writes rows of run.csv with little computing time per row.
 
 #include <cstddef>
 #include <string>
@@ -15,18 +15,18 @@ inline constexpr std::size_t longest_decimal = 32;
 
 /// Writes a number with at most six decimals and without trailing zeros, and returns the end of the text. Six
 /// decimals are sufficient: a nanometre or a millipascal is far below the resolution of any sensor of a rig.
-/// They take a quarter of the time of the shortest text from which the same double can be read. A number
-/// above 1e12 is written as this shortest text. For a number that is not finite, nothing is written.
+/// An exact text, from which the same double can be read, would take four times as long to write. A number
+/// above 1e12 is written as such an exact text. For a number that is not finite, writes nothing.
 [[nodiscard]] char* write_decimal(char* to, double value) noexcept;
 
-/// Writes nanoseconds as a number of seconds. The number is exact and has no trailing zeros.
+/// Writes a number of nanoseconds in seconds. The text is exact and has no trailing zeros.
 [[nodiscard]] char* write_seconds(char* to, Nanoseconds duration) noexcept;
 
 /// Writes the rows of one recording. docs/reference/recording.md describes the columns.
 class CsvRows {
  public:
-  /// `with_pressure` adds the column of the measured pressure, for rigs that measure the pressure.
-  /// `with_temperature` adds the column of the temperature.
+  /// If `with_pressure` is true, the rows have the column of the measured pressure, for rigs that measure the
+  /// pressure. If `with_temperature` is true, they have the column of the temperature.
   CsvRows(std::vector<std::string> channel_names, bool with_pressure, bool with_temperature = false);
 
   [[nodiscard]] std::string header() const;
@@ -39,7 +39,7 @@ class CsvRows {
   bool with_pressure_, with_temperature_;
 };
 
-/// Returns the name of a validity in the column `validity`: "valid", "none_yet", ...
+/// Returns the text for a validity in the column `validity`: "valid", "none_yet", ...
 [[nodiscard]] std::string_view name_of(model::Validity validity) noexcept;
 
 }  // namespace softgrip::daemon

@@ -20,7 +20,7 @@ namespace {
 using control::Event;
 using Kind = control::Event::Kind;
 
-/// Kind, severity and text of an event whose text contains no numbers.
+/// Kind, severity and text of an event whose text is constant.
 struct Words {
   std::string_view kind;
   Severity severity;
@@ -66,7 +66,7 @@ EventEntry entry_of(const Table& table, Which which) {
 
 using Sequence = control::PreparedSequence;
 
-/// Returns the present cause because of which a reset was refused.
+/// Returns the fault condition because of which the reset was refused.
 control::FaultCode refused_because_of(const Event& event) {
   return static_cast<control::FaultCode>(static_cast<std::uint16_t>(event.value));
 }
@@ -108,8 +108,8 @@ void describe_result(const Event& event, const Sequence*, EventEntry& entry) {
 void describe_refusal(const Event& event, const Sequence*, EventEntry& entry) {
   const auto refusal = static_cast<control::RefusalCode>(event.detail);
   entry.code = control::id_of(refusal);
-  // The names of the channels are not passed, because describe() puts the name of the channel before the
-  // text.
+  // The text does not need the names of the channels, because describe() puts the name of the channel before
+  // the text.
   entry.text =
       fmt::format("The request was refused. {}", sentences_of(refusal, {refused_because_of(event)}, {}));
   entry.severity = Severity::warning;
@@ -318,8 +318,8 @@ std::string_view name_of(Severity severity) noexcept {
 std::uint64_t EventLog::add(EventEntry entry) {
   const std::scoped_lock lock(mutex_);
   entry.id = ++last_id_;
-  // Clients choose the names of sequences and steps, so events with these names are not counted separately.
-  // Otherwise, the number of counters could grow without limit.
+  // Clients choose the names of sequences and steps. If each name had its own counter, the number of counters
+  // could grow without limit.
   const bool named = entry.kind == "sequence_started" || entry.kind == "step_started";
   ++counts_[{entry.kind, named ? std::string() : entry.code, entry.channel}];
   entries_.push_back(std::move(entry));

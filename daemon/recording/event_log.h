@@ -22,17 +22,17 @@ enum class Severity : std::uint8_t { information, warning, error };
 /// One event in the form in which users and clients get it.
 struct EventEntry {
   std::uint64_t id = 0;  ///< id of the event: 1, 2, 3, ...
-  double time_s = 0;     ///< time since the start of the daemon or of the recording
+  double time_s = 0;     ///< time since the start of the daemon or of the recording [s]
   std::string kind;      ///< name of the kind, such as "fault_latched" or "bus_failed"; clients may depend on
                          ///< these names
   Severity severity = Severity::information;
-  std::string channel;        ///< name of the channel; empty for the complete rig
+  std::string channel;        ///< name of the channel; empty if the event concerns the complete rig
   std::string code;           ///< code of the event: "F101", "R02", "HOLDING", a state or a step, depending
                               ///< on the kind; may be empty
   std::string text;           ///< the event in one sentence
-  std::uint32_t request = 0;  ///< id of the request that the event answers; 0: none
-  std::string client;         ///< name of the client that made the request; empty: unknown
-  double value = 0;           ///< a number that belongs to the event; 0 if there is none
+  std::uint32_t request = 0;  ///< id of the request to which this event is the reply; 0: none
+  std::string client;         ///< name of the client that made the request; empty if the client is unknown
+  double value = 0;  ///< number that belongs to the event, such as a distance or a count; 0 if there is none
   std::vector<control::Argument> parameters;  ///< for sequence_started: the values of the parameters
 };
 
@@ -61,8 +61,8 @@ struct EventEntry {
 struct EventCount {
   std::string kind;
   std::string code;     ///< code of the events; empty for kinds whose codes are names or numbers from a
-                        ///< sequence
-  std::string channel;  ///< channel of the events; empty for the complete rig
+                        ///< sequence, which are not counted separately
+  std::string channel;  ///< channel of the events; empty if the events concern the complete rig
   std::uint64_t count = 0;
 };
 

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t batch_records = 256;
 constexpr std::size_t text_bytes = 256 * 1024;
-/// Time after the last motion that is recorded too, because the finger settles in this time [ns].
+/// Time from the end of the last motion to the end of the recording, because the finger settles in this time
+/// [ns].
 constexpr Nanoseconds tail = ns_per_s / 2;
 /// Shortest time between two versions of run.json [ns].
 constexpr Nanoseconds json_pause = ns_per_s / 4;
@@ -50,7 +51,7 @@ struct Recorder::Recording {
   bool json_due = true;
   Nanoseconds json_at = 0;
   Nanoseconds synced_at = 0;
-  std::string text;  // rows that were not passed to the kernel yet
+  std::string text;  // rows that were not yet passed to the kernel
 };
 
 Recorder::Recorder(const rig::RecorderSettings& settings, const Provenance& provenance,
@@ -112,7 +113,8 @@ void Recorder::take(const Record& row) {
 void Recorder::take(const StampedEvent& event) {
   now_ = event.at;
   const bool starts = event.event.kind == Kind::sequence_started;
-  // A start within the settling time after the last motion ends the present recording and begins a new one.
+  // A sequence that starts within the settling time after the last motion ends the present recording and
+  // begins a new one.
   if (recording_ && !always_ && starts && recording_->story.sequence != nullptr) end("complete");
   const bool opens = always_ || starts || event.event.kind == Kind::fault_latched;
   if (!recording_ && may_begin(event.at) && opens) begin(event.at, &event.event);
@@ -254,8 +256,8 @@ void Recorder::end(const char* state) {
 }
 
 void Recorder::block() {
-  // A folder that the user has chosen already exists after the error, so a second attempt would fail with the
-  // same error.
+  // If the user has chosen the folder, a second attempt would fail: the folder exists after the first
+  // attempt, and a recording is never overwritten.
   blocked_ = only_folder_.empty() ? now_ + retry_pause : std::numeric_limits<Nanoseconds>::max();
 }
 

@@ -36,9 +36,9 @@ struct RecorderStatus {
 /// thread.
 class Recorder {
  public:
-  /// If `only_folder` is not empty, all data from start to stop are recorded in this folder, in every
-  /// recording mode. `origin` is time 0 of the event log. All referenced objects must exist longer than the
-  /// recorder.
+  /// If `only_folder` is not empty, the recorder ignores the recording mode and records all data from start
+  /// to stop in this folder. `origin` is time 0 of the event log. All referenced objects must exist longer
+  /// than the recorder.
   Recorder(const rig::RecorderSettings& settings, const Provenance& provenance, std::string only_folder,
            Nanoseconds origin, SharedState& shared, EventLog& events, const SequenceStore& sequence_store);
   Recorder(const Recorder&) = delete;
@@ -47,10 +47,10 @@ class Recorder {
   Recorder& operator=(Recorder&&) = delete;
   ~Recorder();
 
-  /// Takes the new rows and events of the loop and passes the rows to the kernel. The caller must call this
-  /// function at least every flush_interval_s.
+  /// Takes the new rows and events of the loop, and passes the rows to the kernel. Must be called at least
+  /// every flush_interval_s.
   void drain();
-  /// Takes the last rows and events with drain(), and ends the recording.
+  /// Takes the last rows and events as drain() does, and ends the recording.
   void finish();
 
   /// Returns the status. Any thread may call this function.
@@ -59,7 +59,7 @@ class Recorder {
  private:
   struct Recording;
 
-  /// Takes the events of the loop whose time is not after `until`.
+  /// Takes the events of the loop up to and including the time `until`.
   void take_events(Nanoseconds until);
   void take(const Record& row);
   void take(const StampedEvent& event);
@@ -67,7 +67,8 @@ class Recorder {
   void write(const StampedEvent& event);
   [[nodiscard]] bool may_begin(Nanoseconds at) const;
   void forget_before(Nanoseconds at);
-  /// `event` is the first event of the recording. nullptr means that the recording begins with a row.
+  /// Begins a recording at the time `at`. `event` is the first event of the recording; nullptr if the
+  /// recording begins with a row.
   void begin(Nanoseconds at, const control::Event* event);
   [[nodiscard]] std::string folder_for(Nanoseconds at, const control::Event* event) const;
   void end(const char* state);
@@ -80,22 +81,22 @@ class Recorder {
   const rig::RecorderSettings& settings_;
   const Provenance& provenance_;
   std::string only_folder_;
-  bool always_;  // true: one recording contains everything from start to stop
+  bool always_;  // true: one recording contains all data from start to stop
   Nanoseconds origin_;
   SharedState& shared_;
   Broadcast<StampedEvent>::Reader loop_events_;
-  std::optional<StampedEvent> waiting_;  // an event whose time is after the newest row
+  std::optional<StampedEvent> waiting_;  // event that is newer than the newest row, and therefore waits
   std::uint64_t events_lost_ = 0;        // number of lost events that were already reported
   EventLog& events_;
   const SequenceStore& sequence_store_;
   CsvRows rows_;
   std::vector<Record> batch_;
-  std::deque<Record> past_rows_;  // rows from before the recording, kept while no recording is active
+  std::deque<Record> past_rows_;  // rows before the next recording, kept while no recording is active
   std::deque<StampedEvent> past_events_;
   std::unique_ptr<Recording> recording_;
   std::uint32_t recordings_ = 0;
   Nanoseconds now_ = 0;      // time of the newest row or event
-  Nanoseconds blocked_ = 0;  // because of a disk error, no recording begins before this time
+  Nanoseconds blocked_ = 0;  // time before which no recording begins, because of a disk error
   mutable std::mutex status_mutex_;
   RecorderStatus status_;
 };

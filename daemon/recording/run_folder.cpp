@@ -93,8 +93,8 @@ bool RunFolder::append(std::string_view lines) {
     return true;
   }
   fail(path_ + "/run.csv", error);
-  // A full disk may have written a part of the lines. Truncation needs no space. If it fails, the last line
-  // is incomplete, which readers of recordings accept.
+  // If the disk is full, a part of the lines may have been written. Truncation removes this part and needs no
+  // space. If the truncation fails, the last line is incomplete, which readers of recordings accept.
   if (ftruncate(descriptor_, whole_bytes_) != 0) error_ += "; the last line of the file may be incomplete";
   close();
   return false;
@@ -103,8 +103,8 @@ bool RunFolder::append(std::string_view lines) {
 bool RunFolder::sync() {
   if (descriptor_ < 0) return false;
   if (fdatasync(descriptor_) == 0) return true;
-  // After a failed fdatasync(), the kernel discards the pages. After that, the contents of the disk are
-  // unknown, so no more rows are written.
+  // After a failed fdatasync(), the kernel discards the pages, so the contents of the file on the disk are
+  // unknown. No more rows are written.
   fail(path_ + "/run.csv", errno);
   close();
   return false;

@@ -9,9 +9,9 @@
 
 namespace softgrip::daemon {
 
-/// Returns a sentence if `path` already contains a recording, because a recording is never overwritten.
-/// Returns an empty text if a recording may be written to `path`, or if `path` is empty. With this function,
-/// the caller can check the folder before any motion.
+/// Returns a sentence with the error if `path` already contains a recording, because a recording is never
+/// overwritten. Returns an empty text if a recording may be written to `path`, or if `path` is empty. The
+/// caller can call this function to check the folder before any motion.
 [[nodiscard]] std::string recorded_already(const std::string& path);
 
 /// Writes a recording and handles errors of the disk. After the first failed write to run.csv, no more rows
@@ -19,8 +19,8 @@ namespace softgrip::daemon {
 class RunFolder {
  public:
   /// Creates `path`, its parent folders, and run.csv with `header`. Refuses a folder that contains a run.csv,
-  /// because recordings are never overwritten. If `durable` is true, run.json is written to the disk before
-  /// it is renamed. The error is a sentence.
+  /// because recordings are never overwritten. If `durable` is true, each new run.json is flushed to the disk
+  /// before it is renamed. The error is a sentence.
   [[nodiscard]] static tl::expected<RunFolder, std::string> create(const std::string& path,
                                                                    std::string_view header, bool durable);
 
@@ -34,13 +34,13 @@ class RunFolder {
   /// Passes complete lines to the kernel, so that they are not lost if the process is killed. Returns false
   /// if this write or an earlier one failed.
   bool append(std::string_view lines);
-  /// Waits until the appended lines are on the disk. Returns false after a failure.
+  /// Waits until the appended lines are on the disk. Returns false if the disk reports an error.
   bool sync();
   /// Replaces run.json by a new version in one step. A failure is reported, but rows are still recorded.
   bool replace_json(std::string_view text);
-  /// Returns the sentence about the first failure; empty if there was no failure.
+  /// Returns a sentence about the first disk error; empty if there was none.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
-  /// Returns true if rows can still be written.
+  /// Returns true if rows can still be written, because no write to run.csv has failed.
   [[nodiscard]] bool healthy() const noexcept { return descriptor_ >= 0; }
 
  private:

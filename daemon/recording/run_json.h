@@ -17,14 +17,15 @@ namespace softgrip::daemon {
 
 /// State of one recording, and data that only this recording has.
 struct RunStory {
-  std::string state = "recording";  ///< "recording", "complete", "stopped_early" (rows could not be written)
+  std::string state = "recording";  ///< state of the recording: "recording", "complete", "stopped_early"
+                                    ///< (rows could not be written)
   std::string reason;               ///< reason why the recording was started: "sequence", "fault", "always"
   std::string started_at;           ///< start time, UTC, ISO 8601; empty in virtual time
   double duration_s = 0;
   std::uint64_t rows = 0;
   std::uint64_t dropped_rows = 0;
   std::shared_ptr<const LoadedSequence> sequence;
-  std::uint32_t request = 0;  ///< id of the request that started the sequence
+  std::uint32_t request = 0;  ///< id of the request that started the sequence of this recording
   std::vector<EventEntry> events;
   std::uint64_t events_left_out = 0;  ///< number of events that did not fit into the file
   std::string error;                  ///< disk error of the recording; empty if there was none

@@ -16,7 +16,8 @@ struct LoadedSequence {
   control::Sequence written;
   control::PreparedSequence prepared;
   std::string sha256;          ///< hash of the text of the sequence
-  document::Problems remarks;  ///< warnings about differences between the file and the motion
+  document::Problems remarks;  ///< warnings about differences between the sequence file and the motion of the
+                               ///< rig
 };
 
 /// Stores each sequence by the number of the request that starts it. The loop has a plain pointer to the
@@ -27,7 +28,7 @@ class SequenceStore {
   void put(std::uint32_t request, std::shared_ptr<const LoadedSequence> sequence);
   /// Returns the sequence of a request; nullptr if it is not stored.
   [[nodiscard]] std::shared_ptr<const LoadedSequence> find(std::uint32_t request) const;
-  /// Removes the sequence of a request whose start was refused, or whose start did not reach the loop.
+  /// Removes the sequence of a request whose start was refused or did not reach the loop.
   void drop(std::uint32_t request);
   /// Removes the sequences of all requests with a number below `request`. The loop has accepted the start of
   /// `request`, so it never runs these sequences.

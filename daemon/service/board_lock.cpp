@@ -31,7 +31,7 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// The first bytes of an IPv4 address that is written as an IPv6 address.
+/// First 12 bytes of an IPv4 address that is written as an IPv6 address.
 constexpr std::array<unsigned char, 12> mapped_prefix{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff};
 
 /// Returns the normal form of an address. Two notations of one address must have the same normal form, such
@@ -62,7 +62,7 @@ std::string name_of(const drivers::ModbusAddress& link, std::uint8_t unit) {
   return "serial " + real_path(std::get<drivers::SerialLine>(link).device);
 }
 
-/// Returns a name for a converter. The name does not depend on the word that the rig file uses for the
+/// Returns a name for a converter. The name is independent of the notation that the rig file uses for the
 /// converter.
 std::string name_of(const std::vector<ComputerDevice>& there, const std::string& word,
                     const std::string& root) {
@@ -86,7 +86,7 @@ sockaddr_un address_of(const std::string& board, socklen_t& length) {
   return address;
 }
 
-/// Returns a text such as " (process 4711)"; empty if the process is unknown.
+/// Returns the process id as a text such as " (process 4711)"; empty if the process is unknown.
 std::string in_brackets(pid_t process) {
   return process > 0 ? fmt::format(" (process {})", process) : "";
 }
@@ -98,7 +98,8 @@ std::string taken(const std::string& board, pid_t process) {
       board, in_brackets(process));
 }
 
-/// Returns the state letter of a process in /proc (R, S, D, T, ...); nothing if the process is not visible.
+/// Returns the state letter of a process from /proc (R, S, D, T, ...); nothing if this user cannot see the
+/// process.
 std::optional<char> state_of(pid_t process) {
   std::ifstream file(fmt::format("/proc/{}/stat", process));
   std::string text;
@@ -108,8 +109,8 @@ std::optional<char> state_of(pid_t process) {
   return text[name_end + 2];
 }
 
-/// Returns true if the process is stopped, dead or blocked in a system call during all checks. Such a process
-/// cannot drive a board.
+/// Returns true if the process was stopped, dead or blocked in a system call each time it was checked. Such a
+/// process cannot drive a board.
 bool stands_still(pid_t process) {
   constexpr int looks = 5;
   constexpr Nanoseconds pause = 50'000'000;
@@ -131,15 +132,16 @@ pid_t holder_of(int file) {
 
 void write_holder(int file) {
   const std::string text = std::to_string(::getpid()) + "\n";
-  // Only messages use the process id, so an error of the write is ignored.
+  // Messages are the only use of the process id, so an error of the write is ignored.
   if (::ftruncate(file, 0) == 0) [[maybe_unused]]
     const ssize_t written = ::pwrite(file, text.data(), text.size(), 0);
 }
 
-/// Returns the process that has bound the name of a socket. Returns nothing if the process is not visible
-/// because it does not listen, or because its queue is full.
+/// Returns the process that has bound the name of a socket. Returns nothing if the process cannot be found,
+/// because it does not listen on the socket or because its queue is full.
 std::optional<Peer> holder_of(const sockaddr_un& address, socklen_t length) {
-  // Between its calls of bind() and listen(), a softgrip program is not visible, so the check is repeated.
+  // Between bind() and listen(), the process of a softgrip program cannot be found through the socket, so the
+  // check is repeated.
   constexpr int attempts = 5;
   constexpr Nanoseconds pause = 2'000'000;
   for (int i = 0; i < attempts; ++i) {
@@ -158,7 +160,7 @@ std::string standing_still(const std::string& board, pid_t process) {
       board, in_brackets(process));
 }
 
-/// Returns the sentence that reports a holder of the lock that is ignored.
+/// Returns the sentence that reports a holder of the lock whose lock is ignored.
 std::string without_right(const std::string& board, const std::optional<Peer>& holder) {
   if (holder && holder->trusted) return standing_still(board, holder->process);
   const std::string who =
@@ -197,8 +199,8 @@ LockedFile& LockedFile::operator=(LockedFile&& other) noexcept {
 }
 
 LockedFile::~LockedFile() {
-  // Another program may have opened this file before it is removed. That program later finds that the name is
-  // missing, and creates a new file.
+  // Another program may have opened this file before its name is removed. That program detects that the name
+  // is missing, and creates a new file.
   if (file_ && folder_->still_names(name_, file_.get())) folder_->remove(name_);
 }
 
@@ -219,8 +221,8 @@ tl::expected<void, std::string> BoardLock::add_file(const std::shared_ptr<const 
       remarks_.push_back(standing_still(board, process));
       return {};
     }
-    // If the previous holder ended between open() and flock(), it has removed the name of this file. Then the
-    // file must be opened again.
+    // If the previous holder ended between open() and flock(), it has removed the name of this file. In this
+    // case the file must be opened again.
     if (!folder->still_names(name, file->get())) continue;
     write_holder(file->get());
     files_.emplace_back(folder, name, std::move(*file));

@@ -42,7 +42,7 @@ class LockedFile {
 /// The purpose for which a program takes a lock.
 enum class LockPurpose : std::uint8_t {
   drive,
-  /// Writes the safe outputs. For this purpose, a lock of another softgrip program that runs is respected. A
+  /// Writing the safe outputs. For this purpose, the lock of another running softgrip program is respected. A
   /// lock that cannot be created is ignored. A holder that does not run (stopped, or blocked in a system
   /// call) is also ignored.
   vent,
@@ -53,13 +53,13 @@ enum class LockPurpose : std::uint8_t {
 /// namespace. Another machine that drives the same Modbus TCP board is detected on the network (F304).
 class BoardLock {
  public:
-  /// Takes the locks of all boards of the rig. The error names the program that holds one of the locks, or
-  /// gives another reason.
+  /// Takes the locks of all boards of the rig. If a lock cannot be taken, the error names the program that
+  /// holds the lock, or gives another reason.
   [[nodiscard]] static tl::expected<BoardLock, std::string> take(const rig::RigFile& rig,
                                                                  LockPurpose purpose = LockPurpose::drive);
 
-  /// Returns one sentence for each holder of a lock that was ignored, for example a user who is not entitled
-  /// to the lock.
+  /// Returns one sentence for each holder whose lock was ignored, for example a user who is not entitled to
+  /// the lock.
   [[nodiscard]] const std::vector<std::string>& remarks() const noexcept { return remarks_; }
 
  private:

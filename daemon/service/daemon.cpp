@@ -15,15 +15,16 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Time for which the disk may be slow before rows are lost [s]. The queue of the recorder has space for the
+/// Longest delay of the disk that causes no loss of rows [s]. The queue of the recorder has space for the
 /// rows of this time.
 constexpr double seconds_of_rows = 8;
 constexpr std::size_t fewest_records = 4096;
 constexpr std::size_t most_records = std::size_t{1} << 18;
 constexpr std::size_t events_kept = 10'000;
-/// The sampling time 0 means that a reading was never sampled. Therefore, virtual time starts later than 0.
+/// A sampling time of 0 means that a reading was never sampled. Therefore, virtual time starts at 1 s and not
+/// at 0.
 constexpr Nanoseconds virtual_origin = ns_per_s;
-/// Longest wait until the rig is idle, before the sequence of the command line is started [ns].
+/// Longest time to wait until the rig is idle and the sequence of the command line can start [ns].
 constexpr Nanoseconds patience = 10 * ns_per_s;
 
 bool waits_for_a_release(const control::PreparedSequence& sequence) {
@@ -145,8 +146,8 @@ void DaemonParts::conclude(Outcome& outcome) {
 
 void conclude_one_shot_run(const OneShotRun& one_shot_run, Outcome& outcome) {
   outcome.sequence_end = one_shot_run.end();
-  // If the board has vented, the sequence counts as faulted. Its last step can end successfully in the tick
-  // before the bus reports the vent.
+  // If the board has vented, the sequence counts as faulted. Without this rule it could count as done,
+  // because its last step can end in the tick before the bus reports the vent.
   if (outcome.sequence_end == control::SequenceEnd::done && outcome.last.state == control::State::faulted)
     outcome.sequence_end = control::SequenceEnd::faulted;
   if (!one_shot_run.over()) {

@@ -24,15 +24,15 @@ constexpr Nanoseconds answer_patience = 2 * ns_per_s;
 constexpr std::size_t longest_reply = std::size_t{8} << 20U;
 constexpr std::string_view question = "{\"command\": \"status\"}\n";
 
-/// Returns the first line that arrives before `deadline`. If the line is incomplete at this time, returns the
-/// part that has arrived.
+/// Returns the first line that arrives before `deadline`. If the line is incomplete at the deadline, returns
+/// the part that has arrived.
 std::string line_from(int socket, Nanoseconds deadline) {
   net::LineBuffer lines;
   while (!lines.has_line() && !lines.exceeds(longest_reply - 1)) {
     if (wait_for(socket, POLLIN, deadline) != Waited::ready) break;
     if (lines.receive(socket) == net::LineBuffer::Received::end) break;
   }
-  lines.append("\n");  // ends the part of a line
+  lines.append("\n");  // adds a line end, so that the incomplete line is returned
   return std::string(lines.next().value_or(""));
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Checks if a running daemon replies on a socket. A connection is not sufficient for this: another program
-// can listen on the socket, and a stopped daemon still accepts connections.
+// Checks if a running daemon replies on a socket. An accepted connection does not prove this: another program
+// can listen on the socket, and a stopped daemon also accepts connections.
 
 #include <string>
 

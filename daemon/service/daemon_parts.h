@@ -1,5 +1,5 @@
 #pragma once
-// The parts of Daemon that are used in real time and in virtual time.
+// The parts of Daemon that real time and virtual time have in common.
 
 #include <memory>
 #include <optional>
@@ -29,7 +29,7 @@ struct DaemonParts {
   [[nodiscard]] Nanoseconds bus_offset() const noexcept;
   /// Passes new events to options.on_event.
   void deliver_events();
-  /// Updates `outcome` from the present state, if the sequence has ended.
+  /// If the sequence has ended, updates `outcome` from the present state of the rig.
   void conclude(Outcome& outcome);
   void tell(const char* kind, Severity severity, std::string text);
 
@@ -39,7 +39,7 @@ struct DaemonParts {
   MonotonicClock system_clock;
   VirtualClock virtual_clock;
   const Clock& clock;
-  Nanoseconds origin;  // time that counts as 0 in the event log
+  Nanoseconds origin;  // clock time that counts as 0 in the event log
   std::unique_ptr<drivers::Board> board;
   std::string board_text;
   control::RigController controller;
@@ -57,10 +57,10 @@ struct DaemonParts {
   std::uint64_t delivered = 0;  // id of the last event that was passed to on_event
 };
 
-/// Updates `outcome` from the one-shot run, which may have ended or not.
+/// Updates `outcome` from the present state of the one-shot run. The one-shot run may still be active.
 void conclude_one_shot_run(const OneShotRun& one_shot_run, Outcome& outcome);
 
-/// Executes ticks as fast as possible, only in this thread.
+/// Executes ticks as fast as possible in the calling thread, without other threads.
 [[nodiscard]] Outcome run_in_virtual_time(DaemonParts& parts, Signals& signals);
 /// Executes ticks at the times of the clock, with several threads.
 [[nodiscard]] Outcome run_in_real_time(DaemonParts& parts, Signals& signals);

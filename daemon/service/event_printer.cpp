@@ -32,11 +32,11 @@ spdlog::level::level_enum level_of(Severity severity) {
   return spdlog::level::info;
 }
 
-/// Longest time for which a line waits while the reader of the standard error is blocked [ms]. Lines after it
-/// do not wait.
+/// Longest time for which a line waits if the reader of the standard error is blocked [ms]. The lines after
+/// this line do not wait.
 constexpr int patience_ms = 200;
 
-/// Writes to the standard error, whose reader may be blocked. A line that cannot be written is dropped, so
+/// Writes lines to the standard error, whose reader may be blocked. Drops a line that cannot be written, so
 /// that the daemon can always end.
 class StandardError final : public spdlog::sinks::base_sink<std::mutex> {
  protected:
@@ -64,7 +64,7 @@ class StandardError final : public spdlog::sinks::base_sink<std::mutex> {
     pollfd ready{STDERR_FILENO, POLLOUT, 0};
     const bool writable = ::poll(&ready, 1, blocked_ ? 0 : patience_ms) > 0;
     blocked_ = !writable;
-    // If this write fails, nothing can report the failure.
+    // If this write fails, there is no other output that could report the failure.
     if (writable) [[maybe_unused]]
       const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
   }
@@ -91,7 +91,7 @@ EventPrinter::EventPrinter(bool beside) {
   } else {
     logger_ = std::make_shared<spdlog::logger>("softgripd", sink);
   }
-  // The journal adds the time to each line by itself.
+  // The journal adds the time to each line, so the line needs no time.
   const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;
   logger_->set_pattern(journal ? "%l: %v" : "%H:%M:%S.%e %^%l%$: %v");
   logger_->flush_on(spdlog::level::info);

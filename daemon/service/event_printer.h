@@ -18,7 +18,7 @@ class thread_pool;
 namespace softgrip::daemon {
 
 /// Prints events and reports. The loop does not use this class. If there are more than 20 events of one kind
-/// in 10 s, the further ones are counted and not printed.
+/// in 10 s, the events after the first 20 are counted but not printed.
 class EventPrinter {
  public:
   /// If `beside` is true, a thread of the printer writes the lines, so that a blocked reader cannot delay the
@@ -33,15 +33,16 @@ class EventPrinter {
 
  private:
   struct Flow {
-    double window_s = 0;  ///< start time of the window in which events are counted
+    double window_s = 0;  ///< start time of the window in which events are counted [s]
     int printed = 0;
     int suppressed = 0;
   };
   [[nodiscard]] bool passes(const EventEntry& event);
 
   std::shared_ptr<spdlog::logger> logger_;
-  std::shared_ptr<spdlog::details::thread_pool> writer_;  // it must be destroyed first, because its thread
-                                                          // uses the logger
+  std::shared_ptr<spdlog::details::thread_pool> writer_;  // thread that writes the lines; it uses the logger,
+                                                          // so this member must be destroyed before the
+                                                          // logger
   std::map<std::string, Flow> flows_;                     // number of events in the window, by kind of event
 };
 

@@ -33,7 +33,7 @@ std::string name_of(const std::string& config) {
 }
 
 /// Returns the runtime folder. Returns nothing if the contents of this folder survive a restart of the
-/// machine, because the state of the boards is unknown after a restart.
+/// machine: after a restart, the state of the boards is unknown, so a copy of the rig must not be used.
 std::optional<RuntimeFolder> folder() {
   auto opened = RuntimeFolder::open();
   if (!opened || !opened->ends_with_the_machine()) return std::nullopt;

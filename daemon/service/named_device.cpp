@@ -16,7 +16,7 @@ std::optional<NamedDevice> named_chip(const rig::RigFile& rig, const std::string
   std::vector<ComputerDevice> there = drivers::chips_in(chips);
   const auto is_it = [&](const ComputerDevice& chip) { return chip.node == device; };
   if (std::none_of(there.begin(), there.end(), is_it))
-    there.push_back({device, {}, {}});  // the system does not list the device yet
+    there.push_back({device, {}, {}});  // the system does not list the device, so its name is used alone
   const auto& lines = rig.gpio->lines;
   const bool named = std::any_of(lines.begin(), lines.end(), [&](const drivers::GpioLineSettings& line) {
     const auto found = only_device(there, line.chip, "GPIO chip");

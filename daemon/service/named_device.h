@@ -17,9 +17,9 @@ struct NamedDevice {
                                      ///< out_voltage0_raw
 };
 
-/// Returns the parts of `device` that the rig uses, or nothing if the rig file does not name this device.
-/// `device` is the name in the kernel, such as gpiochip0 or iio:device0. `chips` is the folder of the GPIO
-/// chips' files.
+/// Returns the parts of `device` that the rig uses. Returns nothing if the rig file does not name this
+/// device. `device` is the name in the kernel, such as gpiochip0 or iio:device0. `chips` is the folder that
+/// contains the device files of the GPIO chips.
 [[nodiscard]] std::optional<NamedDevice> named_device(const rig::RigFile& rig, const std::string& device,
                                                       const std::filesystem::path& chips = "/dev");
 

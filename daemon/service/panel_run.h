@@ -12,7 +12,8 @@
 
 namespace softgrip::daemon {
 
-/// Has no effect for a rig without digital lines. All referenced objects must exist longer than this object.
+/// The thread of the panel. It does nothing for a rig without digital lines. All referenced objects must
+/// exist longer than this object.
 class PanelRun {
  public:
   PanelRun(const rig::RigFile& rig, const DaemonOptions& options, const Clock& clock, SharedState& shared,
@@ -24,10 +25,11 @@ class PanelRun {
   PanelRun& operator=(PanelRun&&) = delete;
   ~PanelRun() { stop(); }
 
-  /// Requests the digital lines from the kernel. If the request fails, returns false and sets ending and
-  /// message in `outcome`.
+  /// Requests the digital lines from the kernel. If the request fails, returns false and sets `ending` and
+  /// `message` of `outcome`.
   bool open(Outcome& outcome);
-  /// Starts the thread that reads the lines. Adds the result of the thread's scheduling to `report`.
+  /// Starts the thread that reads and writes the lines. Adds the result of the thread's scheduling to
+  /// `report`.
   void start(RealTimeReport& report);
   /// Switches off the enable output and ends the thread of the panel.
   void stop() noexcept;

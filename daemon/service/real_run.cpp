@@ -29,16 +29,17 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// If a thread has not ended this time after all its deadlines, the thread counts as blocked [ns].
+/// Time after the last deadline of a thread at which a thread that has not ended counts as blocked [ns].
 constexpr Nanoseconds longest_join = ns_per_s;
-/// Time between two checks of the other threads by this thread [ns].
+/// Time between two checks in which the main thread checks the other threads [ns].
 constexpr Nanoseconds look_pause = ns_per_s / 20;
-/// Loop and bus may stop for this time beyond the limits of the rig file [ns]. After it, the service
-/// manager's watchdog is no longer fed. A short overload of the machine must not restart the daemon.
+/// Time in addition to the limits of the rig file for which loop and bus may stand still [ns]. After this
+/// time, the daemon no longer feeds the service manager's watchdog. The margin ensures that a short overload
+/// of the machine does not restart the daemon.
 constexpr Nanoseconds heartbeat_patience = ns_per_s / 2;
-/// Longest time of one turn of the service thread [ns]. During a turn, other clients wait.
+/// Longest time of one turn of the service thread [ns]. During a turn for one client, the other clients wait.
 constexpr Nanoseconds service_patience = 2 * ns_per_s;
-/// Longest time until the recorder and the service thread must have ended after the outputs are safe [ns].
+/// Longest time from the safe outputs until the recorder and the service thread must have ended [ns].
 constexpr Nanoseconds longest_end = 3 * ns_per_s;
 /// Time between two turns of the service thread if the daemon has no socket [ns].
 constexpr Nanoseconds service_pause = ns_per_s / 50;
@@ -56,13 +57,13 @@ class RealRun {
 
  private:
   bool listen();
-  /// Reports the remarks of the lock. Also stores a copy of the rig for the safe outputs after a crash.
+  /// Reports the remarks of the lock, and stores a copy of the rig for the safe outputs after a crash.
   void note_and_keep(const BoardLock& lock);
   void forget_if_rested();
   void start_threads();
   void start();
-  /// Executes an action and catches its exceptions. An exception is reported, and the run then ends in order
-  /// with all threads.
+  /// Executes an action and catches its exceptions. If the action throws, reports the exception and ends the
+  /// run in order with all threads.
   void guarded(const std::function<void()>& action);
   void prepare(int priority, const char* who, RealTimeReport& report);
   void look_after();
@@ -255,7 +256,7 @@ std::string RealRun::status_line() {
                      parts_.bus_statistics.failures.value());
 }
 
-/// Returns the longest time for which the bus thread may be blocked.
+/// Returns the longest time for which a call of the bus thread may block [ns].
 Nanoseconds RealRun::longest_bus_call() const {
   return std::max<Nanoseconds>(parts_.rig.reconnect.connect_deadline.count(),
                                nanoseconds(parts_.rig.loop.exchange_deadline_s));
@@ -282,7 +283,8 @@ void RealRun::look_after() {
   }
 }
 
-/// Ends the process at once. This thread cannot wait for a blocked thread, so an orderly end is not possible.
+/// Ends the process at once. An orderly end is not possible, because the main thread cannot wait for a
+/// blocked thread.
 void RealRun::end_without(const char* hangs, ExitCode code) {
   parts_.tell("internal_error", Severity::error,
               fmt::format("{}; the process ends without waiting for this thread.", hangs));

@@ -39,7 +39,8 @@ void make(const std::string& place) {
   const bool of_service = place == service_folder;
   if (::mkdir(place.c_str(), of_service ? 0755 : 0700) != 0 || !of_service) return;
   const std::optional<uid_t> user = service_user();
-  // On a machine without the service user there is no service, so root remains the owner of the folder.
+  // On a machine without the service user, the service is not installed, so root remains the owner of the
+  // folder.
   if (user) [[maybe_unused]]
     const int given = ::chown(place.c_str(), *user, static_cast<gid_t>(-1));
 }

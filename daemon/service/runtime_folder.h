@@ -13,11 +13,11 @@ namespace softgrip::daemon {
 
 class RuntimeFolder {
  public:
-  /// Opens /run/softgrip, which belongs to the service. If it is missing, root creates it. A user who cannot
-  /// write to it gets a folder of his own: /run/user/UID/softgrip, or /tmp/softgrip-UID. The error is a
-  /// sentence.
+  /// Opens /run/softgrip, which belongs to the service. If the folder is missing and the user is root,
+  /// creates it. A user who cannot write to the folder gets a folder of his own: /run/user/UID/softgrip, or
+  /// /tmp/softgrip-UID. The error is a sentence.
   [[nodiscard]] static tl::expected<RuntimeFolder, std::string> open();
-  /// Opens the first usable folder of a list. The list is in the order of preference.
+  /// Opens the first usable folder of a list that is in the order of preference.
   [[nodiscard]] static tl::expected<RuntimeFolder, std::string> open(const std::vector<std::string>& places);
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
@@ -35,7 +35,8 @@ class RuntimeFolder {
   [[nodiscard]] tl::expected<std::string, std::string> get(const std::string& name, std::size_t bound) const;
   /// Removes a file. A missing file is not an error.
   void remove(const std::string& name) const noexcept;
-  /// Returns true if the name `name` still belongs to the file that was opened.
+  /// Returns true if `name` is still the name of the opened file. Returns false if the file was removed or
+  /// replaced.
   [[nodiscard]] bool still_names(const std::string& name, int opened) const noexcept;
 
  private:

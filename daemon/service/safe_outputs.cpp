@@ -19,7 +19,7 @@ using drivers::BusStatus;
 namespace {
 
 /// Longest time of the attempt to write the safe outputs. It must be shorter than TimeoutStopSec= of the
-/// unit.
+/// systemd unit.
 constexpr std::chrono::nanoseconds unit_patience = std::chrono::seconds(8);
 constexpr int exchanges_that_confirm = 2;
 

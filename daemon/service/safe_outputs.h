@@ -1,6 +1,6 @@
 #pragma once
-// Vents a board for which no daemon runs. After a crash, ExecStopPost= of the unit does this. A user may do
-// it before work on the rig.
+// Vents a board for which no daemon runs. After a crash, the setting ExecStopPost= of the systemd unit runs
+// this function. A user may run it before work on the rig.
 
 #include <chrono>
 #include <string>
@@ -16,7 +16,7 @@ namespace softgrip::daemon {
 enum class SafeOutputsEnd {
   confirmed,       ///< the board accepted the rest pressures, and the next exchange confirmed them
   board_holds,     ///< the watchdog of the board has tripped, so the board holds its own safe values
-  not_needed,      ///< the service manager reports that softgripd ended in order
+  not_needed,      ///< the service manager reports that softgripd ended in order, so its last outputs remain
   daemon_running,  ///< a daemon responds on the rig's socket, or another program drives the board
   board_silent,    ///< the board did not confirm the rest pressures in time
 };

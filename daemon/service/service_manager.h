@@ -1,5 +1,6 @@
 #pragma once
-// Reports the state of the daemon to the service manager (systemd), if there is one.
+// Reports the state of the daemon to the service manager (systemd), if the daemon runs under a service
+// manager.
 
 #include <string>
 
@@ -16,13 +17,14 @@ class ServiceManager {
   void status(const std::string& status);
   void stopping();
 
-  /// Feeds the unit's watchdog (WatchdogSec=) four times per period while all threads run (`alive`, see
-  /// Heartbeat). If a thread has stopped, it does not feed the watchdog, and the service manager restarts the
+  /// Feeds the unit's watchdog (WatchdogSec=) four times per watchdog period while all threads run (`alive`,
+  /// see Heartbeat). If a thread has stopped, does not feed the watchdog, so the service manager restarts the
   /// daemon.
   void feed(Nanoseconds now, bool alive);
 
  private:
-  Nanoseconds interval_ = 0;  // time between two messages to the watchdog; 0: the unit has no watchdog
+  Nanoseconds interval_ = 0;  // time between two messages to the watchdog of the service manager [ns]; 0: the
+                              // unit has no watchdog
   Nanoseconds fed_ = 0;
   std::string status_;
 };

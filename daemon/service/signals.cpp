@@ -26,8 +26,9 @@ Signals::Signals() noexcept {
 
 Signals::~Signals() {
   for (std::size_t i = 0; i < ignored.size(); ++i) sigaction(ignored[i], &ignored_before_[i], nullptr);
-  // After an orderly stop by a signal, all further signals need no action. A signal that was not read remains
-  // pending. An outer object of this class then reads the signal, or the signal ends the process.
+  // After an orderly stop by a signal, all signals that arrive later are read and discarded. A signal that
+  // was not read remains pending. In this case, an outer object of this class reads the signal, or the signal
+  // ends the process.
   if (first_ != 0) (void)first();
   pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }

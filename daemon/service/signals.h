@@ -10,9 +10,9 @@
 namespace softgrip::daemon {
 
 /// While this object exists, all signals that request the end of the process are blocked in the calling
-/// thread and in the threads that it starts. SIGPIPE and SIGXFSZ are ignored, because the failed call reports
-/// the error. The signals with which a terminal stops a process are ignored, because a stopped loop cannot
-/// hold a part.
+/// thread and in the threads that it starts. SIGPIPE and SIGXFSZ are ignored, because the system call that
+/// fails also reports the error. The signals with which a terminal stops a process are ignored, because a
+/// stopped loop cannot hold a part.
 class Signals {
  public:
   Signals() noexcept;
@@ -22,8 +22,8 @@ class Signals {
   Signals& operator=(Signals&&) = delete;
   ~Signals();
 
-  /// Waits for a signal and returns it, or returns 0 after `timeout`. Stores the signal as the one that ends
-  /// the process (ending_signal.h).
+  /// Waits for a signal and returns it, or returns 0 after `timeout`. Stores this signal as the signal that
+  /// ends the process (ending_signal.h).
   [[nodiscard]] int wait(Nanoseconds timeout) noexcept;
   /// Reads all pending signals. Returns the first signal that this object has ever read; 0 if there is none.
   [[nodiscard]] int first() noexcept;

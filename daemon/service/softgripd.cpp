@@ -1,4 +1,4 @@
-// The program softgripd: its command line.
+// The program softgripd: reads its command line and runs the daemon.
 
 #include <cstdint>
 #include <cstdio>
@@ -86,8 +86,8 @@ void declare(CLI::App& program, Arguments& arguments) {
       "softgripd reads the configuration only at the start: restart it after a change.");
 }
 
-/// Writes a message to the standard error. If nothing can be written, the message is lost. fmt::print() is
-/// not used, because it would throw an exception in this case.
+/// Writes a message to the standard error. If the standard error cannot be written, the message is lost.
+/// fmt::print() is not used, because it would throw an exception in this case.
 void complain(const std::string& sentence) {
   std::fputs(("softgripd: " + sentence + "\n").c_str(), stderr);
 }
@@ -103,7 +103,8 @@ ExitCode check(const Arguments& arguments) {
   const rig::CheckReport report = rig::check_files(files);
   std::fputs(report.problems.format().c_str(), stderr);
   if (!report.accepted()) return ExitCode::input_refused;
-  document::Problems ignored;  // the start-up report contains these problems too
+  document::Problems ignored;  // these problems are not printed here, because the start-up report also
+                               // contains them
   const auto rig = rig::load_rig(arguments.config, ignored);
   if (!rig) return ExitCode::input_refused;
   const MonotonicClock clock;
@@ -128,8 +129,8 @@ ExitCode end_of_safe_outputs(const daemon::SafeOutputsReport& report) {
   return daemon::exit_code_of(report.end);
 }
 
-/// Writes the safe outputs. If there is a copy of the rig file that the last softgripd read, uses the copy,
-/// because the rig file itself may be incomplete during an edit.
+/// Writes the safe outputs. If there is a copy of the rig file that the last softgripd read, uses this copy.
+/// The rig file could be incomplete, because a user may be editing it.
 ExitCode safe_outputs(const Arguments& arguments) {
   const char* result = std::getenv("SERVICE_RESULT");
   if (!daemon::safe_outputs_needed(result == nullptr ? "" : result)) {
@@ -208,8 +209,7 @@ ExitCode run(const Arguments& arguments) {
   if (const auto written = write_histograms(arguments.histograms, **daemon); !written) {
     complain(written.error());
     if (code == ExitCode::done)
-      code = ExitCode::io;  // the result of the run is more important than an
-                            // output error
+      code = ExitCode::io;  // the result of the run is more important than the error of its output
   }
   return code;
 }
@@ -226,13 +226,14 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
       return program.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
     }
-    // Only --check writes its result to the standard output. The other modes report it by their exit code.
+    // The mode --check writes its result to the standard output. All other modes report their result by the
+    // exit code.
     const ExitCode code = arguments.safe_outputs      ? safe_outputs(arguments)
                           : arguments.check           ? with_output_checked(check(arguments), "softgripd")
                           : !arguments.device.empty() ? say_whether_named(arguments)
                                                       : run(arguments);
-    // If the daemon has no sequence and no duration, a signal is its usual end. If it has one of them, a
-    // signal interrupts the run.
+    // If the daemon has no sequence and no duration, a signal is its usual end. Otherwise, a signal
+    // interrupts the run.
     const bool has_an_end = !arguments.sequence.empty() || arguments.duration_s;
     if (has_an_end && ending_signal() != 0) end_by_signal(ending_signal());
     return static_cast<int>(code);

@@ -58,8 +58,8 @@ std::string channel_line(const control::ChannelSettings& channel, const rig::Val
                      valve.on_power_loss == rig::PowerLoss::vents ? "vents" : "holds");
 }
 
-/// Returns the lines about the GPIO. They contain the response time of an emergency stop, which is the sum of
-/// debounce time, time to the next tick, and exchange.
+/// Returns the lines about the GPIO. They contain the response time of an emergency stop: the debounce time,
+/// plus the time to the next tick, plus the duration of the exchange.
 std::string gpio_lines(const rig::RigFile& rig) {
   std::string text;
   const rig::GpioSettings& gpio = *rig.gpio;

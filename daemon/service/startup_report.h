@@ -11,8 +11,8 @@
 namespace softgrip::daemon {
 
 /// Returns several lines: rate, board, bus budget, latency, watchdog, safe actions and the feedforward of
-/// each channel. If `real_time` is not nullptr, the lines contain the real-time settings. It is nullptr in
-/// virtual time, and in a check without a start. `program` is the name of the program that drives the rig.
+/// each channel. If `real_time` is not nullptr, the lines contain the real-time settings. `real_time` is
+/// nullptr in virtual time and for `--check`. `program` is the name of the program that drives the rig.
 [[nodiscard]] std::string startup_report(const rig::RigFile& rig, const drivers::Board& board,
                                          const RealTimeReport* real_time, std::string_view program);
 

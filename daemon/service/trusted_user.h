@@ -17,11 +17,13 @@ inline constexpr const char* service_account = "softgrip";
 /// Returns true if the user is root, the user of the service, or the user of this process.
 [[nodiscard]] bool is_trusted(uid_t user);
 
-/// The process at the other end of a Unix domain socket, as the kernel stored it at connect() or listen().
+/// The process at the other end of a Unix domain socket. The kernel stored these data at connect() or
+/// listen().
 struct Peer {
-  pid_t process = 0;  ///< process id; 0: the process is not visible from this process
+  pid_t process = 0;  ///< process id; 0: this process cannot see the process at the other end
   uid_t user = 0;
-  /// True for a trusted user, and for members of the service's group, because they may move the gripper.
+  /// true: the process belongs to a trusted user, or to a member of the service's group; these users may move
+  /// the gripper
   bool trusted = false;
 };
 /// Returns the process at the other end of a connected socket; empty if the kernel does not report it.

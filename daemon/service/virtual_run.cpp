@@ -1,4 +1,5 @@
-// Runs the daemon in virtual time: with one thread, without sleeping, and with the same results in each run.
+// Runs the daemon in virtual time, in one thread and without sleeping. Each run with the same seed has the
+// same result.
 
 #include "daemon/service/daemon_parts.h"
 #include "daemon/service/startup_report.h"
@@ -39,7 +40,7 @@ Outcome run_in_virtual_time(DaemonParts& parts, Signals& signals) {
     if (tick % ticks_per_look != 0) continue;
     look(parts, due);
     if ((parts.one_shot_run && parts.one_shot_run->over()) || signals.wait(0) != 0) {
-      due += period;  // the last outputs are a separate tick, so that no time occurs twice in a recording
+      due += period;  // the last outputs get a tick of their own, so that no time occurs twice in a recording
       break;
     }
   }

@@ -15,8 +15,8 @@ namespace {
 using SortedJson = nlohmann::json;
 using Command = ClientRequest::Command;
 
-constexpr std::uint64_t largest_id = std::uint64_t{1} << 53;  // all JSON readers represent integers up to
-                                                              // this exactly
+constexpr std::uint64_t largest_id = std::uint64_t{1} << 53;  // largest id: every JSON reader represents all
+                                                              // integers up to 2^53 exactly
 constexpr std::uint64_t largest_request = (std::uint64_t{1} << 32) - 1;
 
 constexpr std::array<std::pair<std::string_view, Command>, 14> commands{{
@@ -41,10 +41,11 @@ constexpr std::string_view nested_key = "parameters";
 constexpr std::size_t most_parameters = 64;
 constexpr std::size_t longest_name = 64;
 
-/// Parses a JSON object without nested objects, except that of nested_key. If the line is not such an object,
-/// `problem` contains the reason.
+/// Parses a JSON object. The value of nested_key may be an object; all other values must not be objects. If
+/// the line is not such an object, `problem` contains the reason.
 SortedJson parse_object(std::string_view line, std::string& problem) {
-  std::array<std::vector<std::string>, 2> keys;  // keys of the object, and of the nested object
+  std::array<std::vector<std::string>, 2> keys;  // keys of the outer object ([0]) and of the nested object
+                                                 // ([1])
   const auto look = [&](int depth, SortedJson::parse_event_t event, SortedJson& parsed) {
     const bool object = event == SortedJson::parse_event_t::object_start;
     const bool nested = object || event == SortedJson::parse_event_t::array_start;
@@ -135,7 +136,7 @@ class Reader {
   void fail(std::string problem) {
     if (problem_.empty()) problem_ = std::move(problem);
   }
-  /// Returns the first problem; an unknown key is a problem too.
+  /// Returns the first problem of the object; empty if there is none. An unknown key is also a problem.
   [[nodiscard]] std::string finish(std::string_view command) {
     for (const auto& [key, value] : object_.items()) {
       fail(fmt::format("the command '{}' has no key '{}'", command, key));
@@ -144,8 +145,8 @@ class Reader {
   }
 
  private:
-  /// Removes a key and returns its value. If the key is absent, returns null. If the value of the key is
-  /// null, this is an error.
+  /// Removes a key and returns its value. If the key is absent, returns null. If the key is present with the
+  /// value null, reports an error.
   SortedJson take(const char* key) {
     const auto found = object_.find(key);
     if (found == object_.end()) return nullptr;

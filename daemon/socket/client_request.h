@@ -1,7 +1,7 @@
 #pragma once
 // Reads one line of a client of the socket API into a plain value. Any user of the socket can send lines, so
-// this parser is fuzzed (tests/daemon/socket/client_request_fuzz.cpp). docs/reference/socket-api.md describes
-// the requests.
+// this parser is fuzz-tested (tests/daemon/socket/client_request_fuzz.cpp). docs/reference/socket-api.md
+// describes the requests.
 
 #include <cstdint>
 #include <optional>
@@ -45,21 +45,22 @@ struct ClientRequest {
                               ///< name
   std::vector<control::Argument> parameters;  ///< for start: values that replace the defaults of the
                                               ///< parameters
-  bool dry_run = false;                       ///< for start: makes all checks, but starts no motion
-  /// The client's id for a start, 1 to 64 bytes without control characters; empty: the client gave none. A
-  /// start has this id, and a stop with this id stops no other start.
+  bool dry_run = false;  ///< true: the request `start` makes all checks of the start, but starts no motion
+                         ///< (dry run)
+  /// for start and stop: the client's id for a start, 1 to 64 bytes without control characters; empty: the
+  /// client gave no id. A stop with this id stops the start with this id and no other start.
   std::string start_id;
-  std::optional<std::uint64_t> request;  ///< for stop: number of the only start to stop, from 1 to 2^32 - 1;
-                                         ///< empty: any start
-  std::optional<std::uint64_t> since;    ///< for events and subscribe: only events with a larger id than this
-                                         ///< are sent
-  std::string started_at;                ///< for subscribe: start time of the daemon from which the client
-                                         ///< has its event ids
-  std::string client;                    ///< for hello: name of the client, 1 to 64 bytes without control
-                                         ///< characters
-  std::uint64_t api = api_version;       ///< for hello: version of the socket API that the client uses
-  std::uint64_t limit = 100;             ///< for events: largest number of events, 1 to 1000
-  bool histograms = false;               ///< for statistics: the reply includes the bins of the histograms
+  std::optional<std::uint64_t> request;  ///< for stop: id of the start request to stop, from 1 to 2^32 - 1;
+                                         ///< empty: any start is stopped
+  std::optional<std::uint64_t> since;  ///< for events and subscribe: the daemon sends the events whose id is
+                                       ///< larger than this id
+  std::string started_at;  ///< for subscribe: start time of the daemon that assigned the event ids that the
+                           ///< client knows
+  std::string client;      ///< for hello: name of the client, 1 to 64 bytes without control
+                           ///< characters
+  std::uint64_t api = api_version;  ///< for hello: version of the socket API that the client uses
+  std::uint64_t limit = 100;        ///< for events: largest number of events, 1 to 1000
+  bool histograms = false;          ///< for statistics: true: the reply contains the bins of the histograms
 };
 
 /// The reason why a line was refused.
@@ -74,7 +75,8 @@ struct ClientError {
 
 /// Returns the names of the commands that a role may use.
 [[nodiscard]] std::vector<std::string_view> commands_of(Role role);
-/// Returns true for a command that only reads, and false for a command that moves, stops or resets something.
+/// Returns true for a command that only reads data. Returns false for a command that moves, stops or resets a
+/// part of the rig.
 [[nodiscard]] bool only_looks(ClientRequest::Command command) noexcept;
 
 /// Returns true if the line is a request to stop or to vent.

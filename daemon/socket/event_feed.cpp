@@ -60,8 +60,8 @@ Json EventFeed::dated(const EventEntry& event, Nanoseconds now) {
   return json;
 }
 
-/// Returns the wall-clock time at time 0 of the event log. The result changes only if the wall clock was set.
-/// Therefore, an event that is sent twice has the same time in both messages.
+/// Returns the wall-clock time at time 0 of the event log. The result changes if the wall clock was set, and
+/// for no other reason. Therefore, an event that is sent twice has the same time in both messages.
 Nanoseconds EventFeed::wall_origin(Nanoseconds now) {
   constexpr Nanoseconds was_set = ns_per_s / 2;
   const Nanoseconds origin = wall_time_now() - (now - origin_);

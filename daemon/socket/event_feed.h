@@ -19,11 +19,11 @@ namespace softgrip::daemon {
 /// Id of a connection. Each connection has an id that no other connection ever gets.
 using ClientId = std::uint64_t;
 
-/// Sends a line with its line break to a client. If `skippable` is true and the client has not read the last
-/// lines yet, the line is not sent and the result is false.
+/// Sends a line with its line break to a client. If `skippable` is true and the client has not read the
+/// earlier lines yet, does not send the line and returns false.
 using SendLine = std::function<bool(ClientId client, std::string_view line, bool skippable)>;
 
-/// All functions must be called from one thread.
+/// The subscriptions of all clients. All functions must be called from one thread.
 class EventFeed {
  public:
   /// `origin` is the time 0 of the event log [ns]. `started_at` identifies this run of the daemon. The log
@@ -39,8 +39,8 @@ class EventFeed {
   [[nodiscard]] bool has(ClientId client) const { return subscriptions_.contains(client); }
   /// Returns the stored events that match the request.
   [[nodiscard]] nlohmann::ordered_json list(const ClientRequest& request, Nanoseconds now);
-  /// Sends new events to the subscribers. A client that does not read gets the events later, as long as they
-  /// are stored. No thread waits for such a client.
+  /// Sends new events to the subscribers. If a client does not read, its events are sent when it reads again,
+  /// as long as the log stores them. No thread waits for such a client.
   void feed(Nanoseconds now, const SendLine& send);
 
   [[nodiscard]] const EventLog& log() const noexcept { return log_; }
@@ -48,7 +48,7 @@ class EventFeed {
  private:
   struct Subscription {
     std::optional<std::uint64_t> id;
-    std::uint64_t last = 0;  ///< id of the newest event that was sent
+    std::uint64_t last = 0;  ///< id of the newest event that was sent to the subscriber
   };
 
   [[nodiscard]] nlohmann::ordered_json dated(const EventEntry& event, Nanoseconds now);

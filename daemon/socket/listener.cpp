@@ -25,7 +25,7 @@ Failure failure(const std::string& path, std::string_view what) {
   return Failure(fmt::format("{}: {}: {}", path, what, std::strerror(errno)));
 }
 
-/// Returns true if a program listens at the address. If none listens, errno gives the reason.
+/// Returns true if a program listens at the address. If no program listens, errno gives the reason.
 bool answers(const sockaddr_un& address) {
   const Descriptor probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   return net::connect_unix(probe, address) || errno == EAGAIN;
@@ -34,8 +34,8 @@ bool answers(const sockaddr_un& address) {
 /// Removes the socket file of a daemon that has ended. Returns false if a daemon responds on this socket.
 bool clear_away(const sockaddr_un& address) {
   if (answers(address)) return false;
-  // A connection to a file that is not a socket is refused too. Such a file is not removed, so bind() reports
-  // that the file exists.
+  // The kernel also refuses a connection to a file that is not a socket. Such a file is not removed, so
+  // bind() reports that the file exists.
   struct stat status {};
   const bool refused = errno == ECONNREFUSED;
   if (refused && lstat(address.sun_path, &status) == 0 && S_ISSOCK(status.st_mode)) unlink(address.sun_path);
@@ -78,7 +78,8 @@ tl::expected<Listener, std::string> Listener::open(const rig::SocketFile& file) 
 
   Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (!socket) return failure(file.path, "socket");
-  // Between bind() and chmod(), no other user must be able to connect.
+  // bind() creates the socket file without permissions for other users, so that no other user can connect
+  // before chmod().
   if (!net::bind_unix(socket, *address)) return failure(file.path, "bind");
   if (!give_rights(file)) {
     const auto problem = failure(file.path, fmt::format("mode {:o} group '{}'", file.mode, file.group));
@@ -96,7 +97,7 @@ tl::expected<Listener, std::string> Listener::open(const rig::SocketFile& file) 
 
 Listener::~Listener() {
   struct stat status {};
-  // Another daemon may have replaced this socket file by its own file.
+  // Another daemon may have replaced this socket file by a file of its own. That file must not be removed.
   const bool there = socket_ && lstat(path_.c_str(), &status) == 0;
   if (there && status.st_dev == device_ && status.st_ino == inode_) unlink(path_.c_str());
 }

@@ -18,15 +18,15 @@ namespace softgrip::daemon {
 
 class Listener {
  public:
-  /// Creates the socket file. At first only its owner has permissions; after that, it has the permissions in
-  /// `file`. The socket file of a daemon that has ended is replaced. The socket file of a running daemon is
-  /// an error. The error is a sentence.
+  /// Creates the socket file. At first only its owner has permissions; after the socket listens, the file has
+  /// the permissions in `file`. If the file exists and its daemon has ended, the file is replaced. If its
+  /// daemon runs, this is an error. The error is a sentence.
   [[nodiscard]] static tl::expected<Listener, std::string> open(const rig::SocketFile& file);
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;
   Listener(Listener&& other) noexcept = default;
   Listener& operator=(Listener&&) = delete;
-  /// Removes the socket file, if it is still the file that this object created.
+  /// Removes the socket file if this object created it and no other daemon has replaced it.
   ~Listener();
 
   [[nodiscard]] const Descriptor& socket() const noexcept { return socket_; }

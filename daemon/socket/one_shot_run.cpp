@@ -8,8 +8,8 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Time for which the run continues after the end of the sequence [ns], because a recording ends half a
-/// second after the last motion.
+/// Time for which the run continues after the end of the sequence [ns]. The recording needs a part of this
+/// time, because it ends 0.5 s after the last motion.
 constexpr Nanoseconds tail = ns_per_s;
 
 bool at_rest(control::State state) noexcept {

@@ -19,21 +19,21 @@ class OneShotRun {
     asked,    ///< the start request was passed to the loop
     running,
     ended,
-    refused,   ///< the state of the rig did not permit the start; refusal() gives the reason
+    refused,   ///< the rig was in a state in which a sequence must not start; refusal() gives the reason
     not_idle,  ///< the rig did not become idle in time
   };
 
   /// `patience` is the longest time to wait until the rig is idle [ns].
   OneShotRun(std::shared_ptr<const LoadedSequence> sequence, Nanoseconds patience);
 
-  /// Performs the next action if it is due. The thread that calls the service must call this function
-  /// periodically, each time after Service::pump().
+  /// Performs the next action if it is due. The thread that calls Service must call this function after each
+  /// Service::pump().
   void step(Service& service, Nanoseconds now);
 
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] bool over() const noexcept { return state_ >= State::ended; }
   [[nodiscard]] control::RefusalCode refusal() const noexcept { return refusal_; }
-  /// Returns how the sequence ended; nothing before its end.
+  /// Returns how the sequence ended; nothing if the sequence has not ended yet.
   [[nodiscard]] std::optional<control::SequenceEnd> end() const noexcept { return end_; }
 
  private:

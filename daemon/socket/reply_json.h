@@ -29,7 +29,7 @@ namespace softgrip::daemon {
 /// The data of the reply to the request `hello`.
 struct Greeting {
   std::string_view software_version;
-  std::string_view started_at;  ///< start time of the daemon, UTC; event ids are unique only together with
+  std::string_view started_at;  ///< start time of the daemon, UTC; an event id is unique in combination with
                                 ///< this time
   Role role = Role::look;
   std::string_view client;  ///< name of the client, as the client gave it
@@ -38,8 +38,8 @@ struct Greeting {
 [[nodiscard]] nlohmann::ordered_json hello_json(const Greeting& greeting,
                                                 const rig::SocketSettings& settings);
 
-/// Returns the reply to a client that is refused before its first request, or to a line that cannot be
-/// parsed.
+/// Returns the error reply for two cases: a client that is refused before its first request, and a line that
+/// cannot be parsed.
 [[nodiscard]] std::string error_line(std::optional<std::uint64_t> id, std::string_view code,
                                      std::string_view message);
 

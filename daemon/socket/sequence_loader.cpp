@@ -19,14 +19,14 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// Longest permitted time for planning a sequence: longest_planning_share times the duration of the motion,
-/// plus planning_slack_s [s]. The slack is for the CPU load of other programs. If planning takes longer than
-/// permitted, a warning states by how much planning delays the start.
+/// Limit for the duration of planning a sequence: longest_planning_share times the duration of the motion,
+/// plus planning_slack_s [s]. The slack allows for the CPU load of other programs. If planning takes longer
+/// than this limit, a warning states by how much planning delays the start.
 constexpr double longest_planning_share = 0.1;
 constexpr double planning_slack_s = 0.2;
 
-/// Returns true if `name` is the name of a visible file in the directory itself. A file in a subdirectory
-/// does not count.
+/// Returns true if `name` is the name of a file in the directory itself, and not a hidden file. A file in a
+/// subdirectory does not count.
 bool is_plain_name(const std::string& name) {
   return !name.empty() && name.front() != '.' && name.find('/') == std::string::npos &&
          name.find('\0') == std::string::npos;
@@ -34,7 +34,8 @@ bool is_plain_name(const std::string& name) {
 
 constexpr std::string_view ending = ".yaml";
 
-/// Returns a hint with the most similar name, or with a list of all names.
+/// Returns a hint with the existing name that is most similar to `name`, or with a list of all existing
+/// names.
 std::string hint_of(const std::string& name, const std::string& directory,
                     const std::vector<std::string>& names) {
   if (names.empty()) return fmt::format("there are no sequences in {}", directory);

@@ -1,5 +1,6 @@
 #pragma once
-// Loads sequences: finds and reads them, and fits them to the rig before the loop gets them.
+// Loads sequences: finds their files, reads them, and fits the sequences to the rig before the loop gets
+// them.
 
 #include <memory>
 #include <optional>
@@ -22,9 +23,10 @@ class SequenceLoader {
   /// `directory` is the folder with the sequences that clients start by name.
   SequenceLoader(control::RigSettings rig, std::string directory);
 
-  // The load functions are thread-safe. A call takes up to 1 s for 10 s of planned motion (feedforward
-  // `planned`). It may block for ever if the directory is on a mount whose server does not respond. After a
-  // stop request, planning ends and the sequence is refused. A parameter without an argument has its default.
+  // The load functions are thread-safe. A call takes up to 1 s per 10 s of planned motion (feedforward
+  // `planned`). A call may block for ever if the directory is on a mount whose server does not respond. A
+  // stop request ends the planning, and the sequence is then refused. A parameter without an argument has its
+  // default.
   using Result = tl::expected<std::shared_ptr<const LoadedSequence>, document::Problems>;
   using Arguments = std::span<const control::Argument>;
   /// Loads a file at any path. The daemon's command line uses this function.
@@ -38,12 +40,12 @@ class SequenceLoader {
   [[nodiscard]] Result load_text(const std::string& name, const std::string& text, Arguments arguments = {},
                                  const std::stop_token& stop = {}) const;
 
-  /// A sequence file of the directory. It was read, but not fitted to a rig.
+  /// A sequence file of the directory, as read from its file and not fitted to a rig.
   struct Listed {
     std::string name;  ///< name that a start request can use, without `.yaml`
     std::string about;
     std::vector<control::Parameter> parameters;
-    document::Problems problems;  ///< reasons why the sequence cannot be started
+    document::Problems problems;  ///< problems because of which the sequence cannot be started
   };
   /// Returns the sequences of the directory in the order of their names, at most `most_listed`. Reads all
   /// their files, so the call may wait for the disk.

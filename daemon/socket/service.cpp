@@ -14,7 +14,7 @@ using EventKind = control::Event::Kind;
 
 namespace {
 
-/// Largest number of requests for which the name of their client is stored.
+/// Largest number of requests for which the name of the requesting client is stored.
 constexpr std::size_t most_clients = 256;
 
 /// Returns the fault to which the reply of an event refers.
@@ -144,7 +144,7 @@ void Service::take(const StampedEvent& stamped) {
     std::fill(results_.begin(), results_.end(), control::GripResult::none);
     overall_ = control::GripResult::none;
   }
-  // From this event on, the loop no longer uses the sequence.
+  // From this event on, the loop no longer uses the sequence, so the sequence can be removed.
   if (event.kind == EventKind::request_refused || event.kind == EventKind::start_checked)
     sequence_store_.drop(event.request);
   if (event.kind == EventKind::sequence_finished) {

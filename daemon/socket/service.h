@@ -1,5 +1,5 @@
 #pragma once
-// Passes requests to the loop, and passes the events of the loop to all threads without real-time scheduling.
+// Passes requests to the loop, and passes the events of the loop to the threads without real-time scheduling.
 
 #include <cstdint>
 #include <map>
@@ -22,30 +22,32 @@ class Service {
   Service(std::vector<std::string> channel_names, Nanoseconds origin, SharedState& shared, EventLog& log,
           SequenceStore& sequence_store);
 
-  /// Passes a request to the loop. Returns the id of the request. If the queue is full because the loop has
-  /// not taken the earlier requests yet, returns an empty value. Vent and stop have separate queues, which
-  /// the loop reads before all others. For them, an id is always returned: if their queue is full, it is the
-  /// id of a waiting request with the same effect. `client` appears in the resulting events; it may be empty.
+  /// Passes a request to the loop and returns the id of the request. If the queue is full because the loop
+  /// has not taken the earlier requests yet, returns an empty value. Vent and stop have separate queues,
+  /// which the loop reads before all other queues. A vent or stop request always gets an id: if its queue is
+  /// full, the id is that of a waiting request with the same effect. `client` appears in the resulting
+  /// events; it may be empty.
   std::optional<std::uint32_t> submit(control::Request::Kind kind,
                                       std::shared_ptr<const LoadedSequence> sequence = nullptr,
                                       const std::string& client = {});
 
-  /// Passes a request to the loop to stop only the sequence that the request `start` began or will begin.
-  /// Returns the id of this stop request. If an earlier stop of the same start has no reply yet, returns the
-  /// id of that stop. If the queue is full because the loop has not taken the earlier requests yet, returns
-  /// nothing.
+  /// Requests the loop to stop the sequence that the request `start` has begun or will begin, and no other
+  /// sequence. Returns the id of this stop request. If an earlier stop of this start has no reply yet,
+  /// returns the id of the earlier stop. If the queue is full because the loop has not taken the earlier
+  /// requests yet, returns nothing.
   std::optional<std::uint32_t> submit_stop_of(std::uint32_t start, const std::string& client = {});
 
   /// Moves the events of loop and bus into the log, and stores the replies of the loop.
   void pump();
 
-  /// Returns the loop's reply to a request, or `pending` if there is none yet. Each reply is returned only
-  /// once.
+  /// Returns the loop's reply to a request, or `pending` if there is no reply yet. The first call that
+  /// returns a reply removes the stored reply.
   struct Answer {
     enum class Kind : std::uint8_t { pending, accepted, refused };
     Kind kind = Kind::pending;
     control::RefusalCode refusal = control::RefusalCode::none;
-    control::Fault fault;  ///< fault that was reset, or whose cause is still present; in all other cases none
+    control::Fault fault;  ///< fault that was reset, or fault whose cause is still present; `none` for all
+                           ///< other replies
   };
   [[nodiscard]] Answer take_answer(std::uint32_t request);
   /// Discards the loop's reply to a request.
@@ -63,17 +65,17 @@ class Service {
   /// Returns the id of the request that started sequence(); 0 before the first sequence.
   [[nodiscard]] std::uint32_t sequence_request() const noexcept { return sequence_request_; }
 
-  /// Returns the name of the client that made a request; empty if it is unknown. After many newer requests,
-  /// the name is no longer stored.
+  /// Returns the name of the client that made a request; empty if the name is unknown. The names of old
+  /// requests are removed when many newer requests have arrived.
   [[nodiscard]] std::string client_of(std::uint32_t request) const;
   /// Returns true if the request has started a sequence, and this sequence has not ended yet.
   [[nodiscard]] bool runs(std::uint32_t request) const noexcept {
     return request != 0 && request == sequence_request_ && ending_.request != request;
   }
 
-  /// The first failure since the last successful exchange, or the reason why no connection can be opened
-  /// again. `kind` is the name of the BusStatus, and `text` is a sentence. Both are empty while the board
-  /// responds.
+  /// Reason of the present bus failure: the first failure since the last successful exchange, or the reason
+  /// why no connection can be opened. `kind` is the name of the BusStatus, and `text` is a sentence. Both are
+  /// empty while the board responds.
   struct BusFailure {
     std::string kind;
     std::string text;
@@ -100,13 +102,14 @@ class Service {
   std::uint32_t last_request_ = 0;
   std::uint32_t last_vent_ = 0;
   std::uint32_t last_stop_ = 0;
-  std::map<std::uint32_t, Answer> answers_;          // replies of the loop by request, until they are
-                                                     // returned
-  std::map<std::uint32_t, std::uint32_t> stops_of_;  // for each start, the request to stop this start that
-                                                     // has no reply yet
+  std::map<std::uint32_t, Answer> answers_;  // replies of the loop by id of the request; a reply is removed
+                                             // when it is returned
+  std::map<std::uint32_t, std::uint32_t> stops_of_;  // id of the stop request by id of the start, for stop
+                                                     // requests that have no reply yet
   std::vector<control::GripResult> results_;         // grip results by channel in the present sequence
   control::GripResult overall_ = control::GripResult::none;
-  std::map<std::uint32_t, std::string> clients_;  // names of the clients that made the newest requests
+  std::map<std::uint32_t, std::string> clients_;  // names of the clients that made the newest requests, by id
+                                                  // of the request
   std::shared_ptr<const LoadedSequence> sequence_;
   std::uint32_t sequence_request_ = 0;
   Ending ending_;

@@ -20,10 +20,10 @@ using Json = nlohmann::ordered_json;
 using Command = ClientRequest::Command;
 using Kind = control::Request::Kind;
 
-/// The loop replies to a request within a tick. If there is no reply after this time, none is expected [ns].
+/// Longest time to wait for the loop's reply to a request [ns]. The loop normally replies within one tick.
 constexpr Nanoseconds longest_answer = ns_per_s;
-/// Longest time between two calls of on_time() [ns]: normally, and (pause_while_asked) while a client waits
-/// for the loop's reply.
+/// Longest time between two calls of on_time() [ns]: longest_pause in general, and pause_while_asked while a
+/// client waits for the loop's reply.
 constexpr Nanoseconds longest_pause = ns_per_s / 50;
 constexpr Nanoseconds pause_while_asked = ns_per_s / 1000;
 
@@ -102,8 +102,8 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
   }
 }
 
-/// Returns the reason why this client may not make the request now; null if the request is allowed. A check
-/// of a start follows the same rule as a start.
+/// Returns the reason why this client may not make the request at present; null if the request is allowed.
+/// The check of a start (dry run) has the same rule as a start.
 Json SocketApi::refusal_of(ClientId client, const ClientRequest& request) const {
   if (only_looks(request.command)) return nullptr;
   const auto found = clients_.find(client);
@@ -121,15 +121,16 @@ Json SocketApi::refusal_of(ClientId client, const ClientRequest& request) const 
   return error;
 }
 
-/// Returns the name of the client whose sequence runs or is requested; nullptr if there is no such client. A
-/// client that has no name, or has disconnected, does not own a sequence.
+/// Returns the name of the client whose sequence runs or is requested; nullptr if there is no such client. If
+/// this client has no name or has disconnected, also returns nullptr.
 const std::string* SocketApi::owner() const {
   const auto found = clients_.find(owner_client());
   return found == clients_.end() || found->second.name.empty() ? nullptr : &found->second.name;
 }
 
 /// Returns the client whose sequence runs. If no sequence runs, returns the client of the first start to
-/// which the loop has not replied yet. Returns 0 if there is no such start. The client may have disconnected.
+/// which the loop has not replied yet; 0 if there is no such start. The returned client may have
+/// disconnected.
 ClientId SocketApi::owner_client() const {
   const std::uint32_t running = sources_.service.sequence_request();
   if (sources_.service.runs(running)) return starts_.client_of(running);
@@ -252,7 +253,7 @@ void SocketApi::stop(ClientId client, const ClientRequest& request, Nanoseconds 
   ask(client, request.id, Kind::stop, nullptr, now);
 }
 
-/// Stops one start in any of its states: not received yet, being loaded, passed to the loop, or running.
+/// Stops one start in any of four states: not received yet, being loaded, passed to the loop, or running.
 void SocketApi::stop_of(ClientId client, const ClientRequest& request, Nanoseconds now) {
   const std::string& id = request.start_id;
   if (!id.empty() && planned_ && !planned_->abandoned && planned_->start_id == id) {
@@ -338,8 +339,8 @@ std::optional<std::uint32_t> SocketApi::ask(ClientId client, std::optional<std::
   return number;
 }
 
-/// Stores which client waits for the loop's reply to a request. If the loop's queue was full, the request has
-/// no number, and the client gets the reply `busy`.
+/// Stores that the client waits for the loop's reply to the request `number`. If `number` is empty, because
+/// the loop's queue was full, the client gets the reply `busy`.
 void SocketApi::wait_for(std::optional<std::uint32_t> number, Asked asked) {
   if (number) {
     asked_.insert({*number, std::move(asked)});

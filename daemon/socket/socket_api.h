@@ -23,7 +23,8 @@
 
 namespace softgrip::daemon {
 
-/// All functions must be called from one thread: the thread that calls Service.
+/// The socket API. All functions must be called from one thread, which must also be the thread that calls
+/// Service.
 class SocketApi {
  public:
   using Send = SendLine;
@@ -42,14 +43,14 @@ class SocketApi {
   void on_line(ClientId client, std::string_view line, Nanoseconds now);
   /// Removes a client that has disconnected.
   void on_closed(ClientId client);
-  /// Returns true if the client must keep its connection although it sends nothing. This is the case if it
-  /// has a subscription, or if its start runs or may still begin.
+  /// Returns true if the client must keep its connection although it sends no requests. This is the case if
+  /// the client has a subscription, or if a start of the client runs or may still begin.
   [[nodiscard]] bool keeps_place(ClientId client) const;
-  /// Returns true while the sequence of a start is being loaded. When it is loaded, on_time() passes it to
-  /// the loop.
+  /// Returns true while the sequence of a start is being loaded. After the loading, on_time() passes the
+  /// sequence to the loop.
   [[nodiscard]] bool loads() const noexcept { return planned_.has_value(); }
-  /// Sends the replies of the loop, and the states for `watch` that are due. Returns the time at which it
-  /// must be called next, at the latest.
+  /// Sends the replies of the loop, and the states that are due for the clients of `watch`. Returns the
+  /// latest time at which on_time() must be called again.
   Nanoseconds on_time(Nanoseconds now);
 
  private:
@@ -70,17 +71,17 @@ class SocketApi {
     Nanoseconds due = 0;
   };
 
-  struct Planned {  // a start whose sequence a separate thread is loading
+  struct Planned {  // a start whose sequence is being loaded by a separate thread
     ClientId client = 0;
     std::optional<std::uint64_t> id;
     std::future<SequenceLoader::Result> loaded;
     std::stop_source stop;
     std::string start_id;  ///< id that the client gave the start; may be empty
     bool dry_run = false;
-    bool abandoned = false;  ///< true: no client waits for the result any more
+    bool abandoned = false;  ///< true: the client that requested the start no longer waits for the result
   };
 
-  struct Listing {  // the list of the sequence directory, which a separate thread is reading
+  struct Listing {  // the list of the sequence directory, which a separate thread reads
     std::future<std::vector<SequenceLoader::Listed>> read;
     std::vector<std::pair<ClientId, std::optional<std::uint64_t>>> waiting;
   };
@@ -117,7 +118,8 @@ class SocketApi {
   std::shared_ptr<const SequenceLoader> loader_;
   EventFeed events_;
   Send send_;
-  std::multimap<std::uint32_t, Asked> asked_;  // by the number of the request in the loop
+  std::multimap<std::uint32_t, Asked> asked_;  // requests that wait for the loop's reply, by their id in the
+                                               // loop
   std::map<ClientId, Client> clients_;
   std::map<ClientId, Watch> watches_;
   std::optional<Planned> planned_;

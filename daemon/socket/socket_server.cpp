@@ -23,9 +23,9 @@ namespace {
 /// Largest number of new clients that one call accepts, so that the clients that are already connected do not
 /// wait too long.
 constexpr int most_accepts = 4;
-/// If `max_clients` clients are connected, the server can disconnect a silent client to admit a new client.
-/// A client that has sent no request is silent after `first_word` [ns]. Any other client is silent after
-/// `longest_silence` [ns] without a request and without a reply.
+/// If `max_clients` clients are connected, the server can disconnect a silent client to admit a new client. A
+/// client that has sent no request counts as silent after `first_word` [ns]. Any other client counts as
+/// silent `longest_silence` [ns] after its last request or reply.
 constexpr Nanoseconds first_word = ns_per_s / 10;
 constexpr Nanoseconds longest_silence = 5 * ns_per_s;
 /// Largest number of clients of one role that are connected in addition to the permitted `max_clients`. The
@@ -34,9 +34,10 @@ constexpr std::size_t most_standing = 32;
 /// Longest time for which the lines of one client are processed in one call. Processing a line is never
 /// interrupted.
 constexpr std::chrono::microseconds longest_turn(500);
-/// If no descriptor is free, the server cannot even refuse a new client. Time until it tries again [ns].
+/// Time until the server tries to accept a client again if no descriptor was free [ns]. Without a descriptor,
+/// the server cannot even refuse a client.
 constexpr Nanoseconds accept_pause = ns_per_s / 10;
-/// A client that has not read any output for this time is disconnected [ns].
+/// Time after which a client that does not read its output is disconnected [ns].
 constexpr Nanoseconds longest_stall = 10 * ns_per_s;
 /// Longest time for which a client that has closed its sending side may wait for its replies [ns].
 constexpr Nanoseconds answer_pause = 2 * ns_per_s;
@@ -73,7 +74,7 @@ void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
     const bool reads = !writes && client.ended_at == 0 && !client.input.has_line();
     client.place = polled_.add(client.socket.get(), reads, writes);
   }
-  // After a failure there are no events.
+  // If the wait fails, there are no events, so the result is ignored.
   static_cast<void>(polled_.wait(lines_left_ ? 0 : std::max<Nanoseconds>(until - now, 0)));
   for (auto& [id, client] : clients_) {
     const net::PollSet::Events events = polled_[client.place];
@@ -115,14 +116,14 @@ void SocketServer::accept_some(const Entrance& entrance) {
     client.active_at = now_;
     client.stands = stands;
     if (handlers_.on_opened) handlers_.on_opened(last_id_, role);
-    read_from(client);  // the first line of a new client has usually arrived already
+    read_from(client);  // in most cases, the first line of a new client has already arrived
   }
 }
 
 /// Accepts a new client. If no client waits, returns an invalid descriptor. If no descriptor is free,
-/// disconnects the client that was silent for the longest time, and tries again. A read-only client cannot
-/// displace a client that may operate the rig. If no client can be disconnected, returns an invalid
-/// descriptor.
+/// disconnects the client that was silent for the longest time, and tries to accept again. A new read-only
+/// client cannot displace a client that may operate the rig. If no client can be disconnected, returns an
+/// invalid descriptor.
 Descriptor SocketServer::accept_one(const Entrance& entrance) {
   for (;;) {
     Descriptor socket = net::accept_client(entrance.listener.socket());
@@ -134,18 +135,18 @@ Descriptor SocketServer::accept_one(const Entrance& entrance) {
   }
 }
 
-/// Returns true if the client may be disconnected to make space: it has ended, or was silent for too long, or
-/// `any` is true. A client that keeps its place must stay connected, because its running sequence would lose
-/// its owner.
+/// Returns true if the server may disconnect the client to admit another one: the client has ended, or was
+/// silent for too long, or `any` is true. A client that keeps its place is not disconnected, because its
+/// running sequence would lose its owner.
 bool SocketServer::may_go(std::uint64_t id, const Client& client, bool any) const {
   if (client.ended_at != 0) return true;
   if (handlers_.keeps_place && handlers_.keeps_place(id)) return false;
   return any || now_ - client.active_at >= (client.spoke ? longest_silence : first_word);
 }
 
-/// Disconnects one client of the role to make space, if possible. The order of preference is: a client that
-/// has ended, a client without a place, a client that never sent a line, and the client that was silent for
-/// the longest time. Returns false if no client may be disconnected.
+/// Disconnects one client of the role to admit another one, if possible. The order of preference is: a client
+/// that has ended, a client without a place, a client that never sent a line, and the client that was silent
+/// for the longest time. Returns false if no client may be disconnected.
 bool SocketServer::displace_one(Role role, bool any) {
   const auto rank = [](const Client& client) {
     return std::tuple(client.ended_at == 0, !client.stands, client.spoke, client.active_at);
@@ -157,7 +158,7 @@ bool SocketServer::displace_one(Role role, bool any) {
     if (found == clients_.end() || rank(client) < rank(found->second)) found = entry;
   }
   if (found == clients_.end()) return false;
-  // An error of this call is ignored, because the server does not wait for a client that does not read.
+  // An error of send() is ignored, because the server does not wait for a client that does not read.
   const std::string line = too_many();
   [[maybe_unused]] const ssize_t sent =
       ::send(found->second.socket.get(), line.data(), line.size(), MSG_NOSIGNAL);
@@ -187,11 +188,11 @@ void SocketServer::hear(std::uint64_t id, Client& client, std::string_view line)
 
 void SocketServer::read_from(Client& client) {
   if (client.closing) return;
-  // A client such as `echo ... | socat` sends no more lines, but waits for the reply.
+  // A client such as `echo ... | socat` closes its sending side, but waits for the reply.
   if (client.input.receive(client.socket.get()) == net::LineBuffer::Received::end) client.ended_at = now_;
 }
 
-/// Processes the lines of a client until its turn ends, or until the client has not read all replies.
+/// Processes the lines of a client until the client's turn ends, or until the client has unread replies.
 void SocketServer::take_lines(std::uint64_t id, Client& client) {
   const auto began = std::chrono::steady_clock::now();
   bool too_long = false;

@@ -21,14 +21,14 @@
 
 namespace softgrip::daemon {
 
-/// The listening sockets, one per role, and their clients. Each role has its own number of places. All
-/// functions must be called from one thread.
+/// The listening sockets, one per role, and their clients. Each role has its own maximum number of clients
+/// (places). All functions must be called from one thread.
 class SocketServer {
  public:
   struct Handlers {
     std::function<void(std::uint64_t client, std::string_view line)> on_line;
     std::function<void(std::uint64_t client)> on_closed;
-    /// Returns true if a line must be processed even if its client has no place.
+    /// Returns true if a line must be processed even if its client has no place. Examples are stop and vent.
     std::function<bool(std::string_view line)> is_urgent;
     /// Called before the first line of a client is processed.
     std::function<void(std::uint64_t client, Role role)> on_opened = nullptr;
@@ -50,8 +50,8 @@ class SocketServer {
   /// Waits for events, at most until `until`. Processes a part of the lines of each client; the next call
   /// processes the remaining lines. If all places are taken, a new client gets the place of a client that was
   /// silent for too long and does not keep its place. If there is no such client, the new client may send one
-  /// line. This line is refused if it is not urgent. If a client has closed its end, its urgent lines are
-  /// still processed.
+  /// line, which is refused unless it is urgent. If a client has closed its end, its urgent lines are still
+  /// processed.
   void poll(Nanoseconds now, Nanoseconds until);
 
   /// Queues a line for a client. Returns false if the client has disconnected. Also returns false if
@@ -68,14 +68,15 @@ class SocketServer {
     std::string output;
     Nanoseconds stalled_since = 0;  // time since which the client has not read the waiting output; 0: no
                                     // output waits
-    Nanoseconds ended_at = 0;       // time at which the client ended; after it, the client sends no more
-                                    // lines; 0: the client has not ended
-    Nanoseconds active_at = 0;      // time of the last line that was sent or read, or time of the connection
-    bool spoke = false;             // true: the client has sent a line
-    bool stands = false;            // true: the client has no place
-    bool closing = false;           // true: the connection is closed after all output is sent
-    bool deaf = false;              // true: the client does not read any more; the server still processes its
-                                    // last lines
+    Nanoseconds ended_at = 0;  // time at which the server read the last line of the client; 0: the client can
+                               // still send lines
+    Nanoseconds active_at = 0;  // time of the last line that was sent to or read from the client; before the
+                                // first line: time of the connection
+    bool spoke = false;         // true: the client has sent a line
+    bool stands = false;        // true: the client was admitted without a place
+    bool closing = false;       // true: the connection is closed after all output is sent
+    bool deaf = false;  // true: the client does not read any more; the server still processes the lines that
+                        // the client sent before
     bool dead = false;
     net::PollSet::Place place;
   };
@@ -107,9 +108,9 @@ class SocketServer {
   std::map<std::uint64_t, Client> clients_;
   std::uint64_t last_id_ = 0;
   Nanoseconds now_ = 0;
-  Nanoseconds accepts_again_ = 0;  // time until which the server accepts no clients, because no descriptor is
-                                   // free
-  bool lines_left_ = false;        // true: a client has lines for the next call
+  Nanoseconds accepts_again_ = 0;  // time until which the server accepts no clients, because no descriptor
+                                   // was free
+  bool lines_left_ = false;        // true: a client has lines that the next call of poll() must process
 };
 
 }  // namespace softgrip::daemon

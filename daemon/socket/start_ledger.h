@@ -13,23 +13,23 @@ namespace softgrip::daemon {
 /// A start that was passed to the loop.
 struct KnownStart {
   std::uint32_t request = 0;
-  std::string id;            ///< id that the client gave the start; empty if it gave none
+  std::string id;            ///< id that the client gave the start; empty if the client gave no id
   std::uint64_t client = 0;  ///< connection of the client that requested the start
 };
 
-/// Stores the newest `most` starts, and the start of the running sequence.
+/// Stores the newest `most` starts, and in addition the start of the running sequence.
 class StartLedger {
  public:
   static constexpr std::size_t most = 256;
 
-  /// `running` is the request of the sequence that runs or ran last; 0 if there was none.
+  /// Adds a start. `running` is the id of the request whose sequence runs or ran last; 0 if there was none.
   void add(KnownStart start, std::uint32_t running);
-  /// Stores the id of a start that must not run, because a stop for this start arrived first. Keeps the
-  /// newest `most` ids.
+  /// Stores the id of a start that must not run, because a stop with this id arrived before the start. Keeps
+  /// the newest `most` ids.
   void forbid(std::string start_id);
 
   [[nodiscard]] bool has(std::uint32_t request) const;
-  /// Returns the client that made a request; 0 if the request is not stored.
+  /// Returns the client that made the request; 0 if the request is not stored.
   [[nodiscard]] std::uint64_t client_of(std::uint32_t request) const;
   [[nodiscard]] std::optional<std::uint32_t> request_of(std::string_view start_id) const;
   [[nodiscard]] bool is_forbidden(std::string_view start_id) const;

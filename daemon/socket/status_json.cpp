@@ -33,7 +33,8 @@ Json json_of_fault(control::FaultCode code) {
           {"remedy", info.remedy}};
 }
 
-/// Returns the latched fault, the cause of the fault if it is still present, and the remedy.
+/// Returns the latched fault and its remedy as JSON. If the cause of the fault is still present, the JSON
+/// also contains the cause.
 Json json_of_latched(const Snapshot& snapshot, const std::vector<std::string>& names) {
   Json json = json_of_fault(snapshot.first_fault.code);
   if (json.is_null()) return json;

@@ -18,7 +18,7 @@
 
 namespace softgrip::daemon {
 
-/// The objects from which a status is read. They must exist longer than this object.
+/// The objects from which a status is read. The objects must exist longer than this struct.
 struct StatusSources {
   const control::RigSettings& rig;
   const Provenance& provenance;
@@ -30,8 +30,8 @@ struct StatusSources {
   Nanoseconds origin = 0;
   const RealTimeReport* real_time = nullptr;  ///< report on the real-time settings; nullptr in virtual time
   const rig::GpioSettings* gpio = nullptr;    ///< settings of the digital lines; nullptr if the rig has none
-  const SharedState* shared = nullptr;        ///< state that the threads share; must not be nullptr if gpio
-                                              ///< is set
+  const SharedState* shared = nullptr;  ///< state that the threads share; must not be nullptr if `gpio` is
+                                        ///< set
 };
 
 /// Returns a fault as {"code", "name", "channel"}; the channel is null if the fault concerns the complete
@@ -47,9 +47,9 @@ struct StatusSources {
 /// Returns the JSON as one line. Bytes that are not valid UTF-8 are replaced.
 [[nodiscard]] std::string line_of(const nlohmann::ordered_json& json);
 
-/// Returns null if no finger is pressurised. Otherwise returns an object with `channels` (a list of `name`
-/// and `command_kpa`), `command` (the shell command that vents these channels) and `text` (one or two
-/// sentences with both).
+/// Returns null if no finger is pressurised. Otherwise returns an object with three members. `channels` is a
+/// list of `name` and `command_kpa`, `command` is the shell command that vents these channels, and `text`
+/// states both in one or two sentences.
 [[nodiscard]] nlohmann::ordered_json under_pressure_json(
     const std::vector<control::ChannelSettings>& channels, const Snapshot& snapshot);
 

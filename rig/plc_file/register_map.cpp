@@ -46,8 +46,8 @@ constexpr std::array<RegisterInfo, name_count> table{{
 constexpr std::int64_t last_address = 0xffff;
 constexpr std::int64_t most_fingers = 16;
 
-/// Returns, for example, 0.01 for the text "0.01 kPa" if `unit` is "kPa". Returns 0 if the text has another
-/// form or another unit.
+/// Returns the number of a resolution text: 0.01 for the text "0.01 kPa" if `unit` is "kPa". Returns 0 if the
+/// text has another form or another unit.
 double resolution_of(const std::string& text, std::string_view unit) {
   double value = 0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -104,8 +104,8 @@ class SettingsReader {
     settings_.recipes.push_back(std::move(recipe));
   }
 
-  /// Checks that the name of the sequence's parameter that a register sets ends with the unit of the
-  /// register.
+  /// Checks a parameter of the sequence that a register sets: the name of the parameter must end with the
+  /// unit of the register.
   static void check_parameter(MapReader& reader, std::string_view key, const std::string& name,
                               std::string_view ending) {
     if (name.empty() || name.ends_with(ending)) return;

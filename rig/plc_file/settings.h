@@ -18,8 +18,8 @@ struct KeyFacts;
 
 namespace softgrip::plc {
 
-/// A sequence and its parameters, which the PLC selects by a number in the recipe register. A register has no
-/// effect if its parameter is empty.
+/// A sequence and its parameters. The PLC selects a sequence by the number in the recipe register. A register
+/// whose parameter is empty has no effect.
 struct Recipe {
   std::uint16_t number = 0;
   std::string sequence;
@@ -31,7 +31,7 @@ struct Recipe {
 /// Action of the gateway if the PLC stops responding.
 enum class Reaction : std::uint8_t { nothing, stop, vent, release };
 
-/// The contents of the file. file_keys() describes the members.
+/// The contents of the gateway file. file_keys() describes the members.
 struct Settings {
   std::string name;
   std::string socket;
@@ -46,7 +46,8 @@ struct Settings {
   RegisterMap registers;
 };
 
-/// Returns all keys of the file. The name of a key begins with the map that contains it: "listen: port".
+/// Returns all keys of the gateway file. The name of a key begins with the map that contains it: "listen:
+/// port".
 [[nodiscard]] std::vector<document::KeyFacts> file_keys();
 /// Reads the settings from a document, and adds problems of the document to `problems`.
 [[nodiscard]] Settings read_settings(const document::Document& document, document::Problems& problems);

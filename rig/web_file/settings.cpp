@@ -53,7 +53,7 @@ void check_listen(const document::Document& document, MapReader& reader, documen
 }
 
 void check_access(MapReader& reader, const Settings& settings) {
-  // check_listen() has already reported a wrong address.
+  // If the address is wrong, check_listen() has already reported the error.
   if (!net::is_numeric(settings.address) || net::is_loopback(settings.address)) return;
   if (reader.good("without_token") && settings.without_token != Role::none) {
     reader.report("without_token", "other machines can reach this address, so each client needs a token",

@@ -36,12 +36,13 @@ struct Settings {
   std::string recordings;
 };
 
-/// Returns all keys of the file. The name of a key begins with the map that contains it: "listen: port".
+/// Returns all keys of the settings file. The name of a key begins with the map that contains it: "listen:
+/// port".
 [[nodiscard]] std::vector<document::KeyFacts> file_keys();
 /// Reads the settings from a document, and adds problems of the document to `problems`.
 [[nodiscard]] Settings read_settings(const document::Document& document, document::Problems& problems);
 /// Reads the settings from a file. Adds all problems of the file to `problems`, and returns nothing if there
-/// are any.
+/// are any problems.
 [[nodiscard]] std::optional<Settings> load_settings(const std::string& path, document::Problems& problems);
 
 }  // namespace softgrip::web

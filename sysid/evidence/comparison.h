@@ -25,8 +25,9 @@ struct Comparison {
 /// @param seed  seed of the random weights; equal seeds give equal results.
 [[nodiscard]] Comparison compare(const PairedLosses& losses, double tolerance, std::uint64_t seed);
 
-/// Returns true if, in at least the share limits::probability of the bootstrap samples, the loss of `better`
-/// is smaller than the other loss by more than the tolerance.
+/// Returns true if `better` has the smaller loss in at least the share limits::probability of the bootstrap
+/// samples. A bootstrap sample counts if the losses of `better` and `worse` differ by more than the
+/// tolerance.
 [[nodiscard]] bool is_better(const Comparison& comparison);
 
 }  // namespace softgrip::sysid

@@ -76,8 +76,8 @@ bool is_closed_loop(const std::vector<double>& command, const std::vector<double
   const Eigen::VectorXd target = u.tail(rows);
   const double own = squares_left(columns.leftCols(order), target), both = squares_left(columns, target);
   const auto free = static_cast<double>(rows - 2 * order);
-  // If past values of the command predict it up to rounding errors, no prediction error remains that the
-  // readings could reduce.
+  // Past values of the command can predict the command up to rounding errors. The readings cannot reduce
+  // these rounding errors.
   if (!(own > 1e-12 * static_cast<double>(rows)) || !(both > 0)) return false;
   const double f = (own - both) / static_cast<double>(order) / (both / free);
   return f > f_quantile(limits::strict_probability, static_cast<double>(order), free);

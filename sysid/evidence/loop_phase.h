@@ -1,5 +1,5 @@
 #pragma once
-// Detects valve stiction in a closed loop without a simulation.
+// Detects valve stiction in a closed loop from the phase between command and reading.
 //
 // In a closed loop, the command depends on the readings and their noise. A simulation from the command
 // therefore gives no evidence about the valve, but the phase between command and reading does. If the valve

@@ -12,7 +12,7 @@ namespace softgrip::sysid {
 /// Operating points at which a cause must have an effect.
 enum class Appears {
   anywhere,
-  at_rest,    ///< also at zero pressure, because a shifted zero changes all readings equally
+  at_rest,    ///< all pressures, including zero, because a shifted zero changes all readings equally
   displaced,  ///< where the displacement is large, because the effect is proportional to the displacement
   held,       ///< where a pressure is held constant
   /// Where the input changes fast; the effect is proportional to the rate of the input and zero at rest.
@@ -35,7 +35,8 @@ struct OperatingPoint {
 /// the upper half of its range.
 [[nodiscard]] std::vector<bool> required_at(Appears appears, const std::vector<OperatingPoint>& conditions);
 
-/// Returns advice for the case that the data do not show a cause: a recording that would show it.
+/// Returns advice for the user if the data do not show a cause. The advice describes a recording in which the
+/// cause would have an effect.
 [[nodiscard]] std::string_view recording_for(Appears appears);
 
 }  // namespace softgrip::sysid

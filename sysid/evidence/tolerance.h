@@ -9,8 +9,8 @@
 
 namespace softgrip::sysid {
 
-/// Error reduction per row by each cause in a unit that was left out of the fit. The key is the id of the
-/// cause.
+/// Error reduction per row (residual) by each cause, in a unit that was left out of the fit. The key is the
+/// id of the cause.
 using NullGains = std::map<std::string, double, std::less<>>;
 
 /// Returns the largest expected value of a ratio. The numerator is the squared error on a further run. The

@@ -1,5 +1,6 @@
 #pragma once
-// Divides repeated records into units. A model that is fitted to the other units predicts each unit.
+// Divides repeated records into units for cross-validation. A model is fitted to all units except one, and
+// then predicts this unit.
 
 #include <cstddef>
 #include <vector>

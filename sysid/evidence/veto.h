@@ -1,5 +1,6 @@
 #pragma once
-// Defines conditions that a cause must fulfil before it is reported, however large its error reduction is.
+// Defines the conditions that a cause must fulfil to be reported. They apply to every error reduction, even
+// to a large one.
 
 #include <optional>
 #include <string_view>

@@ -14,8 +14,8 @@ namespace {
 /// single value.
 constexpr double on_its_way_share = 0.6;
 
-/// Returns the limit of the magnitude of a standard normal value. On average, one of `once_in` values exceeds
-/// it.
+/// Returns the limit that the magnitude of a standard normal value exceeds on average once in `once_in`
+/// values.
 double two_sided_limit(double once_in) {
   double lower = 0, upper = 40;
   for (int i = 0; i < 80; ++i) {

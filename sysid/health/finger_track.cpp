@@ -89,7 +89,7 @@ FingerTrack track_of(const std::string& finger, const std::vector<ScoredRun>& ru
 }
 
 std::size_t place_in_time(std::vector<FingerTrack>& tracks) {
-  // For each label: start time of its runs, and their order.
+  // Maps each label to the start time and the order of its runs.
   std::map<std::string, std::pair<std::string, std::size_t>> begins;
   std::size_t order = 0;
   for (const FingerTrack& track : tracks) {

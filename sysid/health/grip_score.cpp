@@ -174,9 +174,9 @@ Stretch longest_still(const Compared& c, Part part, double full_kpa) {
   return best;
 }
 
-/// Returns the creep that the prediction does not contain. This is the change of the residual from the first
-/// fifth to the last fifth of the longest segment with a constant command. It is positive in the direction of
-/// the motion before this segment.
+/// Returns the creep that the prediction does not contain. This creep is the change of the residual from the
+/// first fifth to the last fifth of the longest segment with a constant command. It is positive in the
+/// direction of the motion before this segment.
 double creep_of(const Compared& c, const FreeFit& fit, double full_kpa) {
   const Stretch still = longest_still(c, Part::free, full_kpa);
   const double nothing = std::numeric_limits<double>::quiet_NaN();

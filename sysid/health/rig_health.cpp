@@ -24,7 +24,7 @@ RigHealth judge_rig(std::vector<FingerRuns> fingers, const std::vector<Note>& no
       rig.shared.push_back(std::move(shared));
   }
   // A change of one finger changes the time to grip of all fingers. If a finger has an alarm, a shared change
-  // of the time to grip is therefore only its consequence.
+  // of the time to grip is therefore only a consequence of this alarm's cause.
   const bool alarm = std::any_of(tracks.begin(), tracks.end(), [](const FingerTrack& track) {
     return track.health.state == FingerState::alarm;
   });

@@ -26,8 +26,8 @@ struct SkippedRun {
   std::string run, why;
 };
 
-/// Called before each recording is read. @param index  of this recording, from 1. @param count  of all
-/// recordings to read.
+/// Callback before each recording is read. @param index  index of this recording, from 1. @param count number
+/// of recordings to read.
 using OnRecording = std::function<void(std::size_t index, std::size_t count)>;
 
 struct RunScores {

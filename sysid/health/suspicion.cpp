@@ -20,8 +20,8 @@ using sysid::Moves;
 /// the cause does not explain. Each sign that is present adds 1 to the score.
 constexpr double missing_sign = 0.25;
 constexpr double unexplained_alarm = 1 - missing_sign;
-/// Penalty of a cause that can be diagnosed only with an additional column, because recordings of grips may
-/// lack this column.
+/// Penalty of a cause that can be diagnosed only with an additional column. Recordings of grips may lack this
+/// column.
 constexpr double lacks_column = 0.05;
 /// A cause is a candidate only if its score is at most this much below the best score.
 constexpr double as_much = 0.1;

@@ -1,6 +1,7 @@
 #pragma once
-// Computes sums and ratios of parameters. The data can determine such a combination even if they do not
-// determine each of its parameters. For example, the data determine only the sum of alpha and 1/k0.
+// Computes combinations of parameters, which are sums and ratios. The data can determine a combination even
+// if they do not determine each of its parameters. For example, the data determine only the sum of alpha and
+// 1/k0.
 
 #include <functional>
 #include <string>

@@ -10,8 +10,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A parameter is identifiable if half the width of its interval is at most this share of its value or of its
-/// typical change.
+/// A parameter is identifiable if half the width of its interval is at most this share of the parameter's
+/// value or typical change.
 constexpr double narrow_share = 0.5;
 
 Estimate estimate_of(const FittedPoint& fit, std::size_t index) {

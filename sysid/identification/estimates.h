@@ -8,7 +8,7 @@
 
 namespace softgrip::sysid {
 
-/// The minimum of a fit, and the uncertainty of the parameters there.
+/// The minimum of a fit, and the uncertainty of the parameters at this minimum.
 struct FittedPoint {
   const Residuals& residuals;
   const std::vector<double>& z;

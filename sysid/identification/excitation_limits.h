@@ -9,8 +9,8 @@
 
 namespace softgrip::sysid {
 
-/// Returns one sentence for each kind of motion that no log contains. The sentence names the fitted
-/// parameters that cannot be determined without this motion.
+/// Returns one sentence for each type of motion that no log contains. The sentence names the fitted
+/// parameters that cannot be determined without this type of motion.
 [[nodiscard]] std::vector<std::string> excitation_limits(const std::vector<Log>& logs,
                                                          const std::vector<Estimate>& parameters);
 

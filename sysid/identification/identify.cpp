@@ -142,8 +142,9 @@ class Run {
   Identification result_;
 };
 
-/// Returns the model with another exponent and a hysteresis loop of about the same size. For this, the
-/// parameters gamma and eta are scaled, because they multiply the exponentiated hysteretic state h^n.
+/// Returns the model with the exponent `exponent` and a hysteresis loop of about the same size as before. For
+/// this, the parameters gamma and eta are scaled, because they multiply the exponentiated hysteretic state
+/// h^n.
 model::Model with_exponent(model::Model model, int exponent) {
   const auto position = model::position_of<model::BoucWen>(model);
   if (!position) return model;
@@ -199,8 +200,8 @@ void add_warnings(Identification& result) {
 }  // namespace
 
 MultiStart multistart_of(std::vector<double> rmse_mm) {
-  // A search counts as successful if its RMSE exceeds the smallest RMSE of all searches by at most this
-  // share.
+  // A search counts as successful if its RMSE exceeds the smallest RMSE of all searches by at most this share
+  // of the smallest RMSE.
   constexpr double reached_share = 1e-3;
   const double lowest = *std::min_element(rmse_mm.begin(), rmse_mm.end());
   const auto reached = std::count_if(rmse_mm.begin(), rmse_mm.end(), [&](double one_mm) {

@@ -21,7 +21,8 @@ namespace softgrip::sysid {
 
 /// A value that is estimated or fixed, with its interval.
 struct Estimate {
-  /// Name of the value: "kelvin_voigt.k1_kpa_per_mm", "tp1: offset_mm", "instantaneous_gain_mm_per_kpa".
+  /// Name of the value, such as "kelvin_voigt.k1_kpa_per_mm", "tp1: offset_mm" or
+  /// "instantaneous_gain_mm_per_kpa".
   std::string name;
   std::string unit;
   std::string formula;  ///< formula of a combination of parameters; empty for a single parameter
@@ -30,7 +31,7 @@ struct Estimate {
   std::optional<Interval> ci95;
   std::optional<Interval> profile95;  ///< 95 % interval by profile likelihood; empty if it was not requested
   bool free = false;
-  /// True: half the width of the interval is at most half the value or half a typical change.
+  /// True: half the width of the interval is at most half of the value or half of the value's typical change.
   bool identifiable = false;
   std::string note;  ///< reason why the interval is missing; empty if there is an interval
 };
@@ -42,39 +43,42 @@ struct MultiStart {
   double share_at_best = 0;
   std::vector<double> rmse_mm;  ///< for each start point, the RMSE at the end of its search
 };
-/// Returns the results of searches with these RMSEs [mm], at least one.
+/// Returns the statistics of searches from several start points. `rmse_mm` contains the RMSE at the end of
+/// each search; there must be at least one.
 [[nodiscard]] MultiStart multistart_of(std::vector<double> rmse_mm);
 
 struct IdentifyOptions {
   std::vector<std::string> fixed;  ///< paths of the parameters that keep the value of the start model
   /// Paths of the parameters that are fitted; empty: all parameters that are not fixed.
   std::vector<std::string> free;
-  /// Number of start points: the given model, and random points around it and at the scale of the data.
+  /// Number of start points. They are the given model, random points around the given model, and random
+  /// points at the scale of the data.
   std::size_t starts = 20;
   std::vector<model::Model> start_points;  ///< models that are used as start points in place of random points
   std::uint64_t seed = 1;
   unsigned threads = 0;  ///< number of threads; 0: one per core
   bool robust = false;   ///< true: use Huber's loss, which is insensitive to outliers
   bool profile = false;  ///< true: also compute intervals by profile likelihood
-  /// Share of the samples of each log that is fitted, from the start of the log. The model then predicts the
-  /// other samples, and their error is the held-out error.
+  /// Share of the samples of each log that is fitted, counted from the start of the log. The model predicts
+  /// the remaining samples, and the error of this prediction is the held-out error.
   double fit_share = 1;
   std::vector<int> exponents;  ///< Bouc-Wen exponents that are tried; empty: the exponent of the start model
   RecordOptions record;
   ShowProgress progress;
 };
 
-/// Results of the choice of a model structure. The structure is chosen if the caller specifies no structure.
+/// Results of the choice of a model structure. A structure is chosen if the caller does not specify one.
 struct StructureEvidence {
-  /// A structure that was fitted so that it can be compared with other structures.
+  /// A model structure that was compared with other structures.
   struct Candidate {
     std::string structure;  ///< name of the structure: "bouc_wen" or "prandtl_ishlinskii"
     std::string description;
-    double rmse_mm = 0;          ///< RMSE of the readings to which the structure was fitted
+    double rmse_mm = 0;          ///< RMSE on the readings to which the structure was fitted
     double heldout_rmse_mm = 0;  ///< RMSE of held-out blocks, each predicted by a fit without this block
     bool chosen = false;
   };
-  /// The chosen structure with one component removed, fitted and evaluated like a candidate.
+  /// Result for the chosen structure after one component was removed. The reduced structure was fitted and
+  /// evaluated like a candidate.
   struct Ablation {
     std::string without;
     double rmse_mm = 0;
@@ -91,7 +95,7 @@ struct StructureEvidence {
   std::vector<Ablation> ablation;
   double ridge = 0;
   std::size_t blocks = 0;
-  /// Present if the pressure was measured and the input of the model is the command.
+  /// Valve model; set if the pressure was measured and the input of the model is the command.
   std::optional<Valve> valve;
 };
 
@@ -110,7 +114,7 @@ struct Identification {
   std::vector<Estimate> starts;  ///< estimated offsets of the readings and estimated initial states
   std::vector<LooseDirection> loose;
   NoiseModel noise;          ///< autoregressive model of the residuals
-  double fast_noise_mm = 0;  ///< noise between consecutive readings, the largest value of all logs
+  double fast_noise_mm = 0;  ///< noise between consecutive readings; the largest value of all logs
   MultiStart multistart;
   double rmse_mm = 0;  ///< RMSE of all fitted samples
   /// Width of Huber's loss; 0: the loss is the squared error.
@@ -121,7 +125,7 @@ struct Identification {
   bool converged = false;
   std::vector<std::string> warnings;
   double wall_s = 0;
-  /// Present if the structure was chosen during the identification.
+  /// Results of the choice of the structure; set if the structure was chosen during the identification.
   std::optional<StructureEvidence> structure;
 };
 

@@ -25,7 +25,7 @@ namespace softgrip::sysid {
 /// Adds the figures of one log to a page.
 void add_log_figures(Page& page, const Record& record, const Score& score);
 
-/// Returns an array with one element per log.
+/// Returns the logs as an array for the JSON files, with one element per log.
 [[nodiscard]] result::Value logs_value(const std::vector<Log>& logs);
 
 /// Returns the keys drive, rmse_mm, rmse_percent_of_span and the keys of the other scores. The value of each

@@ -20,14 +20,15 @@ class Profile {
     const double white = u.naive(i, i);
     const double inflation = white > 0 ? std::max(1.0, u.covariance(i, i) / white) : 1;
     step_ = std::sqrt(std::max(u.covariance(i, i), 1e-12));
-    // The cost is half the sum of squares, so the threshold is half of sigma^2 q^2. In place of the normal
-    // quantile, q is the quantile of Student's t distribution.
+    // The cost is half the sum of squares, so the threshold is half of sigma^2 q^2. Here, sigma is the
+    // standard deviation of the noise, and q is the quantile of Student's t distribution instead of the
+    // normal quantile.
     allowed_ = 0.5 * u.noise.deviation_mm * u.noise.deviation_mm * u.quantile * u.quantile * inflation;
     at_minimum_ = cost_at(z, z[index]).cost;
   }
 
   /// Returns the value of the parameter at which the cost exceeds its minimum by the threshold. If the cost
-  /// stays below this limit up to the bound of the parameter, returns the bound.
+  /// does not reach the threshold within the bound of the parameter, returns the bound.
   [[nodiscard]] double edge(double direction) const {
     const FreeParameter& p = residuals_.space().free()[index_];
     const double bound = direction < 0 ? p.lower_z() : p.upper_z();

@@ -20,9 +20,9 @@ class Drawer {
   Drawer(const FitSpace& space, const std::vector<Record>& records, std::uint64_t seed)
       : space_(space), scale_(campaign_size(records)), time_unit_s_(time_unit_s(records)), random_(seed) {}
 
-  /// Draws a random point around `given`. A positive value typically changes by a factor of about two.
-  /// Another value typically changes by the larger of two amounts: 70 % of the value, or 35 % of its scale in
-  /// the fit.
+  /// Draws a random point around `given`. A positive value typically changes by a factor of about two. A
+  /// value that may be negative typically changes by the larger of two amounts: 70 % of the value, or 35 % of
+  /// its scale in the fit.
   FitPoint around(const FitPoint& given) {
     std::vector<double> z = space_.z(given);
     for (std::size_t i = 0; i < z.size(); ++i) {
@@ -35,8 +35,8 @@ class Drawer {
     return valid(space_.point(z), given);
   }
 
-  /// Draws a random point at the scale of the data. This determines the parameters of Bouc-Wen, Kelvin-Voigt,
-  /// delay and lag; the parameters of other blocks are drawn as in around().
+  /// Draws a random point at the scale of the data. The scale determines the parameters of Bouc-Wen,
+  /// Kelvin-Voigt, delay and lag. The parameters of other blocks are drawn as in around().
   FitPoint from_scale(const FitPoint& given) {
     FitPoint point = around(given);
     const double gain = scale_.span_mm / scale_.largest_kpa;
@@ -66,8 +66,8 @@ class Drawer {
   }
   double between(double lower, double upper) { return std::exp(uniform(std::log(lower), std::log(upper))); }
 
-  /// Draws time constants up to half the length of the longest log. They rise or fall from branch to branch,
-  /// as the time constants of the given model do.
+  /// Draws time constants of creep branches, up to half the length of the longest log. If the time constants
+  /// of the given model increase from branch to branch, the drawn ones increase too; otherwise they decrease.
   void branches(double gain, std::vector<double>& v) {
     const std::size_t count = (v.size() - 1) / 2;
     std::vector<double> time_constants;
@@ -110,7 +110,7 @@ std::vector<FitPoint> draw_starts(const FitSpace& space, const FitPoint& given,
   std::vector<FitPoint> starts{given};
   for (std::size_t i = 1; i < count; ++i) {
     // Every start point has its own seed, so that the first 10 of 20 start points equal the start points of a
-    // search with 10.
+    // search with 10 start points.
     std::seed_seq sequence{seed, static_cast<std::uint64_t>(i)};
     std::vector<std::uint64_t> derived(1);
     sequence.generate(derived.begin(), derived.end());
@@ -135,7 +135,8 @@ model::Model base_model(const std::vector<Record>& records, std::size_t branches
   model = model::with_block(std::move(model),
                             {model::block_type<model::BoucWen>(),
                              {0.6 * gain, 0.3 * gain, saturation_per_kpa, saturation_per_kpa, 1}});
-  // k0 is rigid, so alpha alone is the instantaneous gain. The data determine only the sum alpha + 1/k0.
+  // k0 is practically rigid, so alpha alone is the instantaneous gain. The data determine only the sum alpha
+  // + 1/k0.
   std::vector<double> creep{1e9};
   const double slowest = std::max(scale.longest_s / 4, 1.0);
   for (std::size_t b = 0; b < branches; ++b) {

@@ -27,7 +27,7 @@ class CorrelatedNoise {
   CorrelatedNoise(const Jacobian& jacobian, const std::vector<std::size_t>& rows)
       : jacobian_(jacobian), rows_(rows) {}
 
-  /// Returns the product J' C J.
+  /// Returns the product J' C J of the Jacobian J and the noise covariance C.
   [[nodiscard]] MatrixXd product(const NoiseModel& noise) const {
     MatrixXd sum = MatrixXd::Zero(jacobian_.cols(), jacobian_.cols());
     for_each_record([&](Index first, Index count) {
@@ -37,8 +37,9 @@ class CorrelatedNoise {
     return noise.innovation_mm * noise.innovation_mm * sum;
   }
 
-  /// Increases the autocovariances of the residuals by the part of the noise that the fit has absorbed. The
-  /// covariance of the residuals is not C but (I - H) C (I - H) with H = J (J'J)^-1 J'.
+  /// Increases the autocovariances of the residuals by the part of the noise that the fit has absorbed. With
+  /// the noise covariance C, the covariance of the residuals is (I - H) C (I - H), where H = J (J'J)^-1 J'
+  /// and J is the Jacobian.
   void give_back(const NoiseModel& noise, const MatrixXd& inverse, const MatrixXd& meat,
                  Autocovariance& covariance) const {
     const double s2 = noise.innovation_mm * noise.innovation_mm;
@@ -101,9 +102,9 @@ void scatter(const MatrixXd& part, const std::vector<Index>& keep, MatrixXd& who
   }
 }
 
-/// Returns the directions in which the data determine the estimate poorly. In the scale of the fit, its
-/// standard deviation in such a direction is at least 0.5. This is half a typical change, or a factor of 1.6
-/// on a logarithmic scale.
+/// Returns the directions in which the data determine the estimate poorly. In such a direction, the standard
+/// deviation of the estimate is at least 0.5 in the scale of the fit. This is half a typical change, or a
+/// factor of 1.6 on a logarithmic scale.
 std::vector<LooseDirection> loose_directions(const MatrixXd& covariance, const std::vector<Index>& keep,
                                              const FitSpace& space) {
   constexpr double loose_from = 0.5;
@@ -190,8 +191,8 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
   for (std::size_t i = 0; i < keep.size(); ++i) columns.col(static_cast<Index>(i)) = jacobian.col(keep[i]);
   const CorrelatedNoise correlated(columns, counts);
   MatrixXd meat = correlated.product(u.noise);
-  // The residuals are smaller and less correlated than the noise, because the fit has absorbed a part of the
-  // noise. The correction for this uses lags up to the order of the model plus this number.
+  // The residuals are smaller and less correlated than the noise, because the fit has absorbed part of the
+  // noise. The correction for the absorbed part uses lags up to the order of the model plus this number.
   constexpr std::size_t lags_beyond = 5;
   for (int pass = 0; pass < 2; ++pass) {
     Autocovariance whole = observed;

@@ -29,8 +29,8 @@ struct Validation {
 [[nodiscard]] Validation validate_logs(const model::Model& model, const std::vector<Log>& logs,
                                        const RecordOptions& options = {});
 
-/// Returns true if no prediction diverges and no RMSE exceeds the bound. Without a bound, every RMSE is
-/// accepted. If there is a bound, a log whose readings have no span exceeds it.
+/// Returns true if the prediction of a log does not diverge and its RMSE does not exceed the bound. Without a
+/// bound, every RMSE is accepted. With a bound, a log whose readings are all equal is not accepted.
 [[nodiscard]] bool is_acceptable(const Validation& validation, const Score& score);
 
 /// Returns the result as one sentence, such as "3 logs predicted with an RMSE of 0.26 to 0.54 mm, at most 1.9

@@ -8,7 +8,8 @@ namespace {
 struct Reason {
   std::string_view word;
   std::string_view text;
-  /// False: the user requested to leave the row out, or the row has no content; true: another reason.
+  /// True: a row that is left out for this reason counts as lost. False: the user requested to leave the row
+  /// out, or the row is empty.
   bool lost;
 };
 constexpr std::array<Reason, left_out_count> reasons{{

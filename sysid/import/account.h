@@ -27,28 +27,29 @@ inline constexpr std::size_t left_out_count = 9;
 /// Returns the identifier of a reason in the JSON output.
 [[nodiscard]] std::string_view word_of(LeftOut reason);
 
-/// The import adds a warning if the share of lost rows exceeds this value.
+/// Share of lost rows above which the import adds a warning.
 inline constexpr double warned_share = 0.05;
-/// The import refuses the file if the share of lost rows exceeds this value.
+/// Share of lost rows above which the import refuses the file.
 inline constexpr double refused_share = 0.8;
 
-/// Row counts of an imported file. If the file has two time columns, each row is counted twice, once per time
+/// Row counts of an imported file. If the file has several time columns, each row is counted once per time
 /// column.
 struct RowAccount {
   std::size_t rows = 0;  ///< number of all rows of the file
   std::size_t used = 0;  ///< number of rows that became samples of the log
-  /// Number of rows whose values were added to the sample of another row with the same time.
+  /// Number of rows that were merged with another row of the same time into one sample.
   std::size_t joined = 0;
   std::array<std::size_t, left_out_count> left_out{};
 
   void leave_out(LeftOut reason, std::size_t count = 1) {
     left_out[static_cast<std::size_t>(reason)] += count;
   }
-  /// Returns true if the numbers of used, joined and left-out rows add up to the number of all rows.
+  /// Returns true if the numbers of used rows, rows merged with another row, and left-out rows add up to the
+  /// number of all rows.
   [[nodiscard]] bool balanced() const;
   /// Returns the number of rows that were left out for a reason that the user did not request.
   [[nodiscard]] std::size_t lost() const;
-  /// Returns lost() divided by the number of rows that the user did not exclude.
+  /// Returns lost() divided by the number of rows. Empty rows and rows that the user excluded do not count.
   [[nodiscard]] double lost_share() const;
   /// Returns the counts as a sentence, for example "1500 rows: 600 used, 900 left out (900 at the time of the
   /// row before)".

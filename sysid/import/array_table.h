@@ -12,10 +12,11 @@
 
 namespace softgrip::sysid {
 
-/// Error message for an array that is refused because the file would then exceed most_values.
+/// Error message for an array that is refused because the file would have more than most_values values with
+/// this array.
 inline constexpr const char* too_large = "with this array, the file has more than 134217728 values";
 
-/// Collects the arrays of a file. The table contains the arrays that have the most frequent length.
+/// Collects the arrays of a file. The table contains only the arrays of one length, the most frequent length.
 class ArrayCollector {
  public:
   explicit ArrayCollector(std::string file) : file_(std::move(file)) {}
@@ -29,7 +30,8 @@ class ArrayCollector {
   void note(std::string what) { notes_.push_back(std::move(what)); }
   /// Adds a note that the array `name` is skipped. `what` states the reason.
   void skip(const std::string& name, const std::string& what);
-  /// Returns true if an array of this size still fits within most_values. Call it before the values are read.
+  /// Returns true if the file has at most most_values values after an array of this size is added. Call this
+  /// function before the values are read.
   [[nodiscard]] bool has_room(std::size_t rows, std::size_t columns) const {
     return columns == 0 || rows <= (most_values - values_) / columns;
   }

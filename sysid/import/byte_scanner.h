@@ -7,8 +7,8 @@
 
 namespace softgrip::sysid {
 
-/// Reads little-endian values one after the other. If a read would pass the end of the data, it returns 0 or
-/// an empty text, and good() returns false from then on.
+/// Reads little-endian values one after the other. If a read would pass the end of the data, the read
+/// function returns 0 or an empty text. From then on, good() returns false.
 class ByteScanner {
  public:
   explicit ByteScanner(std::string_view bytes) : bytes_(bytes) {}

@@ -36,7 +36,8 @@ std::optional<double> number_of(std::string_view text, CellValue& value) {
   return to_number(pointed);
 }
 
-/// Returns the index of the element of `missing` that equals the cell, or -1 if there is no such element.
+/// Returns the index of the first word in the list `missing` that equals the cell; -1 if no word equals the
+/// cell.
 int place_among(const std::vector<std::string>& missing, std::string_view text,
                 std::optional<double> number) {
   const auto found = std::find_if(missing.begin(), missing.end(), [&](const std::string& word) {

@@ -19,9 +19,9 @@ struct CellValue {
   double number = 0;            ///< value of a cell that contains a number; always finite
   Nanoseconds moment = 0;       ///< value of a cell that contains a timestamp
   bool dated = false;           ///< true: the timestamp has a date
-  bool short_clock = false;     ///< the timestamp has two fields only, such as "12:34"
-  bool surely_minutes = false;  ///< true: the two fields can only be minutes and seconds
-  /// Index of the word in `missing` that the cell contains; -1: the cell contains no such word.
+  bool short_clock = false;     ///< true: the timestamp has only two fields, such as "12:34"
+  bool surely_minutes = false;  ///< true: the timestamp has two fields that cannot be hours and minutes
+  /// Index of the word in the list `missing` that equals the cell; -1: no word equals the cell.
   int missing_word = -1;
   bool with_comma = false;  ///< true: the number has a decimal comma
   bool with_point = false;  ///< true: the number has a decimal point
@@ -29,8 +29,8 @@ struct CellValue {
 
 /// Interprets a cell. A comma followed by digits is a decimal comma. A cell with a comma and a point
 /// ("1.234,5") is not a number. A cell is a missing value if it is empty or contains NaN, NA, null, inf or a
-/// similar word. A cell with a word of `missing` (in lower case) is a missing value too; numbers in `missing`
-/// are compared by value.
+/// similar word. A cell that equals a word in the list `missing` is a missing value too. The words in this
+/// list are in lower case, and numbers are compared by value.
 [[nodiscard]] CellValue cell_value(std::string_view cell, const std::vector<std::string>& missing);
 
 /// Returns the value of a text that consists of decimal digits only; nullopt if the text contains another

@@ -12,17 +12,18 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double day_s = 86400;
-/// Largest time step across an overflow, as a multiple of the usual step of the clock. Across a larger step,
+/// Largest time step across an overflow, as a multiple of the usual step of the clock. If the step is larger,
 /// rows may be missing, so the overflow is not corrected.
 constexpr double longest_step = 3;
-/// Two clocks with different origins count as one if their difference varies by at most this share of the
-/// usual step.
+/// Two clocks with different origins count as one clock if their difference varies by at most this share of
+/// the usual time step.
 constexpr double variation_share = 0.5;
-/// Two clocks with the same origin count as one if they differ by at most this share of the usual step.
+/// Two clocks with the same origin count as one clock if they differ by at most this share of the usual time
+/// step.
 constexpr double equal_share = 0.05;
 constexpr double rising_share = 0.9;
-/// Two time columns can count as one clock only if at most this share of the rows has a time in just one of
-/// the two columns.
+/// Largest share of rows that have a time in only one of two time columns. If the share is larger, the two
+/// columns do not count as one clock.
 constexpr double apart_share = 0.01;
 
 std::vector<double> steps_of(const std::vector<double>& clock) {
@@ -56,8 +57,8 @@ Extent finite_extent(const std::vector<double>& values) {
   return extent;
 }
 
-/// Returns true if a clock that overflows after `period` explains every backward step of `clock`. @param step
-/// usual time step of the clock.
+/// Returns true if overflows with the period `period` explain all backward steps of `clock`.
+/// @param step  usual time step of the clock.
 bool explains(const std::vector<double>& clock, double period, double step) {
   const Extent extent = finite_extent(clock);
   const bool counts_from_0 = extent.lowest >= 0 && extent.highest <= period;
@@ -76,7 +77,7 @@ bool rises(const std::vector<double>& values) {
          static_cast<double>(forward) >= rising_share * static_cast<double>(steps.size());
 }
 
-/// Returns the unit of a time column; empty if it is unknown.
+/// Returns the unit of a time column; empty if the unit is unknown.
 std::string time_unit(const ForeignTable& table, const Mapping& mapping, std::size_t index) {
   const TableColumn& column = table.columns[index];
   const std::string own = column.unit.empty() ? split_unit(column.name, Quantity::time).unit : column.unit;
@@ -89,7 +90,7 @@ std::string time_unit(const ForeignTable& table, const Mapping& mapping, std::si
   return own.empty() ? epoch_unit(column) : own;
 }
 
-/// Splits a column name into words and returns them without words for time and units of time.
+/// Splits a column name into words. Returns only the words that name neither a time nor a unit of time.
 std::vector<std::string> telling_tokens(const std::string& name) {
   std::vector<std::string> tokens = tokens_of(name);
   const auto silent = [](const std::string& token) {
@@ -100,7 +101,8 @@ std::vector<std::string> telling_tokens(const std::string& name) {
 }
 
 /// Returns true if the name of a time column contains a word that identifies the role, or a word of
-/// `column_name`. @param column_name  name of a value column.
+/// `column_name`.
+/// @param column_name  name of a value column.
 bool names_its_role(const std::string& time_name, Role role, const std::string& column_name) {
   const std::vector<std::string> theirs = tokens_of(column_name);
   const std::vector<std::string> tokens = telling_tokens(time_name);

@@ -1,5 +1,5 @@
 #pragma once
-// Handles clocks that overflow, and files with more than one time column.
+// Corrects clocks that overflow, and assigns the time columns of a file that has more than one time column.
 
 #include <array>
 #include <cstddef>
@@ -20,13 +20,14 @@ struct Overflow {
 };
 
 /// Corrects the overflows of a clock: adds the period of each overflow to all later values. The period is
-/// that of a counter with 16, 24 or 32 bits, or one day. The counter may count the unit of the clock, or
-/// 1/1000 or 1/1,000,000 of this unit. If no period explains all backward steps of the clock, the clock is
-/// not changed. @param unit_s  unit of the clock [s].
+/// that of a counter with 16, 24 or 32 bits, or one day. One count of the counter is the unit of the clock,
+/// 1/1000 of this unit or 1/1,000,000 of this unit. If no period explains all backward steps of the clock,
+/// the clock is not changed.
+/// @param unit_s  unit of the clock [s].
 std::optional<Overflow> continue_overflows(std::vector<double>& clock, double unit_s);
 
 /// Returns the indices of the columns that probably contain times. Such a column contains dates, times of
-/// day, or increasing numbers under a name or unit of time.
+/// day, or increasing numbers. In the last case, the name or the unit of the column is that of a time.
 [[nodiscard]] std::vector<std::size_t> time_columns(const ForeignTable& table);
 
 /// Returns the values of a time column [s]; NaN for a missing value. Returns nullopt if the unit of the
@@ -34,13 +35,15 @@ std::optional<Overflow> continue_overflows(std::vector<double>& clock, double un
 [[nodiscard]] std::optional<std::vector<double>> seconds_of(const ForeignTable& table, const Mapping& mapping,
                                                             std::size_t column);
 
-/// Returns true if two columns show the same time: their values are equal, or they differ by a constant.
+/// Returns true if two columns contain the times of the same clock: their values are equal, or their
+/// difference is constant.
 [[nodiscard]] bool same_clock(const ForeignTable& table, const Mapping& mapping, std::size_t a,
                               std::size_t b);
 
-/// Returns the time column that belongs to each role. The names of the time columns decide (t_tip belongs to
-/// tip). If they are not conclusive, the order of the columns decides: each time column is left of its value
-/// columns. Returns nullopt if neither the names nor the order are conclusive.
+/// Returns the time column of each role. A time column belongs to the role that its name contains: "t_tip"
+/// belongs to the role of "tip". If the names do not determine the roles, the order of the columns does: each
+/// time column is left of its value columns. Returns nullopt if neither the names nor the order determine the
+/// roles.
 [[nodiscard]] std::optional<std::array<std::size_t, role_count>> times_of_roles(
     const ForeignTable& table, const Mapping& mapping, const std::vector<std::size_t>& times);
 

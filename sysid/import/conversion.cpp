@@ -127,7 +127,7 @@ class Converter {
     return samples;
   }
 
-  /// Corrects the overflows of a clock and adds a note about them.
+  /// Corrects the overflows of a clock and adds a note about this correction.
   /// @param rows  row of the table for each time.
   void continue_clock(std::vector<double>& time, double unit_s, const std::vector<std::size_t>& rows) {
     const auto overflow = continue_overflows(time, unit_s);
@@ -162,7 +162,7 @@ class Converter {
     ForeignSamples samples;
     if (!good) return samples;
     remarks_.account.rows += (clocks.size() - 1) * table_.rows();
-    // A skipped line counts once per time column. Its first count is already in the account.
+    // A skipped line counts once per time column. The account already contains the first of these counts.
     remarks_.account.leave_out(LeftOut::bad_line, (clocks.size() - 1) * (table_.rows() - rows.size()));
     leave_out_empty(*of_roles, entries);
     std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
@@ -214,8 +214,8 @@ class Converter {
     return !apart;
   }
 
-  /// Removes entries that have neither a time nor a value. They occur because a time column that ends earlier
-  /// than another one continues with empty cells.
+  /// Removes entries that have neither a time nor a value. Such entries occur if one time column ends before
+  /// another time column, because the remaining cells of the shorter column are empty.
   void leave_out_empty(const std::array<std::size_t, role_count>& of_roles, std::vector<Entry>& entries) {
     const auto empty = [&](const Entry& entry) {
       if (std::isfinite(entry.time_s)) return false;

@@ -1,5 +1,6 @@
 #pragma once
-// Converts a table into a log with a mapping.
+// Converts the table of an external file into a log. A mapping assigns the columns of the table to the
+// columns of the log.
 
 #include <optional>
 #include <string>
@@ -21,7 +22,7 @@ struct ImportedLog {
   RowAccount account;
 };
 
-/// Returns the number that a word of `missing` contains, or nullopt if the word is not a number.
+/// Returns the value of a word for a missing value, such as 999; nullopt if the word is not a number.
 [[nodiscard]] std::optional<double> missing_number(const std::string& word);
 
 /// Converts the table into a log by the rules of samples.h. Each row of the table is either in the log or

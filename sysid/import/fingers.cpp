@@ -34,14 +34,14 @@ bool fits_a_displacement(const TableColumn& column) {
   return fitness_for(column, Role::displacement) > 0;
 }
 
-/// Returns the words that distinguish column names of one kind. Two names differ in such a word and are equal
-/// in all other words.
+/// Returns the words in which two column names differ while all other words of the two names are equal.
+/// Considers only the columns for which `of_kind` returns true.
 template <class OfKind>
 std::set<std::string> words_apart(const ForeignTable& table, OfKind of_kind) {
   std::map<std::string, std::set<std::string>> by_pattern;
   for (const TableColumn& column : table.columns) {
     if (!of_kind(column)) continue;
-    // Remove the unit before the split into words, because 'A' may be a finger or the unit ampere.
+    // Remove the unit before the name is split into words, because 'A' may be a finger or the unit ampere.
     const std::vector<std::string> tokens = tokens_of(split_unit(column.name).name);
     for (std::size_t k = 0; k < tokens.size(); ++k) {
       if (is_role_word(tokens[k])) continue;

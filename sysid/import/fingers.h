@@ -13,7 +13,7 @@ namespace softgrip::sysid {
 /// Splits a name into lower-case words and numbers: "P1_left (kPa)" gives p, 1, left, kpa.
 [[nodiscard]] std::vector<std::string> tokens_of(std::string_view name);
 
-/// Largest number of fingers of a rig. A column with more different cells contains readings, not names of
+/// Largest number of fingers of a rig. A column with more different values contains readings, not names of
 /// fingers.
 inline constexpr std::size_t most_fingers = 16;
 

@@ -49,7 +49,8 @@ bool is_matlab_4(std::string_view bytes) {
          bytes[header] > ' ';
 }
 
-/// Returns the name of the file format if it is known but not supported; empty for all other data.
+/// Returns the name of the file format if the import recognises the format but cannot read it; empty for all
+/// other data.
 std::string_view known_but_unread(std::string_view bytes) {
   constexpr std::string_view encrypted{"E\0n\0c\0r\0y\0p\0t\0e\0d\0P\0a\0c\0k\0a\0g\0e", 31};
   if (bytes.starts_with("\xd0\xcf\x11\xe0"))
@@ -71,8 +72,9 @@ std::optional<ForeignTable> read_text(const std::string& path, std::string_view 
                        : parse_text_table(path, bytes, options, problems);
 }
 
-/// Reads the file in the format that its first bytes indicate. @param opened  path that leads to the file
-/// from which `bytes` were read, even if the file at `path` has been replaced since.
+/// Reads the file in the format that its first bytes indicate.
+/// @param opened  path that leads to the file from which `bytes` were read, even if the file at `path` has
+/// been replaced since.
 std::optional<ForeignTable> read_bytes(const std::string& path, const std::string& opened,
                                        std::string_view bytes, const TableOptions& options,
                                        document::Problems& problems) {
@@ -108,7 +110,7 @@ tl::expected<std::string, std::string> gunzipped(std::string_view bytes, std::si
   constexpr int gzip_window = 15 + 16;
   if (inflateInit2(&stream, gzip_window) != Z_OK)
     return tl::unexpected(std::string("zlib cannot be initialised"));
-  // zlib's interface reads through a pointer that is not const.
+  // zlib only reads these bytes, although its interface requires a pointer that is not const.
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
   stream.avail_in = static_cast<uInt>(bytes.size());
   std::string text;

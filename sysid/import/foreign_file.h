@@ -20,7 +20,8 @@ namespace softgrip::sysid {
                                                             const TableOptions& options,
                                                             document::Problems& problems, bool& unreadable);
 
-/// Returns the decompressed gzip data if they have at most `bound` bytes. The error is a sentence.
+/// Returns the decompressed gzip data if they have at most `bound` bytes. On failure, returns a sentence that
+/// describes the error.
 [[nodiscard]] tl::expected<std::string, std::string> gunzipped(std::string_view bytes, std::size_t bound);
 
 }  // namespace softgrip::sysid

@@ -72,8 +72,8 @@ std::string unit_of(hid_t dataset) {
   return {};
 }
 
-/// Returns true for the MATLAB classes of numbers. MATLAB stores other classes, such as texts, as numbers
-/// too; for them, the result is false.
+/// Returns true for the MATLAB classes of numbers. Returns false for other classes, such as texts, although
+/// MATLAB stores them as numbers too.
 bool is_matlab_number(const std::string& kind) {
   return kind.empty() || kind == "double" || kind == "single" || kind == "logical" ||
          kind.find("int") != std::string::npos;
@@ -116,15 +116,16 @@ void collect_members(hid_t dataset, hid_t type, const std::string& name, std::si
   }
 }
 
-/// Returns the number of bytes that libhdf5 has to decompress before it can read one value of a dataset.
-/// Returns 0 for a dataset without chunks.
+/// Returns the number of bytes that libhdf5 has to decompress to read one value of a dataset. Returns 0 for a
+/// dataset without chunks.
 std::size_t chunk_bytes(hid_t dataset, hid_t type) {
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
   std::array<hsize_t, 2> chunk{1, 1};
   if (H5Pget_layout(creation.get()) != H5D_CHUNKED || H5Pget_chunk(creation.get(), 2, chunk.data()) < 0)
     return 0;
-  // libhdf5 stores both sizes in 32 bits, so their product does not overflow 64 bits. The size in bytes is
-  // computed only for small products, so it does not overflow.
+  // libhdf5 stores both dimensions of a chunk in 32 bits, so their product does not overflow 64 bits. The
+  // size in bytes is computed only for a product up to most_chunk_bytes, so the size does not overflow
+  // either.
   const hsize_t values = chunk[0] * chunk[1];
   return values > most_chunk_bytes ? values : values * H5Tget_size(type);
 }
@@ -174,8 +175,8 @@ std::string foreign_storage(hid_t dataset) {
 struct Walk {
   ArrayCollector& arrays;
   char separator = '/';
-  hid_t access = H5P_DEFAULT;  ///< properties with which libhdf5 accesses links
-  std::string refused{};       ///< reason why the file is refused; empty: it is not refused
+  hid_t access = H5P_DEFAULT;  ///< HDF5 property list with which libhdf5 follows links
+  std::string refused{};       ///< reason why the file is refused; empty: the file is not refused
   int objects = 0;
 };
 
@@ -228,7 +229,7 @@ herr_t refuse_external_link(const char* /*parent_file*/, const char* /*parent_gr
 
 std::optional<ForeignTable> read_hdf5_table(const std::string& path, const std::string& opened, bool matlab,
                                             document::Problems& problems) {
-  // libhdf5 must not print errors, because the problem below reports them.
+  // Prevents libhdf5 from printing errors, because this function reports them as problems.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const Handle file(H5Fopen(opened.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file) {

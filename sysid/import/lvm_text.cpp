@@ -26,7 +26,7 @@ std::vector<std::string> cells_of(std::string_view line, char separator) {
   return texts;
 }
 
-/// Lines "KEY value value ..." of a header: the values of each key.
+/// Values of each key in a header, from lines of the form "KEY value value ...".
 using Header = std::map<std::string, std::vector<std::string>>;
 
 class LvmReader {
@@ -76,7 +76,7 @@ class LvmReader {
   }
 
   /// Returns the values that the header contains for a key, one per channel. If each channel has its own X
-  /// column, the header line also has an empty cell per X column; these cells are skipped.
+  /// column, the header line also has an empty cell for each X column. These empty cells are skipped.
   [[nodiscard]] std::vector<std::string> of_channels(const Header& header, const std::string& key) const {
     const auto found = header.find(key);
     if (found == header.end()) return {};
@@ -103,8 +103,8 @@ class LvmReader {
     return starts;
   }
 
-  /// If the channels share one X column, checks that they have equal X0, Delta_X and start times, because all
-  /// of them get the times of the first channel.
+  /// If the channels share one X column, checks that they have equal X0, Delta_X and start times, because the
+  /// times of the first channel are used for all channels.
   bool has_one_clock(const Header& section, std::size_t line) {
     if (x_columns_ == "multi") return true;
     for (const char* const key : {"Delta_X", "X0"}) {
@@ -193,7 +193,7 @@ class LvmReader {
     place(section, begin, delta);
   }
 
-  /// Shifts the X values of a section if they start at or below the last X value of the section before. The
+  /// Shifts the X values of a section if they start at or below the last X value of the previous section. The
   /// shifted section begins at the time in its header. If this time is missing or too early, the section
   /// begins one step after the last X value.
   void place(const Header& section, std::size_t begin, double delta) {
@@ -242,8 +242,8 @@ class LvmReader {
 
   void add_row(std::string_view line, std::size_t number_of_line, double counted_x) {
     ++table_.account.rows;
-    // Only the last line of a file may have too few cells, because the recording may have been interrupted
-    // there.
+    // Only the last line of a file may have too few cells, because an interrupted recording can end within a
+    // line.
     if (short_line_ != 0 && !options_.skip_bad_lines) {
       refuse(short_line_, "this line has too few cells; to leave out such lines, use --skip-bad-lines");
       return;

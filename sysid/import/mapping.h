@@ -15,7 +15,7 @@
 
 namespace softgrip::sysid {
 
-/// Quantity of a column of a log.
+/// Role of a column: the quantity in the log to which the column supplies the values.
 enum class Role : std::uint8_t { time, command, pressure, displacement, temperature, supply };
 inline constexpr std::size_t role_count = 6;
 
@@ -24,7 +24,8 @@ struct RoleSpec {
   Role role;
   std::string_view word;  ///< name of the role in options and mapping files
   Quantity quantity;
-  std::string_view unit;  ///< unit in the log, as written in options; a displacement can be in deg instead
+  /// Unit in the log, as written in options; for displacement, deg is possible instead of mm.
+  std::string_view unit;
   std::vector<double> Log::*values;
 };
 inline constexpr std::array<RoleSpec, role_count> roles{{
@@ -39,18 +40,20 @@ inline constexpr std::array<RoleSpec, role_count> roles{{
   return roles[static_cast<std::size_t>(role)];
 }
 
-/// Source of the values of a role. The value in the log is (value - zero), converted from `unit` to the unit
-/// of the log or multiplied by `scale`.
+/// Source of the values of a role. The value in the log is (value in the column - zero), converted from
+/// `unit` to the unit of the log or multiplied by `scale`.
 struct ColumnMapping {
-  /// Names or numbers (from 1) of the columns; empty: the file does not have the role. Several columns are
-  /// averaged. If there are several time columns, each applies to its own values (clock.h).
+  /// Names of the columns, or their numbers counted from 1; empty: no column has the role. Several columns
+  /// are averaged. Several time columns are not averaged: each time column applies to its own value columns
+  /// (times_of_roles() in clock.h).
   std::vector<std::string> columns;
   std::string unit;  ///< unit of the column; empty: the unit that the header of the column states
-  /// Factor from the unit of the column to the unit of the log; if set, it replaces the conversion of `unit`.
-  /// If `unit` is an angle, a displacement times `scale` is in this unit.
+  /// Factor that converts a value of the column to the unit of the log. If it is set, it replaces the
+  /// conversion of `unit`. If `unit` is a unit of angle, the product of displacement and `scale` is in this
+  /// unit.
   std::optional<double> scale;
   std::optional<double> zero;  ///< value that is subtracted before the conversion, in the unit of the column
-  bool zero_first = false;     ///< true: the first value is subtracted
+  bool zero_first = false;     ///< true: the first value of the column is subtracted from all its values
 
   [[nodiscard]] bool given() const noexcept { return !columns.empty(); }
   bool operator==(const ColumnMapping&) const = default;

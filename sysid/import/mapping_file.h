@@ -1,6 +1,6 @@
 #pragma once
-// Writes and reads a mapping as YAML. Each imported log gets such a file, and `softgrip import --map` reads
-// it.
+// Writes and reads a mapping as YAML. Each imported log gets such a mapping file, and `softgrip import --map`
+// reads this file.
 
 #include <optional>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// Data about the imported file. The mapping file contains them for documentation only.
+/// Data about the imported file. They are written to the mapping file for documentation only.
 struct ImportSource {
   std::string file;
   std::string sha256;
@@ -22,8 +22,8 @@ struct ImportSource {
 [[nodiscard]] std::string mapping_yaml(const Mapping& mapping, const ImportSource& source,
                                        const std::string& software, const std::vector<std::string>& remarks);
 
-/// Parses a mapping. Adds all problems to `problems`, and returns nullopt if there is a problem. `file` names
-/// the text in messages.
+/// Parses a mapping. Adds all problems to `problems`, and returns nullopt if there is a problem. `file` is
+/// the name of the text in messages.
 [[nodiscard]] std::optional<Mapping> parse_mapping(const std::string& file, const std::string& text,
                                                    document::Problems& problems);
 /// Reads and parses a mapping file. A problem is added if the file cannot be read.

@@ -24,7 +24,7 @@ class ElementSource {
   ElementSource(std::string_view bytes, bool compressed, std::size_t& budget)
       : bytes_(bytes), compressed_(compressed), budget_(budget) {
     if (!compressed_) return;
-    // The interface of zlib reads through a pointer that is not const.
+    // zlib only reads these bytes, although its interface requires a pointer that is not const.
     stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
     stream_.avail_in = static_cast<uInt>(bytes.size());
     good_ = inflateInit(&stream_) == Z_OK;
@@ -37,8 +37,8 @@ class ElementSource {
     if (compressed_) inflateEnd(&stream_);
   }
 
-  /// Reads `count` bytes to `to`. Returns false at the end of the element, or if `budget_` bytes have been
-  /// read.
+  /// Reads `count` bytes and stores them at `to`. Returns false at the end of the element, or if the budget
+  /// of `budget_` bytes is exhausted.
   bool read(char* to, std::size_t count) {
     if (count > budget_) count = budget_ = 0;
     budget_ -= count;

@@ -112,8 +112,8 @@ class MatCollector {
   MatCollector(mat_t* file, ArrayCollector& arrays) : file_(file), arrays_(arrays) {}
 
   /// Adds the values of an array. For a structure, an array of structures or a cell, adds the arrays that it
-  /// contains. Of other variables and too large arrays, libmatio reads only the header, because a compressed
-  /// variable of a few bytes can expand to gigabytes.
+  /// contains. libmatio reads only the header of any other variable and of an array that is too large,
+  /// because a compressed variable of a few bytes can expand to gigabytes.
   void collect(matvar_t& variable, const std::string& name, const std::string& unit, int depth) {
     const Shape shape = shape_of(variable);
     const bool nests =
@@ -152,8 +152,9 @@ class MatCollector {
     }
   }
 
-  /// Adds the values of a structure that contains a signal and its name, in the form of dSPACE (Name, Data,
-  /// Unit) or of Simulink (label, values). Returns false for any other structure.
+  /// Adds the values of a structure that contains a signal and its name. dSPACE writes such structures with
+  /// the fields Name, Data and Unit, and Simulink with label and values. Returns false for any other
+  /// structure.
   bool named_signal(matvar_t& variable, const std::string& here, std::size_t index, int depth) {
     constexpr std::array<std::pair<const char*, const char*>, 2> kinds{
         {{"Name", "Data"}, {"label", "values"}}};
@@ -177,8 +178,8 @@ class MatCollector {
 
 std::optional<ForeignTable> read_mat_table(const std::string& path, const std::string& opened,
                                            document::Problems& problems) {
-  // libmatio must not print errors, because the problem below reports them. The parameter `message` is const
-  // on Debian 13 only.
+  // Prevents libmatio from printing errors, because this function reports them as problems. The parameter
+  // `message` has the type `auto*`, because only the libmatio of Debian 13 declares it as const.
   Mat_LogInitFunc("softgrip", [](int /*level*/, auto* /*message*/) {});
   const MatFile file{Mat_Open(opened.c_str(), MAT_ACC_RDONLY), Mat_Close};
   if (!file) {

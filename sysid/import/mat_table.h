@@ -12,9 +12,10 @@ namespace softgrip::sysid {
 
 /// Reads variables with real numbers. Fields of structures are named "name.field", elements of arrays of
 /// structures "name(2).field", and cells "name{2}". A structure with Name and Data (dSPACE) or with label and
-/// values (Simulink) becomes a column of that name. Complex numbers are skipped. Objects (timetable,
-/// timeseries, table, duration) are skipped too, because only MATLAB can read them. A note names all skipped
-/// variables. `path` names the file in messages; libmatio opens `opened`.
+/// values (Simulink) becomes a column with the name that the structure states. Complex numbers are skipped.
+/// Objects (timetable, timeseries, table, duration) are skipped too, because only MATLAB can read them. A
+/// note names all skipped variables. `path` is the name of the file in messages; libmatio opens the path
+/// `opened`.
 [[nodiscard]] std::optional<ForeignTable> read_mat_table(const std::string& path, const std::string& opened,
                                                          document::Problems& problems);
 

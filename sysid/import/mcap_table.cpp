@@ -106,8 +106,8 @@ class McapReader {
     }
   }
 
-  /// Counts a record that ends after the end of the file. If this record is a chunk, the complete records in
-  /// it are read.
+  /// Handles a record that is cut off by the end of the file. If the record is a chunk, reads the complete
+  /// records in the chunk. Otherwise counts the bytes of the record.
   void cut_off(McapOpcode kind, std::string_view bytes, std::string_view content, bool in_chunk) {
     if (kind == McapOpcode::chunk && !in_chunk) return chunk(content, false);
     if (looks_for_topics_) return;
@@ -246,7 +246,7 @@ class McapReader {
   ForeignTable table_;
   std::map<std::uint16_t, Topic> topics_;
   McapMessages read_;
-  /// Per skipped topic: encoding and number of messages.
+  /// Encoding and number of messages of each skipped topic.
   std::map<std::string, std::pair<std::string, std::size_t>> skipped_;
   std::set<std::string> arrays_;
   std::size_t rows_ = 0;

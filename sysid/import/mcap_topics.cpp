@@ -15,8 +15,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Two topics have a common clock if their offsets differ by at most this time [s]. The offset of a topic is
-/// the time in its messages minus the time of the recording.
+/// Largest difference between the offsets of two topics that have a common clock [s]. The offset of a topic
+/// is the time that a message states minus the time at which this message was recorded.
 constexpr double clock_tolerance_s = 1;
 
 /// Copies the values of a topic's column to the column of the same name in the table.
@@ -57,7 +57,7 @@ std::string signal_name(const McapTopic& topic, const std::string& key) {
   return key == "data" || key == "value" ? name : name + "." + key;
 }
 
-/// Returns the key of a time that every message of every topic contains; empty if no key does.
+/// Returns the key that contains a time in every message of every topic; empty if there is no such key.
 std::string common_time(const McapMessages& messages) {
   for (const TableColumn& column : messages.topics.front().columns) {
     const bool common =
@@ -68,8 +68,8 @@ std::string common_time(const McapMessages& messages) {
   return {};
 }
 
-/// Returns a problem if the topics have different clocks. To find this, compares the times of each topic
-/// with the times of the recording.
+/// Returns a problem if the topics have different clocks. For each topic, compares the times that its
+/// messages state with the times at which the messages were recorded.
 std::optional<MergeProblem> check_clocks(const McapMessages& messages, const TableColumn& time) {
   const std::string name = time.unit.empty() ? split_unit(time.name, Quantity::time).unit : time.unit;
   const auto unit = unit_named(name.empty() ? epoch_unit(time) : name, Quantity::time);
@@ -94,8 +94,8 @@ std::optional<MergeProblem> check_clocks(const McapMessages& messages, const Tab
       "record the times of only one clock. If the messages contain no times, log_time is used"};
 }
 
-/// Sorts the rows by time. If the times of a single topic decrease, the order is kept, and order_in_time()
-/// reports the backward step.
+/// Sorts the rows by time. If the times decrease within one topic, the rows keep their order, and
+/// order_in_time() reports the decrease.
 void sort_rows(McapMessages& messages, std::vector<double>& time) {
   for (const McapTopic& topic : messages.topics) {
     for (std::size_t i = 1; i < topic.rows.size(); ++i) {

@@ -31,7 +31,7 @@ struct McapTopic {
 /// The messages of a recording. Each message becomes a row of the table.
 struct McapMessages {
   std::vector<McapTopic> topics;
-  std::vector<std::uint64_t> log_times;  ///< for each row, the time of the recording [ns]
+  std::vector<std::uint64_t> log_times;  ///< for each row, the time at which its message was recorded [ns]
 };
 
 /// Reason why topics cannot be merged.
@@ -40,14 +40,14 @@ struct MergeProblem {
   std::string hint;
 };
 
-/// Returns true if no single topic describes a finger, but all topics together do.
+/// Returns true if no single topic contains all signals of a finger, but all topics together do contain them.
 [[nodiscard]] bool has_topics_of_signals(const McapMessages& messages);
 
 /// Combines topics that each describe a finger into one table. Columns with the same key become one column.
 void join_fingers(McapMessages& messages, ForeignTable& table);
 
-/// Merges topics that each contain one signal by the time key that all messages have; if there is none, by
-/// log_time. Returns a problem if the topics have different clocks.
+/// Merges topics that each contain one signal. The messages are ordered by the time key that all messages
+/// have, or by log_time if there is no such key. Returns a problem if the topics have different clocks.
 [[nodiscard]] std::optional<MergeProblem> merge_signals(McapMessages& messages, ForeignTable& table);
 
 }  // namespace softgrip::sysid

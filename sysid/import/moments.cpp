@@ -45,8 +45,8 @@ class Scanner {
   [[nodiscard]] char last() const { return last_; }
   [[nodiscard]] bool done() const { return left_.empty(); }
 
-  /// Reads the digits after the decimal mark of a second. @param value  receives the fraction [ns]; digits
-  /// beyond 1 ns are ignored.
+  /// Reads the digits after the decimal mark of a time in seconds.
+  /// @param value  receives the fraction [ns]; digits beyond 1 ns are ignored.
   bool fraction(Nanoseconds& value) {
     value = 0;
     Nanoseconds unit = ns_per_s;

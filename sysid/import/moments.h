@@ -8,7 +8,8 @@
 
 namespace softgrip::sysid {
 
-/// A point in time. Its origin varies, so only the difference of two such points is meaningful.
+/// A date with a time of day, or a time of day alone. The origin of the time depends on the text. Only the
+/// difference of two times with the same origin is meaningful.
 struct Moment {
   /// Time since 1970 in UTC if the text has a date, otherwise time since midnight.
   Nanoseconds time = 0;

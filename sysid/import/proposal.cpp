@@ -16,10 +16,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Words that identify a role, in lower case. They include German words, as some data loggers write them.
+/// Words that identify a role, in lower case. German words are included, because some data loggers write
+/// German column names.
 struct Words {
   Role role;
-  /// If a name contains one of these words as a part, its column has the role.
+  /// A column whose name contains one of these words as a part has the role.
   std::initializer_list<std::string_view> surely;
 };
 const std::array<Words, role_count>& words() {
@@ -73,7 +74,7 @@ bool names_role(std::string_view name, Role role) {
 
 namespace {
 
-/// Returns the unit that a column states, of any quantity.
+/// Returns the unit that a column states. The unit can belong to any quantity.
 std::string open_unit(const TableColumn& column) {
   return column.unit.empty() ? split_unit(column.name).unit : column.unit;
 }
@@ -83,7 +84,8 @@ std::string open_unit(const TableColumn& column) {
 int fitness_for(const TableColumn& column, Role role) {
   const RoleSpec& spec = spec_of(role);
   const bool time = spec.role == Role::time;
-  // A column with at most 10 % bad cells can have a role, so that these cells are reported.
+  // A column can have a role if at most 10 % of its cells are unreadable. The import then reports these
+  // cells.
   if (column.is_part_of_time) return 0;
   if (column.bad_count * 10 > column.values.size() || (column.moments > 0 && !time)) return 0;
   const std::string unit = column.unit.empty() ? split_unit(column.name, spec.quantity).unit : column.unit;
@@ -99,7 +101,7 @@ int fitness_for(const TableColumn& column, Role role) {
   const bool elsewhere = !of_quantity && !anywhere.empty() && !is_raw_unit(anywhere) && carried;
   if (elsewhere) return 0;
   if (time && column.moments > 0) return 4;
-  // A column of commanded pressure or of supply pressure must not be assigned as the measured pressure.
+  // A column of commanded pressure or of supply pressure must not be used as the measured pressure.
   const bool pressure = spec.role == Role::pressure;
   if (pressure && (names_role(bare, Role::command) || names_role(bare, Role::supply))) return 0;
   if (spec.role == Role::command && names_role(bare, Role::displacement) && !of_quantity) return 0;
@@ -235,7 +237,8 @@ void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposa
   std::vector<std::string> words;
   for (const std::size_t index : times) words.push_back(word_of(table, index));
   const auto of_roles = times_of_roles(table, proposal.mapping, times);
-  // The chosen column has the name of a time, so the order of the columns alone is no reason to leave it out.
+  // The order of the columns alone is no reason to leave out the chosen column, because its name is that of a
+  // time.
   if (!of_roles || std::find(of_roles->begin(), of_roles->end(), chosen) == of_roles->end()) {
     proposal.questions.push_back(
         {"the times of the columns " + quoted(words) + " differ",
@@ -318,7 +321,8 @@ void say_what_is_missing(const ForeignTable& table, Proposal& proposal) {
     proposal.missing.emplace_back("a displacement or a bending angle: --displacement COLUMN");
 }
 
-/// Returns some values of a column as text: from its beginning, its middle and its end.
+/// Returns the first, the middle and the last value of a column as text. Returns a phrase instead if the
+/// column contains dates or times of day.
 std::string glimpse(const TableColumn& column) {
   std::string text;
   const std::size_t rows = column.values.size();
@@ -348,7 +352,7 @@ Proposal propose(const ForeignTable& table, const Mapping& given, bool optional_
   const FingerChoice choice = choose_finger(table, given, proposal);
   const auto open = [&](Role role) { return !proposal.mapping[role].given(); };
   // Assign the command before the measured pressure. In the opposite order, the column of the command could
-  // be assigned as the measured pressure.
+  // be mistaken for the measured pressure.
   for (const Role role :
        {Role::time, Role::displacement, Role::supply, Role::command, Role::pressure, Role::temperature}) {
     const bool needed = (role == Role::time && !given.rate_hz) || role == Role::displacement ||

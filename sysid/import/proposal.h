@@ -1,5 +1,5 @@
 #pragma once
-// Proposes a mapping from the names and units of the columns. The user has to confirm the proposal.
+// Proposes a mapping, derived from the names and units of the columns. The user has to confirm the proposal.
 
 #include <string>
 #include <string_view>

@@ -103,7 +103,7 @@ class SourceResolver {
   }
 
   void find_unit(const RoleSpec& spec, const ColumnMapping& mapped, RoleSource& source) {
-    // Samples_by_times() converts the time columns one by one.
+    // If there are several time columns, samples_by_times() converts each of them separately.
     if (spec.role == Role::time && source.columns.size() > 1) return;
     if (spec.role == Role::time && !find_clock(table_.columns[source.columns.front()], mapped, source))
       return;
@@ -135,8 +135,8 @@ class SourceResolver {
     if (mapped.zero) source.offset -= source.factor * *mapped.zero;
   }
 
-  /// Determines how times with two fields are read. "12:34" can be hh:mm or mm:ss, so the unit of the column
-  /// decides.
+  /// Determines how times with two fields are read. "12:34" can be hh:mm or mm:ss, and the unit of the column
+  /// determines which of the two applies.
   bool find_clock(const TableColumn& column, const ColumnMapping& mapped, RoleSource& source) {
     if (column.short_clocks == 0) return true;
     const std::string unit = lower_case(unit_text(table_, mapped, Quantity::time));

@@ -24,19 +24,21 @@ struct RoleSource {
 /// Sources of all roles.
 struct RoleSources {
   std::array<RoleSource, role_count> of_roles;
-  std::set<std::size_t> bad_rows;  ///< rows with a bad cell; filled only if bad lines are to be skipped
+  /// Rows with a cell that cannot be read; filled only if such rows are to be skipped.
+  std::set<std::size_t> bad_rows;
   model::OutputUnit output_unit = model::OutputUnit::mm;
 
   /// Returns true if a role uses the column.
   [[nodiscard]] bool uses(std::size_t column) const;
 };
 
-/// Finds the sources of the roles by the mapping. A role without a column, an unknown column, a column with
-/// bad cells and a missing unit are problems.
+/// Returns the columns and the conversion of each role, as the mapping defines them. A role without a column,
+/// an unknown column, a column with bad cells and a missing unit are problems.
 [[nodiscard]] RoleSources resolve_sources(const ForeignTable& table, const Mapping& mapping,
                                           document::Problems& problems);
 
-/// Returns the unit of the angle if the options contain --scale and --unit displacement=deg or rad.
+/// Returns the unit of the angle if the options contain --scale and --unit displacement=deg or rad, otherwise
+/// nullopt.
 [[nodiscard]] std::optional<Unit> angle_of_scale(const RoleSpec& spec, const ColumnMapping& mapped);
 
 }  // namespace softgrip::sysid

@@ -104,7 +104,8 @@ std::string about_repeats(const std::vector<double>& time_s, std::size_t repeate
   if (steps.empty())
     return "all rows have the same time. To compute the times from the row numbers, use --rate-hz R instead "
            "of --time";
-  // The first and the last time stamp may have fewer rows than the others, so they are not used for the rate.
+  // The first and the last time stamp may have fewer rows than the other time stamps, so these two are not
+  // used for the rate.
   const std::size_t rows = changes.size() > 1 ? changes.back() - changes.front() : time_s.size() - 1;
   const double rows_s =
       changes.size() > 1 ? time_s[changes.back()] - time_s[changes.front()] : time_s.back() - time_s.front();

@@ -1,5 +1,5 @@
 #pragma once
-// Defines the samples of an external file before they become a log, and the rules by which some of these
+// Defines the samples of an external file before their conversion to a log, and the rules by which some
 // samples are left out.
 
 #include <array>
@@ -41,9 +41,10 @@ struct ImportRemarks {
 };
 
 /// Makes the times relative to the first sample and rounds them. The rounding step is the resolution of a
-/// double of this magnitude, but at least 1e-9 s. Leaves out samples without a time and samples outside
-/// from_s to to_s of the mapping. Merges samples with the same time if no role has a value in more than one
-/// of them; otherwise keeps only the first of them. A time that decreases is a problem.
+/// double at the magnitude of the times, but at least 1e-9 s. Leaves out samples without a time and samples
+/// outside the range from `from_s` to `to_s` of the mapping. Merges samples with the same time if no role has
+/// a value in more than one of them; otherwise keeps only the first of them. A time that decreases is a
+/// problem.
 [[nodiscard]] std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSamples& samples,
                                                          ImportRemarks& remarks);
 
@@ -54,8 +55,8 @@ void complete_drive(ForeignSamples& samples, ImportRemarks& remarks);
 
 /// Keeps the longest segment between two gaps and reports the other segments. A gap is an interval between
 /// two samples that fulfils three conditions: it is longer than 0.5 s, it is longer than 20 usual intervals,
-/// and the command changes in it by more than 2 % of its range. The motion of the finger during a gap is
-/// unknown.
+/// and the command changes during this interval by more than 2 % of the range of all commands. The motion of
+/// the finger during a gap is unknown.
 void cut_at_holes(ForeignSamples& samples, ImportRemarks& remarks);
 
 }  // namespace softgrip::sysid

@@ -17,7 +17,8 @@ namespace softgrip::sysid {
 /// Largest size of an imported text after decompression [bytes]. Without this limit and the limits below, a
 /// small compressed file could exhaust the memory. Other commands read logs of at most 512 MiB.
 inline constexpr std::size_t most_text_bytes = std::size_t{512} << 20U;
-/// Largest length of a line [bytes]. Each byte can be a cell.
+/// Largest length of a line [bytes]. It also limits the number of cells, because a cell can consist of one
+/// byte.
 inline constexpr std::size_t longest_line = std::size_t{1} << 20U;
 inline constexpr std::size_t most_rows = std::size_t{1} << 24U;  ///< largest number of rows; 4.6 h at 1 kHz
 /// Largest number of values in all columns or arrays together.
@@ -38,12 +39,12 @@ struct BadCell {
 struct TableColumn {
   /// Name of the column in the file; empty if the file does not name its columns.
   std::string name;
-  std::string unit;            ///< unit as written in a row of units or an attribute; empty: not stated
+  std::string unit;  ///< unit as written in a row of units or an attribute; empty: the file states no unit
   std::vector<double> values;  ///< value in each row; NaN: missing value
   /// Number of values that are dates or times of day in the file. Each of them was converted to the time
   /// since the first date or time of day [s].
   std::size_t moments = 0;
-  Nanoseconds first_moment = 0;  ///< first date or time of day; origin as in moments.h
+  Nanoseconds first_moment = 0;  ///< first date or time of day in the column, as Moment::time (moments.h)
   /// Number of times with two fields ("12:34"), which were read as minutes and seconds.
   std::size_t short_clocks = 0;
   /// True if the nanoseconds in this column were added to the times of another column (split_times.h).
@@ -51,7 +52,7 @@ struct TableColumn {
   bool surely_minutes = false;  ///< true: one of the times with two fields cannot be hours and minutes
   std::vector<BadCell> bad;     ///< the first cells of the column that could not be read
   std::size_t bad_count = 0;
-  /// All rows with a bad cell; filled only if bad lines are to be skipped.
+  /// All rows with a cell of this column that cannot be read; filled only if such rows are to be skipped.
   std::vector<std::size_t> bad_rows;
 };
 
@@ -63,11 +64,12 @@ struct ForeignTable {
   std::vector<TableColumn> columns;
   std::vector<int> line;  ///< for each row of a text file, its line number; empty for a binary file
   std::vector<std::string>
-      channels;  ///< texts in the column that identifies the finger, in the order of their first rows
+      channels;  ///< names of the fingers in the column `channel_column`, in the order of their first rows
   /// Name of the column that identifies the finger of each row; empty: no column identifies the finger.
   std::string channel_column;
   std::vector<std::string> notes;  ///< notes about contents of the file that were skipped
-  /// Counts of all rows of a text file. For a binary file, counts of the rows that were left out only.
+  /// Row counts. For a text file, all rows are counted. For a binary file, only the left-out rows are
+  /// counted.
   RowAccount account;
   bool is_text = false;
   bool has_rows_of_signals = false;  ///< true: each row contains the signal of one topic

@@ -23,7 +23,8 @@ constexpr std::size_t most_steps = 100'000'000;
 constexpr std::size_t longest_label = 1000;
 constexpr const char* has_daqmx =
     "has raw values of DAQmx, which cannot be converted without the scales of DAQmx";
-/// Value of the length field of a segment that was not finished.
+/// Value that the length field of a segment has if the recording was interrupted before the end of the
+/// segment.
 constexpr std::uint64_t no_length = ~std::uint64_t{0};
 
 // Flags in the header of a segment.
@@ -131,7 +132,7 @@ class TdmsReader {
     if (refused.empty()) refused = "the segment at byte " + std::to_string(at) + " " + why;
   }
   static std::string quoted(std::string_view name) { return "'" + document::shown(name, 40) + "'"; }
-  /// Stores the reason why the file's metadata are valid but not supported. Always returns false.
+  /// Stores the reason why the file is refused although its metadata are valid. Always returns false.
   bool unread(const std::string& why) {
     if (unread_.empty()) unread_ = why;
     return false;
@@ -352,7 +353,7 @@ class TdmsReader {
   std::vector<std::size_t> listed_;  ///< indices of the channels that have values in this segment
   std::size_t steps_ = 0;
   std::size_t values_ = 0;
-  /// Number of bytes that the header of the last segment states but that are missing in the file.
+  /// Number of bytes that the file lacks, compared with the length in the header of its last segment.
   std::uint64_t missing_bytes_ = 0;
   std::size_t cut_off_bytes_ = 0;
   std::string unread_;  ///< reason why the file is refused although its metadata are valid

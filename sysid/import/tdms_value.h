@@ -28,7 +28,8 @@ enum class TdmsType : std::uint32_t {
 /// Returns the size of one value of this type [bytes]; 0 for a text or an unknown type.
 [[nodiscard]] std::size_t size_of(TdmsType type);
 
-/// A time stamp since 1904, stored in two parts, because a single double has too few digits.
+/// A time stamp: whole seconds since 1904 and the fraction of a second. A single double has too few digits
+/// for the sum.
 struct TdmsStamp {
   std::int64_t seconds = 0;
   double fraction = 0;

@@ -11,8 +11,8 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::array separators{',', ';', '\t', '|', ' '};
-/// The separator is determined from this number of lines in the middle of the text and this number of lines
-/// at its end.
+/// Number of lines that are read to determine the separator, once in the middle of the text and once at its
+/// end.
 constexpr std::size_t looked_at = 40;
 /// Largest number of lines above the first row of numbers; empty lines and comments are not counted.
 constexpr std::size_t longest_preamble = 1000;
@@ -41,8 +41,8 @@ bool is_data(const Row& row, std::size_t width) {
   return row.cells == width && row.numbers > 0 && 2 * row.values > row.cells;
 }
 
-/// Result for one separator. `width` is the number of cells per row for which the rows contain the most
-/// values, and `values` is the number of these values.
+/// Result for one separator: `width` is the probable number of columns, and `values` is the number of cells
+/// with a value in the rows of this width.
 struct Fit {
   std::size_t values = 0;
   std::size_t width = 0;

@@ -35,7 +35,7 @@ struct Dialect {
   char separator = ',';
   std::size_t first_row = 0;       ///< index of the first row of numbers in TextLines::content
   std::vector<std::string> names;  ///< column names; empty if the text has no names
-  /// Units of the columns, from a row below the names; empty: the text has no such row.
+  /// Units of the columns, from a row below the names; empty: the text has no row of units.
   std::vector<std::string> units;
   int names_line = 0;     ///< number of the line with the names; 0: the text has no names
   std::size_t width = 0;  ///< number of columns of the table
@@ -43,8 +43,8 @@ struct Dialect {
   bool extra_cell = false;
 };
 
-/// Detects the format from the rows of numbers. Adds a problem and returns nullopt if the text has no such
-/// rows, or if the number of names above the rows differs from the number of columns.
+/// Detects the format from the rows of numbers. Adds a problem and returns nullopt if the text has no rows of
+/// numbers, or if the number of names above the rows differs from the number of columns.
 [[nodiscard]] std::optional<Dialect> dialect_of(const std::string& file, const TextLines& lines,
                                                 const TableOptions& options, document::Problems& problems);
 

@@ -67,9 +67,8 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-/// Replaces \r by
-///  if the text contains no
-/// , because old Macintosh files end their lines with \r alone.
+/// Replaces each "\r" by "\n" if the text contains no "\n", because old Macintosh files end their lines with
+/// "\r" alone.
 void normalise_line_ends(std::string& text) {
   if (text.find('\n') != std::string::npos) return;
   for (char& c : text) c = c == '\r' ? '\n' : c;
@@ -83,8 +82,8 @@ std::size_t nul_tail(std::string_view bytes) {
   return last == std::string_view::npos ? 0 : bytes.size() - last - 1;
 }
 
-/// Returns the number of the first line that exceeds longest_line, counted from 1; nullopt if there is no
-/// such line.
+/// Returns the number of the first line that is longer than longest_line, counted from 1; nullopt if there is
+/// no such line.
 std::optional<std::size_t> number_of_long_line(std::string_view text) {
   std::size_t number = 1;
   for (std::size_t begin = 0; begin < text.size(); ++number) {

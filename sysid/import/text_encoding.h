@@ -12,9 +12,9 @@
 
 namespace softgrip::sysid {
 
-/// Converts a text to UTF-8 without a byte order mark and with
-///  at the end of each line. Accepted encodings are UTF-8, UTF-16 with a byte order mark, and Latin-1. If the
-/// bytes are not a text, the error is a sentence.
+/// Converts a text to UTF-8 without a byte order mark. Each line of the result ends with "\n". Accepted
+/// encodings are UTF-8, UTF-16 with a byte order mark, and Latin-1. If the bytes are not a text, returns a
+/// sentence that describes the error.
 [[nodiscard]] tl::expected<std::string, std::string> utf8_of(std::string_view bytes);
 
 struct ForeignText {

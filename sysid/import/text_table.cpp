@@ -102,7 +102,7 @@ class RowReader {
     const std::string channel = cell_text(cells_[channel_].text);
     if (std::find(table_.channels.begin(), table_.channels.end(), channel) == table_.channels.end())
       table_.channels.push_back(channel);
-    // A column with more different cells than a rig has fingers contains readings, not names of fingers.
+    // A column that has more different values than a rig has fingers contains readings, not names of fingers.
     if (table_.channels.size() > most_fingers && !is_log_channel_ && options_.channel.empty()) {
       channel_ = dialect_.width;
       table_.channels.clear();

@@ -74,7 +74,7 @@ constexpr std::array spellings{
 };
 constexpr std::array<std::string_view, 14> raw_units{
     "v", "mv", "volt", "volts", "ma", "a", "counts", "count", "lsb", "adc", "raw", "%", "percent", "digits"};
-/// Names of units that can also be a word or an index if they follow a blank or an underscore.
+/// Names of units that, after a blank or an underscore, can also be a word or an index.
 constexpr std::array<std::string_view, 10> doubtful{"in", "min", "a", "c",   "d",
                                                     "f",  "h",   "k", "raw", "count"};
 

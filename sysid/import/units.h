@@ -1,6 +1,6 @@
 #pragma once
 // Defines the units in external files and their conversion to the units of a log: s, kPa, mm or deg, and
-// degrees Celsius. A bending angle is treated as a displacement.
+// degrees Celsius. A bending angle counts as a displacement.
 
 #include <cstdint>
 #include <optional>
@@ -26,11 +26,11 @@ struct Unit {
 /// Returns the unit of the given quantity with this name: "PSI", "µm", "deg C". Case matters only in mPa and
 /// MPa.
 [[nodiscard]] std::optional<Unit> unit_named(std::string_view text, Quantity quantity);
-/// Returns the unit with this name, of any quantity. Returns nullopt if units of two quantities have this
-/// name.
+/// Returns the unit with this name. The unit can belong to any quantity. Returns nullopt if units of two
+/// quantities have this name.
 [[nodiscard]] std::optional<Unit> unit_named(std::string_view text);
 /// Returns true if the name is a unit of electrical or digital values (V, mA, counts, %). A value in such a
-/// unit becomes kPa or mm only with a scale.
+/// unit can be converted to kPa or mm only if the user states a scale.
 [[nodiscard]] bool is_raw_unit(std::string_view text);
 /// Returns the unit names of a quantity as text for messages: "s, ms, us, ...".
 [[nodiscard]] std::string unit_names(Quantity quantity);
@@ -45,9 +45,9 @@ struct NameAndUnit {
 };
 
 /// Splits the name of a column into name and unit. A text in brackets is always the unit. After another mark,
-/// such as '/' or '_', only a known unit is accepted. If `quantity` is given, it must be a unit of this
-/// quantity. If no quantity is given, a unit that is also a word or a letter must follow a slash or a comma:
-/// p_in is not in inches.
+/// such as '/' or '_', only a known unit is accepted. If `quantity` is set, the unit must be a unit of this
+/// quantity. If `quantity` is not set, a unit that is also a word or a letter must follow a slash or a comma.
+/// For example, "in" in "p_in" is not the unit inch.
 [[nodiscard]] NameAndUnit split_unit(std::string_view column, std::optional<Quantity> quantity = {});
 
 /// Converts ASCII letters to lower case.

@@ -17,11 +17,11 @@ namespace softgrip::sysid {
 /// states are not trusted.
 class WorkbookPackage {
  public:
-  /// Opens the archive. The error is a sentence.
+  /// Opens the archive. On failure, returns a sentence that describes the error.
   [[nodiscard]] static tl::expected<WorkbookPackage, std::string> open(std::string_view bytes);
 
   [[nodiscard]] bool has(const std::string& part) const;
-  /// Returns the content of a part. The error is a sentence.
+  /// Returns the content of a part. On failure, returns a sentence that describes the error.
   [[nodiscard]] tl::expected<std::string, std::string> read(const std::string& part);
 
  private:
@@ -29,7 +29,7 @@ class WorkbookPackage {
   explicit WorkbookPackage(Archive archive);
 
   Archive archive_;
-  std::size_t left_;  ///< number of decompressed bytes that may still be read
+  std::size_t left_;  ///< number of decompressed bytes that may be read from now on
 };
 
 }  // namespace softgrip::sysid

@@ -18,7 +18,7 @@
 namespace softgrip::sysid {
 namespace {
 
-// Largest sheet that the file format allows.
+// Largest numbers of rows and columns that the file format allows in a sheet.
 constexpr std::size_t most_sheet_rows = 1048576;
 constexpr std::size_t most_sheet_columns = 16384;
 constexpr std::size_t cells_named = 5;
@@ -35,7 +35,7 @@ struct SheetCell {
   bool is_bool = false;
 };
 
-/// A count of cells, and the names of the first of these cells.
+/// Number of cells, and the names of the first cells that were counted.
 struct NamedCells {
   std::size_t count = 0;
   std::string names;
@@ -184,7 +184,7 @@ class SheetReader {
       return refuse_cell(cell, "'" + document::shown(cell.text) +
                                    "' is not a number, although the file declares this cell as a number");
     if (!std::isfinite(*number)) {
-      cell.content = Content::text;  // the reader of text tables interprets "NaN" later
+      cell.content = Content::text;  // the reader of text tables interprets "NaN" when it reads the CSV
       return;
     }
     cell.content = Content::number;
@@ -208,7 +208,8 @@ class SheetReader {
     if (!index || *index >= texts_.strings.size())
       return refuse_cell(cell, "shared string '" + document::shown(cell.text) + "' is none of the " +
                                    std::to_string(texts_.strings.size()) + " of the workbook");
-    // The size is added for each cell, because many cells can refer to one long text.
+    // The size of a text is added once for each cell that refers to this text, because many cells can refer
+    // to one long text.
     shared_bytes_ += texts_.strings[*index].size();
     if (shared_bytes_ > most_text_bytes)
       return refuse_cell(cell,
@@ -276,8 +277,8 @@ class SheetReader {
     constexpr sys_days of_1904{year{1904} / 1 / 1};
     constexpr double a_year = 366;
     const double longest = cell.row < full_row_ ? cell.serial : longest_[cell.column];
-    // If all values of a column are shorter than one year, they are durations, and the origin of the calendar
-    // does not affect them.
+    // If all values of a column are shorter than one year, they are durations, and their text does not depend
+    // on the origin of the calendar.
     return iso_date(cell.serial, texts_.from_1904 || longest < a_year ? of_1904 : of_1900, longest >= 1);
   }
 
@@ -357,9 +358,9 @@ class SheetReader {
   std::size_t first_column_ = 0;
   std::size_t last_column_ = 0;
   std::vector<std::pair<std::size_t, std::size_t>>
-      filled_;                             ///< for each row with content: row number and number of cells
-  std::size_t full_row_ = 0;               ///< number of the first row below the titles
-  std::size_t shared_bytes_ = 0;           ///< total size of the shared strings to which the cells refer
+      filled_;                    ///< for each row with content: row number and number of cells
+  std::size_t full_row_ = 0;      ///< number of the first row below the titles
+  std::size_t shared_bytes_ = 0;  ///< total size of the shared strings to which the cells refer [bytes]
   std::map<std::size_t, double> longest_;  ///< for each column: latest date below the titles
   std::size_t numbers_ = 0;                ///< number of cells with a number in the current row
   std::size_t dates_ = 0;

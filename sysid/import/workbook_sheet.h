@@ -40,11 +40,11 @@ struct SheetProblem {
 [[nodiscard]] std::string cell_name(std::size_t row, std::size_t column);
 
 /// Returns the cells as lines of CSV. The table begins at the first row that has cells in at least 75 % of
-/// the columns. Rows above the table contain only their own cells. From the table on, each row that is not
-/// empty has a cell for every column. Booleans are written as 1 and 0, and dates in ISO 8601. A column whose
-/// values are all within one day is written as times of day; rows above the table have no influence on this
-/// choice. A formula gives its stored value. Errors and formulas without a stored value give empty cells, and
-/// a note names these cells.
+/// the columns. The lines of the rows above the table have only as many cells as the sheet contains there.
+/// From the table on, each row that is not empty has a cell for every column. Booleans are written as 1 and
+/// 0, and dates in ISO 8601. A column whose values are all within one day is written as times of day; rows
+/// above the table have no influence on this choice. A formula gives its stored value. Errors and formulas
+/// without a stored value give empty cells, and a note names these cells.
 [[nodiscard]] tl::expected<SheetText, SheetProblem> sheet_text(const pugi::xml_document& sheet,
                                                                const WorkbookTexts& texts);
 

@@ -11,7 +11,7 @@ constexpr std::size_t node_bytes = 64;
 constexpr std::size_t attribute_bytes = 40;
 
 /// Returns an upper bound of the memory that the XML tree of `text` needs [bytes]. The first text in an
-/// element needs no node of its own.
+/// element is not counted, because pugixml stores it in the node of the element.
 std::size_t tree_bytes(std::string_view text) {
   std::size_t bytes = 0;
   bool opens = false;

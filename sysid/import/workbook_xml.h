@@ -10,7 +10,7 @@
 namespace softgrip::sysid {
 
 /// Parses the XML in `text` into `document`. `text` must outlive the document. XML whose tree could need more
-/// than 1 GiB of memory is refused. The error is a sentence.
+/// than 1 GiB of memory is refused. On failure, returns a sentence that describes the error.
 [[nodiscard]] tl::expected<void, std::string> load_xml(std::string& text, pugi::xml_document& document);
 
 /// Returns an XML name without its namespace prefix: "x:row" gives "row".

@@ -23,7 +23,8 @@ constexpr const char* as_csv = "export the sheet as CSV";
 
 /// A reference from one part of the workbook package to another part.
 struct Relation {
-  std::string type;  ///< kind of the target, the last word of the type address: "worksheet"
+  /// Kind of the target, such as "worksheet": the last word of the address in the attribute Type.
+  std::string type;
   std::string part;
   bool external = false;
 };

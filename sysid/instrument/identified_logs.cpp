@@ -24,8 +24,8 @@ std::string source_of(const std::vector<Log>& logs, double rmse_mm, const model:
          "), starting from " + start.name;
 }
 
-/// Returns the error message of a fit, followed by the plausibility warnings about its logs. A wrong unit,
-/// for example, can cause the error.
+/// Returns the error message of a fit, followed by the plausibility warnings about its logs. A warning can
+/// name the cause of the error, for example a wrong unit.
 std::string refusal_of(const std::string& error, const std::vector<Log>& logs) {
   std::string text = error;
   for (const std::string& implausible : plausibility_warnings_among(logs)) text += "; " + implausible;

@@ -1,7 +1,7 @@
 #pragma once
-// Identifies a model from logs, and validates a model with logs. Before this, outliers are removed from the
-// readings. The results also contain warnings about the data. `softgrip identify`, `softgrip validate` and
-// the library call these functions.
+// Identifies a model from logs, and validates a model with logs. Each function first removes outliers from
+// the readings. The results contain warnings about the data. `softgrip identify`, `softgrip validate` and the
+// library call these functions.
 
 #include <cstddef>
 #include <cstdint>
@@ -33,7 +33,8 @@ struct IdentifyQuestion {
   IdentifyOptions options;
 };
 
-/// Result of an identification, with the logs as they were fitted, without the removed outliers.
+/// Result of an identification, with the logs to which the model was fitted. These logs do not contain the
+/// removed outliers.
 struct IdentifiedLogs {
   std::vector<Log> logs;
   std::vector<Log> validation_logs;

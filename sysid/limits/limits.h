@@ -1,6 +1,6 @@
 #pragma once
-// Contains the limits that decide in several searches, comparisons, conditions and verdicts. Each limit is a
-// probability, a number of evaluations, a share or a physical tolerance.
+// Defines the limits that several searches, comparisons, conditions and verdicts use. Each limit is a
+// probability, a number of evaluations, a share of an error or a physical tolerance.
 
 #include <cstddef>
 
@@ -26,7 +26,7 @@ inline constexpr std::size_t bootstrap_draws = 1000;
 /// Largest number of units (sysid/evidence/units.h). Each unit is left out of one fit. If there are more runs
 /// than this number, a unit contains several runs.
 inline constexpr std::size_t most_units = 6;
-/// Number of candidates that a stage of a search continues. Each further candidate costs one more fit.
+/// Number of candidates that each stage of a search passes to its next stage. Each candidate costs one fit.
 inline constexpr std::size_t finalists = 5;
 /// Number of start points from which each candidate is continued. A second start point shows that the first
 /// one led to a local minimum.
@@ -52,16 +52,16 @@ inline constexpr std::size_t fewest_for_correlation = 15;
 /// An improvement by this share (of the mean square, of the RMSE or of the noise variance) is negligible,
 /// even if it is significant. No noise is known to more than 1 %.
 inline constexpr double negligible_share = 0.01;
-/// Share of an error that the form of a cause or of a model can leave, because its equation is an
+/// Share of an error that can remain after a fit because the equation of a cause or of a model is an
 /// approximation. Published models of soft fingers leave a few percent.
 inline constexpr double form_error_share = 0.05;
-/// Two errors are equally good if they differ by less than this share. The simpler hypothesis is then kept.
+/// If the errors of two hypotheses differ by less than this share, the simpler hypothesis is kept.
 inline constexpr double equal_error_share = 0.1;
 /// Candidates are compared further while their error is at most this multiple of the smallest error.
 inline constexpr double comparable_ratio = 1.25;
 /// Smallest share of the remaining error that a hypothesis must explain to count as an explanation.
 inline constexpr double least_explained_share = 0.2;
-/// More than half: a hypothesis applies to most of a quantity.
+/// Smallest share of a quantity to which a hypothesis applies that counts as most of this quantity.
 inline constexpr double majority_share = 0.5;
 
 // Multiples of the noise of the readings

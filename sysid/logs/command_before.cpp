@@ -12,11 +12,13 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest difference between the first command and the initial pressure that indicates a previous command,
-/// as a share of the range of the commands. Errors of a regulator and of a pressure sensor are smaller.
+/// A previous command is assumed only if the first command differs from the initial pressure by more than
+/// this share of the range of the commands. Errors of a regulator and of a pressure sensor are smaller than
+/// this share.
 constexpr double far = 0.1;
-/// Share of the difference between first command and initial pressure that the measured pressure must cover
-/// while the first command is held. A working regulator covers a larger share.
+/// A previous command is assumed only if the measured pressure, while the first command is held, covers more
+/// than this share of the difference between the first command and the initial pressure. A working regulator
+/// covers a larger share.
 constexpr double on_its_way = 0.5;
 
 /// Returns the number of samples at the beginning of the log during which the command is constant.
@@ -27,11 +29,11 @@ std::size_t stands_for(const Log& log, double range_kpa) {
   return count;
 }
 
-/// Smallest motion during the first command that indicates a previous command, as a share of the range of the
-/// displacement. Creep at constant pressure is smaller.
+/// A previous command is assumed only if the displacement moves by more than this share of its range while
+/// the first command is held. Creep at constant pressure is smaller than this share.
 constexpr double step_share = 0.2;
-/// Number of readings at the beginning of the first command whose median is compared with the median of as
-/// many readings at its end. A median is insensitive to an outlier.
+/// Number of readings in each of two groups whose medians are compared: the first and the last readings while
+/// the first command is held. A median is insensitive to an outlier.
 constexpr std::size_t at_an_end = 5;
 constexpr std::size_t fewest_standing = 4 * at_an_end;
 

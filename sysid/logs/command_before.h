@@ -1,6 +1,6 @@
 #pragma once
 // Handles logs that begin at the moment at which the first command is set. The finger is then still at the
-// position of the command before.
+// position of the previous command.
 
 #include <optional>
 #include <vector>
@@ -15,18 +15,18 @@ namespace softgrip::sysid {
 /// If the log contains a measured pressure, two conditions must be met. At the beginning, the pressure
 /// differs from the first command by at least 10 % of the range of the commands. While the first command is
 /// held, the pressure covers more than half of this difference. If the pressure does not approach the
-/// command, pressure and command differ in zero or unit, and the result is nullopt. If the initial pressure
-/// is within the range of the commands, the result is the nearest command of the log, because the log does
-/// not show the response to other commands.
+/// command, pressure and command probably have different zeros or units, and the result is nullopt. If the
+/// initial pressure is within the range of the commands, the result is the nearest command of the log,
+/// because the log does not show the response to other commands.
 ///
-/// If the log contains no measured pressure, the displacement decides. It must move by more than 20 % of its
-/// range while the first command is held. The result is the lowest command of the log if the displacement
-/// rises, and the highest command if it falls. If the first command equals this command or is held for less
-/// than 20 samples, the result is nullopt.
+/// If the log contains no measured pressure, the displacement indicates a previous command if it moves by
+/// more than 20 % of its range while the first command is held. The result is the lowest command of the log
+/// if the displacement rises, and the highest command if it falls. If the first command equals this lowest or
+/// highest command, or is held for less than 20 samples, the result is nullopt.
 [[nodiscard]] std::optional<double> pressure_before_kpa(const Log& log);
 
 /// Returns the log with an additional first sample that has the command `before_kpa` and no reading. The
-/// times begin at 0 as before, so all other samples are delayed by the median interval. A note of the log
+/// additional sample is at time 0, so all other samples are delayed by the median interval. A note of the log
 /// states this change.
 [[nodiscard]] Log with_command_before(const Log& log, double before_kpa);
 

@@ -1,9 +1,9 @@
 #pragma once
 // Divides the readings of records into held-out blocks. Only this file divides records or hides readings.
 //
-// Each validation method has its own function, because the methods differ in difficulty. A held-out block
-// between fitted readings is easier to predict than readings after all fitted readings (continuation), or
-// than a whole record.
+// Each validation method has its own function, because the methods are not equally difficult. It is easier to
+// predict a held-out block between fitted readings than a continuation (all readings after the fitted
+// readings) or a whole record.
 
 #include <cstddef>
 #include <vector>
@@ -39,8 +39,8 @@ struct Division {
 [[nodiscard]] Division thinned_like(Division division, const std::vector<Record>& records,
                                     const std::vector<Record>& thinned);
 /// Divides records into about ten blocks in five folds. If there are several records, each has at least two
-/// blocks; a single record has at least five. On either side of a held-out block, readings within 10 % of the
-/// length of a block are not fitted either.
+/// blocks; a single record has at least five. In addition, readings within 10 % of a block length on either
+/// side of a held-out block are not fitted.
 [[nodiscard]] Division divide_into_fifths(const std::vector<Record>& records);
 /// Divides records for continuation. The first half of each record is fitted. The second half is held out as
 /// one fold with five blocks.

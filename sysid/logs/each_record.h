@@ -1,5 +1,6 @@
 #pragma once
-// Calls a function for each record. If the records are long enough, the calls run in parallel.
+// Calls a function for each record. The calls run in parallel if the records are so long that threads save
+// time.
 
 #include <cstddef>
 #include <vector>
@@ -20,8 +21,8 @@ inline constexpr std::size_t samples_worth_a_thread = 1000;
   return samples >= least_samples * records.size();
 }
 
-/// Calls work(i) for i from 0 to `count` - 1 in any order. Each call simulates records. If the records are
-/// long enough for a thread, the calls run on idle threads.
+/// Calls work(i) for i from 0 to `count` - 1 in any order. Each call simulates records. If the records have
+/// at least `least_samples` samples on average, the calls run on idle threads.
 template <class Work>
 void for_each_walk(const std::vector<Record>& records, std::size_t count, Work&& work,
                    std::size_t least_samples = samples_worth_a_thread) {
@@ -32,9 +33,9 @@ void for_each_walk(const std::vector<Record>& records, std::size_t count, Work&&
   }
 }
 
-/// Calls work(k) for the index k of each record, in any order. If the records are long enough for a thread,
-/// the calls run on idle threads. work(k) must write its result to element k of a container that exists
-/// already.
+/// Calls work(k) for the index k of each record, in any order. If the records have at least `least_samples`
+/// samples on average, the calls run on idle threads. work(k) must write its result to element k of a
+/// container that exists before the call.
 template <class Work>
 void for_each_record(const std::vector<Record>& records, Work&& work,
                      std::size_t least_samples = samples_worth_a_thread) {

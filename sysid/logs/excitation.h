@@ -1,6 +1,6 @@
 #pragma once
-// Finds motions that are missing in the commands of logs. If a motion is missing, a fit cannot determine the
-// effect that only this motion shows.
+// Finds motions that are missing in the commands of logs. Some effects are visible only during one kind of
+// motion. If this motion is missing, a fit cannot determine the effect.
 
 #include <cstdint>
 #include <string>
@@ -14,13 +14,13 @@ namespace softgrip::sysid {
 enum class Excitation : std::uint8_t {
   unloading,  ///< a decrease of the pressure by at least 20 % of the largest pressure
   rest,       ///< pressure below 2 % of the largest pressure for more than 3 s
-  /// Two peaks whose pressures differ by at least 5 % of the largest pressure. Each peak exceeds the next
+  /// Two peaks whose pressures differ by at least 5 % of the largest pressure. Each peak must exceed the next
   /// turning point by 5 % of the largest pressure.
   amplitudes,
 };
 
-/// Returns the motions that no log contains. Pressures are compared by their magnitudes. With vacuum, the
-/// largest load is therefore at the lowest pressure.
+/// Returns the motions that no log contains. Pressures are compared by their magnitudes. If the commands are
+/// vacuum pressures, the lowest pressure therefore counts as the largest.
 [[nodiscard]] std::vector<Excitation> missing_excitation(const std::vector<Log>& logs);
 
 /// Returns a sentence about a missing motion. It names the effect that cannot be determined without this

@@ -10,8 +10,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Reversals that are smaller than this multiple of the noise are removed. The smoothing leaves noise that is
-/// smaller than this limit.
+/// Reversals that are smaller than this multiple of the noise are removed. The noise that the smoothing
+/// leaves causes only smaller reversals.
 constexpr double least_turn = 5;
 /// A column is not smoothed if its noise is below this share of its range, because such noise hardly affects
 /// the response of a model.
@@ -64,7 +64,8 @@ void advance(Estimate& e, double dt, double drift_rate) {
   e.ss += drift_rate * dt;
 }
 
-/// Runs the Kalman filter. Returns minus twice the log-likelihood of the innovations, except for a constant.
+/// Runs the Kalman filter. Returns minus twice the log-likelihood of the innovations, up to an additive
+/// constant.
 double filter(const Path& path, double drift_rate, std::vector<Estimate>* before) {
   const auto& values = path.values;
   const auto first = std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
@@ -90,12 +91,12 @@ double filter(const Path& path, double drift_rate, std::vector<Estimate>* before
   return cost;
 }
 
-/// Returns the drift rate of the slope that has the maximum likelihood. A golden-section search over its
-/// logarithm finds this value.
+/// Returns the drift rate of the slope that has the maximum likelihood. A golden-section search over the
+/// logarithm of the drift rate finds this value.
 double likeliest_drift_rate(const Path& path) {
   const auto& time_s = path.time_s;
   const double dt = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
-  // With this drift rate, the drift within one sampling interval is as large as the noise.
+  // At this drift rate, the drift within one sampling interval has the standard deviation of the noise.
   const double unit = path.noise * path.noise / (dt * dt * dt);
   double low = std::log(unit) - 20, high = std::log(unit) + 12;
   const double golden = (std::sqrt(5.0) - 1) / 2;
@@ -162,8 +163,8 @@ Smooth disturbances(const Path& path, double drift_rate) {
 double white_noise_of(std::span<const double> time_s, std::span<const double> values) {
   std::vector<double> deviations;
   for (std::size_t i = 2; i < values.size(); ++i) {
-    // Deviation of a value from the straight line between its neighbours, divided by a factor so that the
-    // standard deviation of the result equals the standard deviation of a single value.
+    // Compute the deviation of a value from the straight line between its neighbours. The divisor makes the
+    // standard deviation of the result equal to the standard deviation of a single value.
     const double share = (time_s[i - 1] - time_s[i - 2]) / (time_s[i] - time_s[i - 2]);
     const double off = values[i - 1] - (1 - share) * values[i - 2] - share * values[i];
     if (std::isfinite(off))

@@ -1,6 +1,6 @@
 #pragma once
-// Reads and writes logs, which are recorded runs in CSV files. The reader refuses a file with any error, and
-// its message contains a hint. All logs that are given to one command form a campaign.
+// Reads and writes logs, which are recorded runs in CSV files. The reader refuses a file that contains an
+// error, and the error message contains a hint. All logs that are given to one command form a campaign.
 //
 //   time_s,pressure_command_kpa,displacement_mm[,pressure_kpa][,temperature_c][,supply_kpa][,channel][,...]
 //
@@ -72,15 +72,17 @@ struct Log {
 
 /// Conditions that logs must meet.
 struct LogOptions {
-  std::string channel;  ///< channel that is read if a log has several channels; otherwise ""
+  std::string channel;  ///< channel that is read if a log has several channels; "": no channel is selected
   std::size_t bytes = std::size_t{512} * 1024 * 1024;
-  /// If true, a log is refused if its command or its reading is constant, because it cannot identify a model.
+  /// True: a log with a constant command or a constant reading is refused, because such a log cannot identify
+  /// a model.
   bool require_motion = true;
-  /// If false, only the command is used. Then two samples are enough, at any interval, and displacement_mm
-  /// may be absent.
+  /// False: only the command is used. A log then needs only two samples, at any sampling interval, and the
+  /// column displacement_mm may be absent.
   bool need_readings = true;
-  /// If set, readings in another unit than this unit are refused. `output_unit_of` names the origin of this
-  /// unit ("the model given.yaml"). If not set, all logs of a campaign must have the unit of the first log.
+  /// If this unit is set, readings in a different unit are refused. `output_unit_of` names the origin of this
+  /// unit ("the model given.yaml"). If it is not set, all logs of a campaign must have the unit of the first
+  /// log.
   std::optional<model::OutputUnit> output_unit;
   std::string output_unit_of;
   /// A log is refused if the share of clipped readings exceeds this value (1: never refused). If a smaller
@@ -91,7 +93,8 @@ struct LogOptions {
 /// Logs that are given together to one command.
 struct Campaign {
   std::vector<Log> logs;
-  /// True: a file could not be opened or read, because of an I/O error and not because of its content.
+  /// True: a file could not be opened or read because of an I/O error. An error in the content of a file does
+  /// not count.
   bool unreadable = false;
 };
 
@@ -100,7 +103,7 @@ struct Campaign {
 [[nodiscard]] Campaign read_campaign(const std::vector<std::string>& paths, document::Problems& problems,
                                      const LogOptions& options = {});
 
-/// Reads a log from a text. `file` names the text in messages.
+/// Reads a log from a text. `file` is the name of the text in messages.
 [[nodiscard]] std::optional<Log> parse_log(const std::string& file, std::string_view text,
                                            document::Problems& problems, const LogOptions& options = {});
 

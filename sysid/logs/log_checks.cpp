@@ -18,10 +18,12 @@ using document::Problems;
 /// parameters.
 constexpr std::size_t fewest_samples = 50;
 constexpr std::size_t fewest_command_samples = 2;
-/// A larger pressure certainly has a wrong unit, because a soft finger moves by about 10 mm at 20 to 60 kPa.
+/// Limit above which a pressure certainly has a wrong unit. A soft finger moves by about 10 mm at 20 to 60
+/// kPa.
 constexpr double largest_pressure_kpa = 5000;
 constexpr double largest_displacement_mm = 5000;
-/// The slowest processes, such as furnaces, are sampled at intervals of some minutes.
+/// Longest accepted median sampling interval [s]. Even slow processes, such as furnaces, are sampled at
+/// intervals of a few minutes.
 constexpr double longest_median_interval_s = 600;
 /// A gap between two samples is reported if it fulfils three conditions: it is longer than this time [s], it
 /// is longer than `hole_intervals` usual intervals, and the command changes during the gap.

@@ -1,5 +1,6 @@
 #pragma once
-// Checks times, excitation, sensor and units of a log after all its cells were read without errors.
+// Checks the times, the excitation, the sensor and the units of a log. The checks begin after all cells of
+// the log were read without errors.
 
 #include <string>
 #include <string_view>

@@ -40,8 +40,8 @@ struct ReadingColumn {
   model::OutputUnit unit;
   double factor;  ///< the value in the log is the value in the column times this factor
 };
-/// Columns that can contain the readings; a log must have at least one of them. If a log has several, the
-/// first one in this list is used, and the others are stored as text.
+/// Columns that can contain the readings; a log must have at least one of them. If a log has several of these
+/// columns, the first one in this list is used, and the other ones are stored as text.
 inline constexpr std::array<ReadingColumn, 3> reading_columns{{
     {known_columns[column_displacement].name, model::OutputUnit::mm, 1},
     {"angle_deg", model::OutputUnit::deg, 1},

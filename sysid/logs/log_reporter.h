@@ -1,5 +1,6 @@
 #pragma once
-// Collects the problems of a log. A file with a million bad rows is therefore reported in a few lines.
+// Collects the problems of a log and shows only the first problems of each kind, so that a few lines report a
+// file with a million bad rows.
 
 #include <map>
 #include <string>
@@ -10,7 +11,7 @@
 
 namespace softgrip::sysid {
 
-/// Adds the first problems of each kind and counts the problems of this kind after them.
+/// Reports the first problems of each kind and counts the remaining problems of the same kind.
 class LogReporter {
  public:
   LogReporter(std::string file, document::Problems& problems) : file_(std::move(file)), problems_(problems) {}

@@ -8,18 +8,18 @@
 
 namespace softgrip::sysid {
 
-/// The column of a file that contains a pressure of the log, and the name of this pressure in the options of
-/// `softgrip import`.
+/// The column of a file from which a pressure of the log comes, and the name of this pressure in the options
+/// of `softgrip import`.
 struct PressureColumn {
   std::string name = "pressure_command_kpa";
   std::string role = "command";
 };
 
-/// Returns sentences about implausible data. Each contains a number as evidence and a remedy. The sentences
-/// are about these findings: the reading decreases when the pressure increases; the reading precedes the
-/// pressure; the finger touched an object; command and measured pressure differ by the ratio of two units;
-/// the measured pressure precedes the command; the pressure is absolute; the range of the values is
-/// impossible for a soft finger; the sampling interval is too long.
+/// Returns sentences about implausible data. Each sentence contains a number as evidence, and a remedy. The
+/// sentences are about these findings: the reading decreases when the pressure increases; the reading
+/// precedes the pressure; the finger touched an object; command and measured pressure differ by the ratio of
+/// two units; the measured pressure precedes the command; the pressure is absolute; the range of the values
+/// is impossible for a soft finger; the sampling interval is too long.
 [[nodiscard]] std::vector<std::string> plausibility_warnings(const Log& log,
                                                              const PressureColumn& column = {});
 

@@ -26,7 +26,8 @@ enum class Start {
   /// In a fit, `rest` if the first pressure is nearly 0, otherwise `unknown`. For a prediction, see
   /// sysid/fitting/start_estimate.h.
   automatic,
-  rest,     ///< the finger has settled at the first pressure, after a single rise from zero pressure
+  /// The finger has settled at the first pressure, which was reached from zero pressure in a single rise.
+  rest,
   unknown,  ///< unknown state; a fit estimates hysteresis, creep and offset at the beginning
 };
 
@@ -39,7 +40,7 @@ struct RecordOptions {
   bool held = false;
 };
 
-/// Part of the initial state of a record that the model and the samples do not determine.
+/// Unknown part of the initial state of a record: neither the model nor the samples determine these values.
 struct StartState {
   double offset_mm = 0;  ///< offset of the sensor's zero
   /// Last peak of the pressure before the first sample. The hysteresis at the first sample depends on this
@@ -74,9 +75,9 @@ struct Record {
   std::vector<double> temperature_c;
   std::vector<double> supply_kpa;
   double sample_time_s = 0;  ///< nominal sampling interval; 0: the sampling is irregular
-  /// Shortest interval between readings that contain separate information [s]. This is the mean interval of
-  /// the log, even if samples were removed. If the remaining readings are means, it is the interval of the
-  /// remaining samples.
+  /// Shortest interval between two readings that contain independent information [s]. It is the mean interval
+  /// of the log, even if samples were removed from the record. If the remaining readings are means, it is the
+  /// interval of the remaining samples.
   double finest_interval_s = 0;
   double campaign_time_s = 0;     ///< start of the record, relative to the start of the first log
   double span_mm = 0;             ///< range of the readings
@@ -104,9 +105,10 @@ struct Record {
 /// log must have a pressure_kpa column.
 [[nodiscard]] std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptions& options);
 
-/// Returns the unit of time in which a fit searches for dead times, lags and creep [s]. It is 1 s if the
-/// records resolve 1 s: 10 sampling intervals are at most 1 s, and half of the longest record is at least 1
-/// s. Otherwise it is the geometric mean of sampling interval and length.
+/// Returns the unit of time in which a fit searches for dead times, lags and creep [s]. The unit is 1 s if
+/// two conditions are met: 10 sampling intervals are at most 1 s, and half of the longest record is at least
+/// 1 s. Otherwise the unit is the geometric mean of the shortest sampling interval and the length of the
+/// longest record.
 /// @param records  at least one record.
 [[nodiscard]] double time_unit_s(const std::vector<Record>& records);
 

@@ -8,8 +8,9 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A command jumps between two samples if it deviates from the straight line between them by more than this
-/// share of the largest command.
+/// Limit of a jump of the command, as a share of the largest command. The command jumps between two kept
+/// samples if a removed sample between them deviates by more than this limit from the straight line through
+/// the two kept samples.
 constexpr double least_jump = 0.01;
 
 /// Returns the weighted mean of the command around sample `at`. The weights are triangular over the removed
@@ -33,9 +34,9 @@ bool jumps_after(const Record& record, std::size_t at, std::size_t stride) {
   return false;
 }
 
-/// If the command is held, or if it jumps, replaces it by its local mean. Otherwise a jump between two kept
-/// samples would be early or late by up to one interval. Where the command changes its slope without a jump,
-/// it is not changed.
+/// Replaces a command that is held, or that jumps, by its local mean. Without this replacement, a jump
+/// between two kept samples would be early or late by up to one interval. A command whose slope changes
+/// without a jump is not replaced.
 void keep_mean_of_jumps(const Record& record, std::size_t stride, Record& thin) {
   if (record.held) {
     for (std::size_t to = 0; to + 1 < thin.size(); ++to) {
@@ -58,7 +59,7 @@ std::size_t stride_for(const Record& record, double interval_s) {
 }
 
 /// Returns the mean of a reading and its neighbours, up to `reach` readings on either side. Returns NaN if at
-/// most half of these readings is present.
+/// most half of these readings are finite.
 double mean_around(const std::vector<double>& readings, std::size_t at, std::size_t reach) {
   double sum = 0;
   std::size_t count = 0;

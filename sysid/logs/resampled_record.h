@@ -1,8 +1,8 @@
 #pragma once
 // Resamples records. Only this file removes, averages or adds samples.
 //
-// Each function returns a new record of the same run. If no sample has to be removed, the result is an
-// unchanged copy.
+// Each function returns a new record of the same recorded run. If no sample has to be removed, the result is
+// an unchanged copy.
 
 #include <cstddef>
 #include <span>
@@ -13,7 +13,7 @@
 namespace softgrip::sysid {
 
 /// Number of readings that is sufficient for a diagnosis: one hour at 10 Hz, or seven minutes at 100 Hz. More
-/// readings only increase the computing time of a diagnosis or of the choice of a structure.
+/// readings only increase the computing time of a diagnosis or of the choice of a model structure.
 inline constexpr std::size_t enough_readings = 40'000;
 
 /// Returns the samples with the indices `kept`, with the durations between these samples. The sampling of the
@@ -22,15 +22,15 @@ inline constexpr std::size_t enough_readings = 40'000;
 [[nodiscard]] Record thinned_record(const Record& record, std::span<const std::size_t> kept);
 /// Returns every `stride`-th sample, beginning with the first, for a coarse fit from many starting points. A
 /// held command is replaced by its mean over the removed samples. If the command jumps between two kept
-/// samples, each of the two gets the local mean of the command. Otherwise the jump would be early or late by
-/// up to one interval. Where the command changes its slope without a jump, it is not changed.
+/// samples, each of the two gets the local mean of the command. Without this mean, the jump would be early or
+/// late by up to one interval. A command whose slope changes without a jump keeps its values.
 [[nodiscard]] Record thinned_record(const Record& record, std::size_t stride);
 /// Keeps every n-th sample of a record. n is the largest number for which the mean interval between kept
 /// samples is at most `interval_s`; it is at least 1.
 [[nodiscard]] Record thinned_to(const Record& record, double interval_s);
-/// Thins a record like thinned_to() and replaces each kept reading by the mean of the readings around it. The
-/// noise decreases with the square root of the number of averaged readings. A motion is preserved if it is
-/// almost linear within `interval_s`.
+/// Removes samples of a record as thinned_to() does, and replaces each kept reading by the mean of the
+/// readings around this reading. The noise decreases with the square root of the number of averaged readings.
+/// A motion is preserved if it is almost linear within `interval_s`.
 [[nodiscard]] Record averaged_to(const Record& record, double interval_s);
 /// Averages all records so that about `most` readings remain in total. Each mean covers at most `longest_s`.
 /// If the campaign is very long, more than `most` readings therefore remain.
@@ -45,8 +45,8 @@ inline constexpr std::size_t enough_readings = 40'000;
 /// linearly; a held drive is constant within a step. Only the original samples have readings.
 /// @param parts  at least 1; sample i of the record becomes sample i * parts of the result.
 [[nodiscard]] Record finer_record(const Record& record, std::size_t parts);
-/// Keeps all samples, but removes all readings of each record except every k-th reading, so that at most
-/// about `most` readings remain in total.
+/// Keeps all samples, but removes all readings of each record except every k-th reading, so that about `most`
+/// readings or fewer remain in total.
 [[nodiscard]] std::vector<Record> with_fewer_readings(std::vector<Record> records, std::size_t most);
 /// Returns a log with every `stride`-th value of times, pressures, readings and supply. The other columns are
 /// not thinned.

@@ -34,7 +34,8 @@ void make_rising(std::span<double> values, double sign) {
 std::vector<std::size_t> turning_points(const std::vector<double>& values, double least) {
   std::vector<std::size_t> turns{0};
   std::size_t highest = 0, lowest = 0;
-  // Both are true until the signal has moved by more than `least` in one direction.
+  // The variables may_fall and may_rise are both true until the signal has moved by more than `least` in one
+  // direction.
   bool may_fall = true, may_rise = true;
   const auto turn = [&](std::size_t at) {
     if (at > turns.back()) turns.push_back(at);

@@ -1,5 +1,5 @@
 #pragma once
-// Detects wrong units. If a unit is wrong, two quantities differ by the ratio of two units.
+// Detects wrong units. If a unit is wrong, two values that should be equal differ by the ratio of two units.
 
 #include <string>
 
@@ -12,8 +12,9 @@ namespace softgrip::sysid {
 [[nodiscard]] std::string pressure_units_apart(double factor);
 
 /// Returns the probable mistake if the readings are `factor` times the expected values: "psi in a pressure
-/// column taken for kPa (a factor of 6.895)". Returns "" if `factor` is not the ratio of two units. @param
-/// factor  above 0. @param unit  unit of the readings.
+/// column taken for kPa (a factor of 6.895)". Returns "" if `factor` is not the ratio of two units.
+/// @param factor  above 0.
+/// @param unit  unit of the readings.
 [[nodiscard]] std::string mistaken_unit(double factor, model::OutputUnit unit);
 
 }  // namespace softgrip::sysid

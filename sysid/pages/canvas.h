@@ -10,11 +10,12 @@
 
 namespace softgrip::sysid {
 
-/// Point of a text that is placed at the given position.
+/// Horizontal point of a text that is placed at the given position: the start, the middle or the end of the
+/// text.
 enum class Anchor { start, middle, end };
 
-/// Returns the approximate width of a text [px] for margins and legends. The font that the reader's system
-/// will use is not known.
+/// Returns the width of a text [px] for margins and legends. The width is approximate, because the font of
+/// the reader's system is unknown.
 [[nodiscard]] double text_width(std::string_view text);
 
 /// A sequence of SVG elements. All lengths are in pixels. A parameter `more` contains additional attributes
@@ -30,7 +31,7 @@ class Canvas {
              std::string_view more = {});
   /// Draws a text with an outline that keeps the text readable on a curve.
   void words_on_curve(Pixel at, Anchor anchor, std::string_view text);
-  /// Appends SVG markup without escaping it. The markup must come from a file of this folder.
+  /// Appends SVG markup without escaping it. The markup must be produced by the code in this folder.
   void raw(std::string_view markup) { markup_ += markup; }
 
   [[nodiscard]] const std::string& markup() const noexcept { return markup_; }

@@ -193,9 +193,9 @@ class Painter {
     }
   }
 
-  /// Draws each point as a stroke of length 0 with round ends. For the colours `error` and `other`, the ends
-  /// are square. These strokes have a small length, because PDF renderers draw a square end only if the
-  /// stroke has a direction.
+  /// Draws each point as a stroke of length 0 with round ends. In the colours `error` and `other`, the
+  /// strokes have square ends and a small length. The length is necessary because PDF renderers draw a square
+  /// end only if the stroke has a direction.
   void points(const std::vector<Pixel>& curve, Colour colour, double radius) {
     const bool square = colour == Colour::error || colour == Colour::other;
     const auto dots = distinct_dots(curve);
@@ -251,7 +251,7 @@ class Painter {
         canvas_.words_on_curve({right_ - 4, y.px(mark.at) - 4}, Anchor::end, mark.label);
     } else {
       canvas_.line({x.px(mark.at), upper_}, {x.px(mark.at), lower_}, Colour::text, dashes);
-      // The label is placed on the side of its line that has enough space for the label.
+      // The label is placed on the side of its line on which there is enough space for the label.
       const bool fits = x.px(mark.at) + 4 + text_width(mark.label) <= right_;
       const double at = fits ? x.px(mark.at) + 4 : x.px(mark.at) - 4;
       if (!mark.label.empty())

@@ -2,10 +2,10 @@
 // Draws charts as SVG, with lines, points, bands and bars. The SVG contains no script and uses the fonts of
 // the reader's system.
 //
-// A chart is a plain value. markup_of() draws it as part of a figure (figure.h). Units of axes are written in
-// words. Long series are thinned to the resolution of the picture. If x increases, the lowest and the highest
-// value of each pixel column are kept. A single outlier among a million samples therefore remains visible. In
-// other curves, such as loops, points that coincide with points already drawn are removed.
+// A chart contains only data; markup_of() draws the chart as part of a figure (figure.h). Units of axes are
+// written in words. Long series are thinned to the resolution of the picture. If x increases, the lowest and
+// the highest value of each pixel column are kept. A single outlier among a million samples therefore remains
+// visible. In other curves, such as loops, points that coincide with points already drawn are removed.
 
 #include <optional>
 #include <string>
@@ -37,7 +37,7 @@ struct Series {
   double width = 1.4;  ///< width of the line, or radius of the points [px]
 };
 
-/// A straight line across the chart, with a label.
+/// A straight line across the chart, with a label. The line is vertical or horizontal.
 struct Mark {
   enum class Direction { vertical, horizontal };
   Direction direction = Direction::horizontal;
@@ -66,7 +66,8 @@ struct Chart {
 
 /// Returns a chart whose x axis is labelled with names in place of numbers.
 [[nodiscard]] Chart chart_over(std::vector<std::string> names);
-/// Returns points for a chart of chart_over(), one value per name. A value that is NaN gives no point.
+/// Returns the points of a chart that chart_over() has created, one value for each name. A value that is NaN
+/// gives no point.
 [[nodiscard]] Series points_over_names(std::string label, Colour colour, std::vector<double> values);
 
 /// Rows of charts, one below the other. A row contains one chart of full width or several charts side by

@@ -26,8 +26,8 @@ bool x_increases(const std::vector<Pixel>& curve) {
   return true;
 }
 
-/// Largest numbers of strokes and dots of a curve. A reader cannot distinguish a larger number from a filled
-/// area.
+/// Largest numbers of strokes and dots of a curve. A reader cannot distinguish a larger number of strokes or
+/// dots from a filled area.
 constexpr std::size_t most_strokes = 9000;
 constexpr std::size_t most_dots = 6000;
 

@@ -24,8 +24,8 @@ class Scale {
   [[nodiscard]] double px(double value) const;
   [[nodiscard]] double lower() const { return lower_; }
   [[nodiscard]] double upper() const { return upper_; }
-  /// Returns at most about `most` ticks at 1, 2 or 5 times a power of ten, or at powers of ten on a
-  /// logarithmic axis.
+  /// Returns about `most` ticks or fewer. The ticks are at 1, 2 or 5 times a power of ten, or at powers of
+  /// ten on a logarithmic axis.
   [[nodiscard]] std::vector<Tick> ticks(int most) const;
 
  private:

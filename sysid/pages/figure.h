@@ -1,5 +1,6 @@
 #pragma once
-// A figure of a report: charts or a drawing, with a name, a caption and the values that the picture shows.
+// Defines a figure of a report: charts or a drawing, with a name, a caption and the values that the picture
+// shows.
 
 #include <optional>
 #include <string>
@@ -14,7 +15,7 @@ struct Drawing {
   std::string markup;  ///< SVG elements that a Canvas has produced
   int width = 760;     ///< width of the drawing [px]
   int height = 100;    ///< height of the drawing [px]
-  /// Names of the columns of `rows`. The rows contain the values that the drawing shows.
+  /// Names of the columns of `rows`. `rows` contains the values that the drawing shows.
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
 };
@@ -32,7 +33,7 @@ struct Figure {
 /// Returns the figure as the text of a separate SVG file that contains both colour schemes.
 [[nodiscard]] std::string svg_file_of(const Figure& figure);
 /// Returns the values of the figure as CSV text with a header line: all values of each curve, or the rows of
-/// the drawing. Curves of a chart that have equal x values share one column `x`.
+/// the drawing. Curves of a chart that have equal x values share one column of x values.
 [[nodiscard]] std::string csv_of(const Figure& figure);
 
 }  // namespace softgrip::sysid

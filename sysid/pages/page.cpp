@@ -11,8 +11,8 @@ namespace {
 
 using result::element, result::escaped, result::html_of;
 
-/// Numbers of bytes that must remain free below the size limit of a page. The first applies after a figure is
-/// added. The second applies after a copy of a figure is added that the reader can save.
+/// Numbers of bytes that must remain free below the size limit of a page. A figure must leave `kept_for_text`
+/// bytes free. A copy of a figure, which the reader can save, must leave `kept_for_figures` bytes free.
 constexpr std::size_t kept_for_text = 150'000;
 constexpr std::size_t kept_for_figures = 450'000;
 /// A page has a table of contents if it has at least this number of sections.
@@ -45,8 +45,8 @@ pre{font:12.5px/1.45 ui-monospace,monospace;background:var(--panel);padding:12px
 @media print{body{max-width:none;padding:0;font-size:9.5pt;line-height:1.36;print-color-adjust:exact;-webkit-print-color-adjust:exact}h1{margin-bottom:6px}h2{font-size:13pt;margin:14px 0 4px;padding-top:8px;break-after:avoid}h3{font-size:10.5pt;margin:10px 0 2px;break-after:avoid}p,ul,table,figure{margin:5px 0}p,ul,figcaption{max-width:none}.verdict{font-size:12.5pt;padding:8px 12px;margin-bottom:10px}table,dl,figcaption,pre{font-size:8.5pt}th,td{padding:1px 10px 1px 0}figure,tr,.verdict{break-inside:avoid}figure svg{margin:0 auto;max-width:82%}nav,figcaption a{display:none}.appendix{break-before:page}pre{white-space:pre-wrap}}
 )";
 
-/// Returns a data URI of an SVG text. Blanks and digits are most of the bytes of such a text, so they are not
-/// escaped.
+/// Returns a data URI of an SVG text. Blanks and digits are not escaped, because they are most of the bytes
+/// of the text.
 std::string uri_of(std::string_view svg) {
   constexpr std::string_view escaped_ones = "%#\"<>&'\n";
   constexpr std::string_view digits = "0123456789ABCDEF";

@@ -2,8 +2,8 @@
 // Builds the self-contained HTML page of a report: the verdict first, then the provenance, then the sections.
 //
 // The page has no JavaScript and no references to other files. It can be printed. On a screen, it uses the
-// reader's colour scheme. Every text is escaped here. Only pictures from this folder are inserted as markup.
-// Figures are numbered in the order of the page.
+// reader's colour scheme. Every text is escaped. Only pictures that the code in this folder draws are
+// inserted as markup. Figures are numbered in the order of the page.
 
 #include <cstddef>
 #include <string>
@@ -15,7 +15,7 @@
 
 namespace softgrip::sysid {
 
-/// Rating of a verdict; determines the colour of the verdict.
+/// Rating of a verdict. The rating determines the colour in which the page shows the verdict.
 enum class Tone { good, doubtful, bad };
 
 using result::Table, result::Terms, result::text_of;
@@ -23,11 +23,12 @@ using result::Table, result::Terms, result::text_of;
 /// A report page, built from top to bottom.
 class Page {
  public:
-  /// Largest size of a page [bytes], for logs of any length. If a figure would make the page larger, a
-  /// sentence replaces the figure.
+  /// Largest size of a page [bytes]; it does not depend on the length of the logs. If a figure would make the
+  /// page larger than this size, a sentence replaces the figure.
   static constexpr std::size_t most_bytes = 1'500'000;
 
-  /// @param title  title of the document. @param verdict  one sentence for a technician.
+  /// @param title  title of the document.
+  /// @param verdict  one sentence for a technician.
   Page(std::string title, std::string verdict, Tone tone);
 
   /// Adds entries below the verdict, such as versions, files and hashes.
@@ -40,7 +41,7 @@ class Page {
   void list(const std::vector<std::string>& items);
   void terms(const Terms& entries);
   void table(const Table& table);
-  /// Adds a figure with its number, its caption and a link with which the reader saves the figure as a file.
+  /// Adds a figure with its number and its caption. A link lets the reader save the figure as a file.
   void figure(Figure figure);
   /// Adds a text in a fixed-width font with its line breaks, for example a model file.
   void code(std::string_view text);

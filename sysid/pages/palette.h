@@ -32,7 +32,8 @@ enum class Colour {
 /// Returns the colour code of the light scheme, such as "#0072b2".
 [[nodiscard]] std::string_view light_code(Colour colour);
 
-/// Returns attributes of an SVG element, with a leading blank. The element inherits all other attributes.
+/// Returns attributes that set the colours of an SVG element, with a leading blank. The element inherits the
+/// other attributes.
 [[nodiscard]] std::string stroked(Colour stroke);
 [[nodiscard]] std::string filled(Colour fill, std::optional<Colour> stroke = std::nullopt);
 

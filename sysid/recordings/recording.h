@@ -33,16 +33,16 @@ struct Recording {
   std::vector<RecordedEvent> events;
 };
 
-/// Reads the folder of a recording, or a single log file. If a file cannot be opened, the error is a
-/// sentence. If a log has problems, the error is empty, and all problems are added to `problems`.
+/// Reads the folder of a recording, or a single log file. If a file cannot be opened, the returned error is a
+/// sentence. If a log has problems, the returned error is empty, and all problems are added to `problems`.
 [[nodiscard]] tl::expected<Recording, std::string> read_recording(const std::string& path,
                                                                   document::Problems& problems);
 
-/// Returns the numbers in a column that is not part of the log format. NaN: the cell does not contain a
-/// number. The result is empty if the log has no such column.
+/// Returns the numbers in a column that is not part of the log format. A cell without a number gives NaN. The
+/// result is empty if the log does not have this column.
 [[nodiscard]] std::vector<double> numbers_of(const Log& log, const std::string& column);
-/// Returns the texts in a column that is not part of the log format. The result is empty if the log has no
-/// such column.
+/// Returns the texts in a column that is not part of the log format. The result is empty if the log does not
+/// have this column.
 [[nodiscard]] std::vector<std::string> texts_of(const Log& log, const std::string& column);
 
 }  // namespace softgrip::sysid

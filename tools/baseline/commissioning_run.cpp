@@ -20,15 +20,16 @@ namespace {
 
 using Failure = tl::unexpected<NotCommissioned>;
 
-/// Highest pressure of the first, gentle motion, as a share of the channel's largest pressure.
+/// Highest pressure of the first, gentle motion, as a share of the largest pressure of the channel.
 constexpr double gentle_share = 0.3;
-/// Smallest displacement that counts as a motion, as a share of the displacement that the model predicts.
+/// Smallest measured displacement that counts as a motion, as a share of the displacement that the model
+/// predicts.
 constexpr double least_motion = 0.1;
-/// Largest allowed displacement, as a share of the distance from rest to displacement_max_mm.
+/// Largest displacement in the experiments, as a share of the distance from rest to displacement_max_mm.
 constexpr double range_share = 0.9;
 constexpr int most_corrections = 8;
-/// Time of a motion that its planned duration does not contain: measuring at rest, connecting to the board
-/// and disconnecting [s].
+/// Additional time for each motion [s]. Its planned duration does not contain this time for measuring at
+/// rest, connecting to the board and disconnecting.
 constexpr double pause_s = 3;
 
 /// Returns a waveform of slow triangles from 0 to `share` times the largest pressure.
@@ -48,8 +49,9 @@ sysid::Waveform gentle(const sysid::RigLimits& limits) {
               limits);
 }
 
-/// Returns the motion that precedes the first run. The first motion to a displacement, or the first after a
-/// long pause, differs from later motions. It also changes the rest position.
+/// Returns the motion that precedes the first run. It is needed because the first motion to a displacement,
+/// and the first motion after a long pause, are different from later motions. The first motion also changes
+/// the rest position.
 sysid::Waveform first_load(const sysid::RigLimits& limits) {
   return slow("first_load", "motion to the full pressure, so that both runs begin after equal loads", 1, 2,
               limits);
@@ -66,7 +68,7 @@ std::vector<sysid::Waveform> chosen(const std::vector<std::string>& names, const
   return result;
 }
 
-/// The displacement of a finger in a log, relative to its first reading.
+/// The reading of a finger at rest in a log, and the largest displacement in this log.
 struct Reach {
   double rest_mm = std::nan("");
   double motion_mm = 0;
@@ -93,8 +95,8 @@ double expected_mm(const ExperimentRig& rig, const sysid::Waveform& waveform) {
   return reach_of(log).motion_mm;
 }
 
-/// Returns limits of the rig for the experiments. At the largest pressure of these limits, no experiment
-/// exceeds `range_share` of the displacement range.
+/// Returns limits of the rig for the experiments. Up to the largest pressure of these limits, the finger uses
+/// at most `range_share` of its displacement range.
 /// @param ratio    measured displacement divided by the displacement that the model predicts.
 /// @param rest_mm  reading of the sensor at rest.
 sysid::RigLimits limits_for(const ExperimentRig& rig, const std::vector<std::string>& experiments,
@@ -157,7 +159,7 @@ class Commissioning {
            "--move)";
   }
 
-  /// Plays the gentle motion. Computes the limits of the experiments from the displacement during this
+  /// Plays the gentle motion, and computes the limits of the experiments from the displacement during this
   /// motion.
   tl::expected<void, NotCommissioned> begin(const std::string& folder) {
     const sysid::Waveform waveform = gentle(runs_.limits);
@@ -180,7 +182,8 @@ class Commissioning {
                                                std::vector<sysid::Log>& logs) {
     for (const sysid::Waveform& waveform : chosen(options_.experiments, runs_.limits)) {
       const double rest_s =
-          rig_.simulated ? 0 : options_.rest_s;  // a simulated rig starts each motion from its initial state
+          rig_.simulated ? 0 : options_.rest_s;  // a simulated rig needs no rest, because it starts each
+                                                 // motion from its initial state
       if (signals_->wait(nanoseconds(rest_s)) != 0)
         return fails(ExitCode::failed, "stopped by the user; the rig is vented");
       runs_.minutes += rest_s / 60;
@@ -223,8 +226,8 @@ class Commissioning {
 
   const ExperimentRig& rig_;
   const CommissioningOptions& options_;
-  // Created after the user's consent. A signal is held back until the recordings are removed, so that it does
-  // not end the process between two motions.
+  // Receives the signals. This object is created after the user has given consent. It holds a signal back
+  // until the recordings are removed, so that the signal does not end the process between two motions.
   std::optional<daemon::Signals> signals_;
   CommissioningRuns runs_;
   std::uint64_t motions_ = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Plays the commissioning experiments of a healthy finger twice on its rig.
+// Plays the commissioning experiments of a healthy finger on its rig, each experiment twice.
 
 #include <functional>
 #include <string>
@@ -14,32 +14,32 @@
 
 namespace softgrip::tools {
 
-/// Returns the names of the default experiments (see sysid::experiment_menu()). They cover several pressure
+/// Returns the names of the default experiments (see sysid::experiment_menu()). They contain several pressure
 /// levels, pressure rates from the lowest to 100 times the lowest, holds and small hysteresis loops.
 [[nodiscard]] const std::vector<std::string>& usual_commissioning();
 
 struct CommissioningOptions {
-  std::vector<std::string> experiments;  ///< names of the experiments to run, each at most once
+  std::vector<std::string> experiments;  ///< names of the experiments to play, each at most once
   /// Rest at zero pressure before each experiment [s], because creep needs about a minute to decay. A
   /// simulated rig needs no rest, because each experiment starts from its initial state.
   double rest_s = 60;
-  Consent consent;                               ///< called once before the first motion; never called for a
-                                                 ///< simulated rig
-  std::function<void(const std::string&)> tell;  ///< prints one line before each motion; may be empty
+  Consent consent;  ///< function that requests the user's consent; called once before the first motion, never
+                    ///< called for a simulated rig
+  std::function<void(const std::string&)> tell;  ///< function that prints one line before each motion; may be
+                                                 ///< empty
 };
 
 struct CommissioningRuns {
   std::vector<sysid::Log> first;   ///< logs of the first run of the selected channel, one per experiment
-  std::vector<sysid::Log> second;  ///< logs of the second run, one per experiment
-  sysid::RigLimits limits;         ///< limits of pressure and pressure rate with which the experiments were
-                                   ///< played
-  double minutes = 0;              ///< time on the rig: planned durations of the motions and rests [min]
+  std::vector<sysid::Log> second;  ///< logs of the second run of the selected channel, one per experiment
+  sysid::RigLimits limits;         ///< limits of pressure and pressure rate during the experiments
+  double minutes = 0;  ///< time on the rig [min]: the sum of the planned durations of motions and rests
 };
 
-/// The reason why the experiment was not completed. The rig is vented, and no files remain.
+/// The reason why the experiments were not completed. The rig is vented, and no files remain.
 struct NotCommissioned {
   ExitCode code = ExitCode::failed;
-  std::string why;  ///< the reason why the experiments were not completed, as a sentence
+  std::string why;  ///< reason why the experiments were not completed, as a sentence
 };
 
 /// Plays the commissioning experiments twice. First, a gentle motion checks that the finger moves, and its

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Largest length of a line from the daemon [bytes]; a longer line counts as malformed.
+// Greatest permitted length of a line from the daemon [bytes]. A longer line counts as malformed.
 constexpr std::size_t longest_line = std::size_t{8} << 20U;
 
 constexpr const char* how_to_start =
@@ -48,7 +48,7 @@ std::string listed(const Json& problems) {
   std::string text;
   for (const Json& problem : problems) {
     text += "\n" + problem.value("file", "");
-    // A problem without the text of a line concerns the whole file, so it is shown without a line number.
+    // A problem without `line_text` concerns the whole file, so it is shown without a line number.
     if (problem.value("line_text", Json()) != Json("")) {
       text +=
           ":" + std::to_string(problem.value("line", 0)) + ":" + std::to_string(problem.value("column", 0));
@@ -89,7 +89,7 @@ tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::strin
 
 tl::expected<DaemonClient, ClientFailure> DaemonClient::connect_at_once(const std::string& path) {
   auto client = connect(path, SOCK_NONBLOCK, longest_send);
-  // connect() must not block, but send() may block from here on, so that it sends a line completely.
+  // connect() must not block. From here on the socket may block, so that send() sends each line completely.
   if (client) ::fcntl(client->descriptor(), F_SETFL, 0);
   return client;
 }
@@ -101,7 +101,7 @@ tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::strin
     return tl::unexpected{ClientFailure{ExitCode::io, "the path " + path + " is too long for a socket"}};
   Descriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | flags, 0)};
   const timeval limit{send_limit.count() / 1000, send_limit.count() % 1000 * 1000};
-  // SO_SNDTIMEO limits the duration of connect() as well as that of send().
+  // SO_SNDTIMEO limits the duration of connect() and of send().
   if (!socket || ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit) != 0 ||
       !net::connect_unix(socket, *address)) {
     return tl::unexpected{cannot_connect(path, errno)};
@@ -116,7 +116,8 @@ void DaemonClient::send(const Json& request) {
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) {
       deaf_ = errno == EAGAIN || errno == EWOULDBLOCK;
-      // The daemon must not read a partial request as the beginning of the next request.
+      // The daemon has a partial request and would join it with the next request, so the connection is
+      // closed.
       if (deaf_) ::shutdown(socket_.get(), SHUT_RDWR);
       return;
     }
@@ -156,7 +157,7 @@ tl::expected<std::optional<Json>, ClientFailure> DaemonClient::next_line(std::ch
   return std::optional<Json>{std::move(*line)};
 }
 
-/// Ends the connection, because the lines after a malformed line may be malformed as well.
+/// Ends the connection, because the lines after a malformed line may also be malformed.
 ClientFailure DaemonClient::malformed(const std::string& why) {
   ::shutdown(socket_.get(), SHUT_RDWR);
   pending_.clear();

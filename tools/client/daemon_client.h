@@ -18,7 +18,7 @@ namespace softgrip::tools {
 /// Returns the default path of softgripd's socket: $SOFTGRIP_SOCKET, or the path of the packaged service.
 [[nodiscard]] std::string default_socket_path();
 
-/// Returns the problems that the daemon found in a sequence as text. Each problem begins a new line:
+/// Returns the text of the problems that the daemon found in a sequence. Each problem begins a new line:
 /// "file:line:col: message".
 [[nodiscard]] std::string listed(const nlohmann::ordered_json& problems);
 
@@ -35,15 +35,14 @@ class DaemonClient {
 
   /// Connects to the daemon. If no daemon runs, the failure explains how to start one.
   [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect(const std::string& path);
-  /// Connects without waiting. Fails if the daemon's queue of unaccepted connections is full. Each later
-  /// request waits at most `longest_send` until it is sent. After connect(), the limit for the connection and
-  /// for each request is `longest_answer`.
+  /// Connects without waiting. Fails if the daemon's queue of unaccepted connections is full. Sending a later
+  /// request takes at most `longest_send`. For the function connect() above, this limit is `longest_answer`.
   [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect_at_once(const std::string& path);
   static constexpr std::chrono::milliseconds longest_send{50};
 
-  /// Sends a request without waiting for the response. If the daemon does not accept the request in time, the
-  /// connection ends. After a failure, next_line() first returns all lines that the daemon sent before it
-  /// closed the connection, and then the failure. The last of these lines may state the reason.
+  /// Sends a request and does not wait for the response. If the daemon does not accept the request in time,
+  /// the connection ends. After a failure, next_line() first returns all lines that the daemon sent before
+  /// the connection ended, and then the failure. The last of these lines may contain the reason.
   void send(const nlohmann::ordered_json& request);
   /// Returns the `result` of a response that next_line() returned, or a failure if the daemon refused the
   /// request.
@@ -60,7 +59,7 @@ class DaemonClient {
   [[nodiscard]] tl::expected<std::optional<nlohmann::ordered_json>, ClientFailure> next_line(
       std::chrono::milliseconds patience);
 
-  /// Returns the file descriptor of the socket for poll().
+  /// Returns the file descriptor of the socket. The caller uses it for poll().
   [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
 
  private:
@@ -79,7 +78,7 @@ class DaemonClient {
 /// Returns true if a daemon listens on this socket. The daemon then controls the board, even if it does not
 /// respond.
 [[nodiscard]] bool daemon_runs(const std::string& path);
-/// Advice after a refusal of a command that cannot run while the daemon runs.
+/// Advice for a command that was refused because the daemon runs.
 inline constexpr const char* stop_the_daemon =
     "softgripd runs and controls the board: first stop softgripd (systemctl stop softgripd)";
 

@@ -70,8 +70,8 @@ void add_plain_request(CLI::App& program, ExitCode& outcome, const std::string& 
 
 namespace {
 
-/// Waits at most 3 s until the rig is idle or faulted and returns `under_pressure` of its status. Returns
-/// null if no finger is pressurised, or if the rig still moves after 3 s.
+/// Waits at most 3 s until the rig is idle or faulted, and returns `under_pressure` of the rig's status.
+/// Returns null if no finger is pressurised, or if the rig still moves after 3 s.
 Json pressure_left(DaemonClient& client) {
   constexpr std::chrono::milliseconds pause{20};
   for (int looks = 0; looks < 150; ++looks) {

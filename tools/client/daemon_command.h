@@ -1,5 +1,5 @@
 #pragma once
-// Options, requests and output that all subcommands with a connection to the daemon share.
+// Options, requests and output of all subcommands that connect to the daemon.
 
 #include <functional>
 #include <memory>
@@ -18,11 +18,12 @@ struct DaemonOptions {
   bool json = false;
 };
 
-/// Adds the options --socket, --rig and --json. With --rig, the rig file names the socket. If it names none,
-/// the program prints a sentence and ends with a CLI::RuntimeError.
+/// Adds the options --socket, --rig and --json. With --rig, the path of the socket is read from the rig file.
+/// If the rig file contains no path, the program prints a sentence and ends with a CLI::RuntimeError.
 void add_daemon_options(CLI::App& command, DaemonOptions& options);
 
-/// Connects to the daemon, sends one request and returns its result. Prints the message of a failure.
+/// Connects to the daemon, sends one request and returns the result of the request. If this fails, prints the
+/// message of the failure.
 [[nodiscard]] tl::expected<nlohmann::ordered_json, ExitCode> ask_daemon(
     const DaemonOptions& options, const nlohmann::ordered_json& request);
 
@@ -31,14 +32,15 @@ void add_daemon_options(CLI::App& command, DaemonOptions& options);
 /// JSON.
 void add_plain_request(CLI::App& program, ExitCode& outcome, const std::string& name,
                        const std::string& meaning, std::string done);
-/// Does the same, but prints the sentence that `done` returns for the result of the request.
+/// Adds a subcommand that sends one request without arguments. After the daemon has accepted the request, the
+/// subcommand prints the sentence that `done` returns for the result.
 void add_plain_request(CLI::App& program, ExitCode& outcome, const std::string& name,
                        const std::string& meaning,
                        std::function<std::string(const nlohmann::ordered_json& result)> done);
 
-/// Adds a subcommand that ends motion, like add_plain_request(). When the rig is idle, the subcommand also
-/// prints the pressurised fingers and the command that vents them. With --json, the result contains them as
-/// `under_pressure`.
+/// Adds a subcommand that ends motion, in the same way as add_plain_request(). When the rig is idle, the
+/// subcommand also prints the pressurised fingers and the command that vents them. With --json, the result
+/// contains the pressurised fingers as `under_pressure`.
 void add_ending_request(CLI::App& program, ExitCode& outcome, const std::string& name,
                         const std::string& meaning, std::string done);
 

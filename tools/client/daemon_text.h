@@ -12,36 +12,39 @@
 
 namespace softgrip::tools {
 
-/// The parts of a status as lines, so that a screen can arrange them. A missing value is shown as "-".
+/// The parts of a status as lines of text. A screen can show the parts in any arrangement. A missing value is
+/// shown as "-".
 struct StatusParts {
-  std::vector<std::string> head;  ///< lines with state, sequence, pressurised fingers and fault
+  std::vector<std::string> head;  ///< lines about state, sequence, pressurised fingers and fault
   std::vector<std::vector<std::string>> channels;
-  std::vector<std::string> board;      ///< lines with the connection to the board and the attempts to restore
-                                       ///< it
-  std::vector<std::string> machinery;  ///< lines with the state of the control loop and of the recording
+  std::vector<std::string> board;  ///< lines about the connection to the board and the attempts to restore
+                                   ///< this connection
+  std::vector<std::string> machinery;  ///< lines about the state of the control loop and of the recording
 };
-/// Formats the parts of a status. If `trends` contains one element per channel, trends replace the bars.
+/// Formats the parts of a status. If `trends` contains one element per channel, trends are shown in place of
+/// bars.
 [[nodiscard]] StatusParts parts_of(const nlohmann::ordered_json& status, const ViewStyle& style,
                                    const std::vector<ChannelTrends>* trends = nullptr);
 
 /// Returns the lines of all parts in one list.
 [[nodiscard]] std::vector<std::string> view_of(const nlohmann::ordered_json& status, const ViewStyle& style);
 
-/// Returns the status in one line, for logs and pipes.
+/// Returns the status as one line, for logs and pipes.
 [[nodiscard]] std::string line_of_status(const nlohmann::ordered_json& status);
 
 /// Returns one line per sequence, followed by one line per parameter with name, range, unit, default and
 /// description. If a sequence cannot be started, its line states the reason.
 [[nodiscard]] std::vector<std::string> view_of_sequences(const nlohmann::ordered_json& sequences);
 
-/// Returns the names of the sequences.
+/// Returns the names of the sequences in a reply of the daemon.
 [[nodiscard]] std::vector<std::string> names_of_sequences(const nlohmann::ordered_json& sequences);
 
 /// Formats an event of the socket API as "   12.340 s  warning  left: Grip result: NO PART.". If the event
 /// has a time of day, the line begins with local time: "2026-11-21 09:32:05.123  warning  ...".
 [[nodiscard]] std::string line_of_event(const nlohmann::ordered_json& event);
 
-/// Replaces the control characters in each line of a text, so that a terminal does not execute them.
+/// Replaces the control characters in each line of a text by visible characters, so that a terminal does not
+/// execute them.
 [[nodiscard]] std::string shown_lines(std::string_view text);
 
 /// Formats the response to an acknowledgement: "acknowledged F202 reading_out_of_range of left; nothing moves

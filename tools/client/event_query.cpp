@@ -30,8 +30,8 @@ std::optional<Nanoseconds> duration_of(std::string_view number, std::string_view
   return std::strtol(std::string(number).c_str(), nullptr, 10) * found->second * ns_per_s;
 }
 
-/// Parses a local time of day or date. Units larger than those in the text, for example the date, come from
-/// `now`. Smaller units are 0.
+/// Parses a local time of day or date. Units that are missing in the text are taken from `now` if they are
+/// larger than the units in the text, for example the date. Missing smaller units are 0.
 std::optional<Nanoseconds> local_moment(const std::string& text, Nanoseconds now) {
   const time_t now_s = now / ns_per_s;
   for (const char* format : {"%Y-%m-%d %H:%M:%S", "%Y-%m-%d %H:%M", "%Y-%m-%d", "%H:%M:%S", "%H:%M"}) {

@@ -1,5 +1,5 @@
 #pragma once
-// Selects events of the daemon by id, time, severity and number.
+// Selects events of the daemon by id, time and severity, up to a largest number of events.
 
 #include <cstdint>
 #include <optional>
@@ -13,30 +13,31 @@
 
 namespace softgrip::tools {
 
-/// The start of a selection of events: after an event with a given id, or from a given time on.
+/// The start of a selection of events: the selected events are newer than a given event id, or not older than
+/// a given time.
 struct Since {
-  std::uint64_t id = 0;  ///< only events with a larger id than this are selected
-  std::string at;  ///< only events at or after this UTC time, in the format of the socket API; empty: any
-                   ///< time
+  std::uint64_t id = 0;  ///< only events with a larger id than `id` are selected
+  std::string at;        ///< only events at or after this UTC time are selected; format as in the socket API;
+                         ///< empty: all times
 };
 
-/// Parses the number of an event ("1234"), a duration before `now` ("90s", "10min", "2h", "1d"; `now` in
-/// nanoseconds since 1970), or a local time ("10:15", "10:15:30", "2026-11-21", "2026-11-21 10:15"). Returns
-/// nullopt for any other text.
+/// Parses the start of a selection. The text is the id of an event ("1234"), a duration before `now` ("90s",
+/// "10min", "2h", "1d"; `now` in nanoseconds since 1970), or a local time ("10:15", "10:15:30", "2026-11-21",
+/// "2026-11-21 10:15"). Returns nullopt for any other text.
 [[nodiscard]] std::optional<Since> parse_since(const std::string& text, Nanoseconds now);
 
 struct EventQuery {
   Since since;
   std::string severity = "information";  ///< lowest severity of a selected event: information, warning or
                                          ///< error
-  std::size_t lines = 100;               ///< largest number of events; the newest are selected
+  std::size_t lines = 100;  ///< largest number of selected events; the newest events are selected
 };
 
-/// Returns true if the event has the required id, time and severity. Ignores the number `lines`.
+/// Returns true if the event has the required id, time and severity. This function does not use `lines`.
 [[nodiscard]] bool wanted(const EventQuery& query, const nlohmann::ordered_json& event);
 
-/// Returns the events that a query selects, newest last. Sets `newest` to the id of the newest event of the
-/// daemon.
+/// Returns the events that a query selects, the newest event last. Sets `newest` to the id of the newest
+/// event of the daemon.
 [[nodiscard]] tl::expected<std::vector<nlohmann::ordered_json>, ClientFailure> events_of(
     DaemonClient& client, const EventQuery& query, std::uint64_t& newest);
 

@@ -13,7 +13,8 @@ namespace softgrip::tools {
 [[nodiscard]] std::string text_at(const nlohmann::ordered_json& json, const char* key,
                                   std::size_t most = 200);
 [[nodiscard]] std::optional<double> number_at(const nlohmann::ordered_json& json, const char* key);
-/// Returns the object at `key`, or an empty object if the value is missing or is no object.
+/// Returns the object at `key`. Returns an empty object if there is no value, or if the value is not an
+/// object.
 [[nodiscard]] const nlohmann::ordered_json& object_at(const nlohmann::ordered_json& json, const char* key);
 
 }  // namespace softgrip::tools

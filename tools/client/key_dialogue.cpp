@@ -48,8 +48,8 @@ void KeyDialogue::ask(Json request, std::string question, double time_s) {
 
 KeyDialogue::Outcome KeyDialogue::take(std::string_view typed, double time_s, const std::string& ran) {
   lapse(time_s);
-  // Escape alone is a key. If characters follow it, they encode an arrow key or a function key, which is
-  // ignored.
+  // An escape character alone is the escape key. If more characters follow the escape character, they encode
+  // an arrow key or a function key, which is ignored.
   if (typed.size() > 1 && typed.front() == escape_key) return {};
   for (const char one : typed) {
     const Waiting before = waiting_;
@@ -66,7 +66,7 @@ KeyDialogue::Outcome KeyDialogue::key(char key, double time_s, const std::string
   if (waiting_ == Waiting::for_a_yes) {
     waiting_ = Waiting::for_a_key;
     if (key == 'y' || key == 'Y') return {false, std::move(request_)};
-    // The keys for stop and vent are accepted even while a question waits for an answer.
+    // The keys for stop and vent are accepted at all times, even if a question waits for its answer.
     if (key != 's' && key != 'v') return {};
   }
   switch (key) {

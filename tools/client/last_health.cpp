@@ -22,7 +22,7 @@ std::string age_text(double age_s) {
   return age_s < 2 * day_s ? fixed(age_s / hour_s, 0) + " h ago" : fixed(age_s / day_s, 0) + " days ago";
 }
 
-/// Returns the first recommended step for the first candidate fault of a finger, or "" if there is none.
+/// Returns the first recommended step for the first candidate fault of a finger; "" if there is none.
 std::string first_step(const Json& finger) {
   const auto suspects = finger.find("suspects");
   if (suspects == finger.end() || !suspects->is_array() || suspects->empty()) return {};

@@ -17,7 +17,8 @@ using Lines = std::vector<std::string>;
 
 constexpr std::string_view trend_legend = "  trends: 1 column 1 s";
 constexpr std::size_t event_indent = 12;
-/// Smallest number of rows for events. If fewer rows are left, other parts of the screen are omitted first.
+/// Smallest number of rows for events. If fewer rows remain, parts of the screen other than the events are
+/// omitted first.
 constexpr std::size_t fewest_event_rows = 3;
 
 void append(Lines& lines, const Lines& more) {
@@ -45,7 +46,7 @@ Lines lines_of_event(const Json& event, const ViewStyle& style) {
   return broken(style, brief_line_of_event(event), tone, event_indent);
 }
 
-/// Returns the newest events that fit completely into `rows` lines, newest last.
+/// Returns the newest events that fit completely into `rows` lines, the newest event last.
 Lines lines_of_events(const LiveState& state, const ViewStyle& style, std::size_t rows) {
   Lines lines;
   for (auto event = state.events.rbegin(); event != state.events.rend(); ++event) {
@@ -56,7 +57,7 @@ Lines lines_of_events(const LiveState& state, const ViewStyle& style, std::size_
   return lines;
 }
 
-/// The parts of the screen that are omitted if it has few rows.
+/// Parts of the screen that may be omitted if the screen has few rows.
 struct Arrangement {
   bool blanks = true;     ///< true: blank lines separate the parts
   bool machinery = true;  ///< true: the state of the control loop and of the recording is shown
@@ -88,7 +89,7 @@ void take_status(LiveState& state, Json status) {
   state.trends.resize(channels.size());
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const Json& channel = channels[i];
-    // If the reading is not valid, the trend gets a gap, because the last value is out of date.
+    // If the reading is not valid, its last value is out of date, so the trend gets a gap.
     const bool valid = channel.is_object() && channel.value("validity", "") == "valid";
     const auto pressure = channel.is_object() ? number_at(channel, "pressure_kpa") : std::nullopt;
     const auto command = channel.is_object() ? number_at(channel, "command_kpa") : std::nullopt;

@@ -18,12 +18,12 @@ struct LiveState {
   nlohmann::ordered_json status;
   std::vector<ChannelTrends> trends;          ///< recent values of pressure and displacement, one element per
                                               ///< channel
-  std::deque<nlohmann::ordered_json> events;  ///< the latest events of the daemon, newest last
-  std::string question;                       ///< the question that waits for a key; empty: none
-  Span said;                                  ///< message about the last key; empty: no key yet
+  std::deque<nlohmann::ordered_json> events;  ///< the latest events of the daemon, the newest event last
+  std::string question;                       ///< the question that waits for a key; empty if there is none
+  Span said;                                  ///< message about the last key; empty before the first key
 };
 
-/// Number of events that are kept for the screen.
+/// Largest number of events that are kept for the screen.
 inline constexpr std::size_t events_shown = 50;
 
 /// Stores a status and updates the trends.
@@ -32,7 +32,7 @@ void take_status(LiveState& state, nlohmann::ordered_json status);
 void take_event(LiveState& state, nlohmann::ordered_json event);
 
 /// Returns the screen as at most `rows` (> 0) lines. The last line is always the key help. If there are too
-/// few rows, events are omitted first, and a line says so.
+/// few rows, events are omitted first, and a line of the screen states this.
 [[nodiscard]] std::vector<std::string> screen_of(const LiveState& state, const ViewStyle& style,
                                                  std::size_t rows);
 

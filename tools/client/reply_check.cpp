@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Names in this namespace are short, like the keys of the protocol. The namespace prevents conflicts with
+// The names in this namespace are as short as the keys of the protocol. The namespace prevents conflicts with
 // other names.
 namespace reply_shape {
 
@@ -19,7 +19,7 @@ namespace reply_shape {
 /// because copying and printing JSON recursively use the stack for each level.
 constexpr std::size_t deepest = 32;
 
-/// The JSON types of a value as bits, because a field may allow several types.
+/// The JSON types of a value as bits of a mask. A field may allow several types.
 enum Kind : unsigned { text = 1, number = 2, count = 4, flag = 8, object = 16, list = 32, null = 64 };
 
 struct Shape;
@@ -27,14 +27,15 @@ struct Shape;
 struct Field {
   const char* key;
   unsigned kinds;
-  const Shape* inside = nullptr;  ///< shape of the value if it is an object, or of each element if it is a
-                                  ///< list
+  const Shape* inside = nullptr;  ///< required shape of the value if the value is an object, or of each
+                                  ///< element if the value is a list
   bool is_required = false;
 };
 
 struct Shape {
   std::span<const Field> fields;
-  bool is_whole = true;  ///< false: required fields may be missing
+  bool is_whole = true;  ///< true: a value must have all required fields of the shape; false: required fields
+                         ///< may be missing
 };
 
 constexpr Field problem_fields[] = {{"file", text},      {"line", count},   {"column", count},
@@ -176,7 +177,9 @@ bool nests_too_deep(std::string_view line) {
   bool in_text = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const char byte = line[i];
-    if (in_text && byte == '\\') ++i;  // skip the escaped character, because it does not end a text
+    if (in_text && byte == '\\')
+      ++i;  // skips the character after a backslash, because an escaped quote does
+            // not end the text
     if (byte == '"') in_text = !in_text;
     if (in_text) continue;
     if (byte == '[' || byte == '{') ++depth;
@@ -190,7 +193,7 @@ bool nests_too_deep(std::string_view line) {
 }  // namespace
 
 tl::expected<Json, std::string> parse_reply(std::string_view line) {
-  // Check the nesting depth before parsing, because copying and printing JSON use the stack for each level.
+  // The nesting depth is checked before parsing, because copying and printing JSON use stack for each level.
   if (reply_shape::nests_too_deep(line)) {
     return tl::unexpected("a line nests deeper than " + std::to_string(reply_shape::deepest) + " levels");
   }

@@ -12,12 +12,11 @@
 
 namespace softgrip::tools {
 
-/// Adds --set, which may be given several times.
+/// Adds the option --set to a command. The user may give the option several times.
 void add_set_option(CLI::App& command, std::vector<std::string>& settings);
 
 /// Parses the values of --set. If a value has no name or no number, prints a sentence to the standard error
-/// and returns ExitCode::usage. Names and ranges are not checked here, because only the sequence defines
-/// them.
+/// and returns ExitCode::usage. Does not check names and ranges, because they are defined by the sequence.
 [[nodiscard]] tl::expected<std::vector<control::Argument>, ExitCode> arguments_of(
     const std::vector<std::string>& settings);
 

@@ -30,7 +30,7 @@ Tone tone_of_result(const std::string& result) {
   return Tone::bad;
 }
 
-/// The value that a bar shows, the value that its mark shows, and the range of their common scale.
+/// The value of a bar, the value of the mark on this bar, and the range of their common scale.
 struct Bar {
   double lower = 0;
   double upper = 1;
@@ -65,8 +65,8 @@ void add_bar(Line& line, const Bar& bar, std::size_t cells) {
 constexpr std::size_t label_columns = 16;
 constexpr std::size_t numbers_columns = 46;
 constexpr std::size_t shortest_bar = 10;
-/// Column in which a trend begins to the right of the numbers, and smallest screen width for this
-/// arrangement.
+/// Column in which a trend begins, to the right of the numbers. If the screen has fewer than columns_beside
+/// columns, the trend is not placed there.
 constexpr std::size_t trend_column = 56;
 constexpr std::size_t columns_beside = 72;
 
@@ -117,8 +117,8 @@ void add_trends_below(std::vector<std::string>& lines, const ViewStyle& style, c
   lines.push_back(line.text());
 }
 
-/// Adds a line that names the limit which restricts the pressure of the channel, if the status reports such a
-/// limit.
+/// If the status reports a limit that restricts the pressure of the channel, adds a line with the name of
+/// this limit.
 void add_limit(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style) {
   const std::string words = text_at(channel, "limit_text");
   if (words == "-") return;
@@ -146,8 +146,8 @@ void add_channel_head(std::vector<std::string>& lines, const Json& channel, cons
   for (const std::string& line : flowed(style, spans, label_columns)) lines.push_back(line);
 }
 
-/// Smallest span of a trend, as a share of the channel's permitted range. It prevents that noise looks like
-/// motion.
+/// Smallest span of the scale of a trend, as a share of the channel's permitted range. It prevents that noise
+/// looks like motion.
 constexpr double least_share = 0.1;
 
 void add_channel(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style,

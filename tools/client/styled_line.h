@@ -1,6 +1,6 @@
 #pragma once
-// Formats lines for a terminal of known width. A multi-byte character counts as one column, an escape
-// sequence as none.
+// Formats lines for a terminal of known width. A multi-byte character counts as one column. An escape
+// sequence counts as no column.
 
 #include <cstddef>
 #include <string>
@@ -23,21 +23,23 @@ struct Span {
   Tone tone = Tone::plain;
 };
 
-/// One line. A line that is too long is cut and ends with an ellipsis, or with `>` without unicode.
+/// One line of styled text. A line that is too long is cut and ends with an ellipsis. If the terminal has no
+/// Unicode, the cut line ends with `>`.
 class Line {
  public:
   explicit Line(const ViewStyle& style) : style_(style) {}
 
   /// Adds ASCII text at the end of the line.
   Line& add(std::string_view text, Tone tone = Tone::plain);
-  /// Adds one character at the end of the line. It may be multi-byte, but must be one column wide.
+  /// Adds one character at the end of the line. The character may have several bytes, but must be one column
+  /// wide.
   Line& add_glyph(std::string_view glyph, Tone tone = Tone::plain);
-  /// Adds blanks up to the given column, counted from 0.
+  /// Adds blanks until the line reaches the column `column`, counted from 0.
   Line& to_column(std::size_t column);
 
   [[nodiscard]] std::size_t columns() const noexcept { return columns_; }
   [[nodiscard]] const ViewStyle& style() const noexcept { return style_; }
-  /// Returns the line with its escape sequences, cut to the largest length.
+  /// Returns the line with its escape sequences, cut to the largest length of a line.
   [[nodiscard]] std::string text() const;
 
  private:
@@ -51,8 +53,8 @@ class Line {
   std::size_t columns_ = 0;
 };
 
-/// Arranges spans one after the other. A span that does not fit on the line begins another line, indented by
-/// `indent` blanks. Blanks at the beginning of a line are omitted.
+/// Arranges spans one after the other. A span that does not fit on the present line begins a new line,
+/// indented by `indent` blanks. Blanks at the beginning of a line are omitted.
 [[nodiscard]] std::vector<std::string> flowed(const ViewStyle& style, const std::vector<Span>& spans,
                                               std::size_t indent);
 

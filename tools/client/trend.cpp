@@ -19,7 +19,7 @@ void Trend::add(double time_s, std::optional<double> value) {
     values_.clear();
     second_ = second - 1;
   }
-  // After a long pause, add at most as many empty seconds as a trend can show.
+  // The number of empty seconds after a long pause is limited to the number of seconds that a trend can show.
   const long gap = std::min<long>(second - second_, seconds_kept);
   for (long i = 0; i < gap; ++i) values_.emplace_back();
   while (values_.size() > seconds_kept) values_.pop_front();

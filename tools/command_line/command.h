@@ -4,7 +4,7 @@
 //   void add_NAME(CLI::App& program, ExitCode& outcome);
 //
 // and one line in commands.h. The function adds its subcommand to `program`. If the user chose this
-// subcommand, its callback runs it and stores the exit code in `outcome`.
+// subcommand, the callback of the subcommand runs it and stores the exit code in `outcome`.
 
 #include <optional>
 #include <string>

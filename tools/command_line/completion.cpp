@@ -107,7 +107,7 @@ std::vector<std::string> names_of(const std::vector<Choice>& options) {
   return names;
 }
 
-/// Returns `text` between quotes. Each of the characters `escaped` is preceded by a backslash.
+/// Returns `text` between quotes, with a backslash before each character that `escaped` contains.
 std::string quoted(const std::string& text, std::string_view escaped, std::string_view quote) {
   std::string out;
   for (const char c : text) {
@@ -123,8 +123,8 @@ std::string quoted(const std::string& text, std::string_view escaped, std::strin
   return out;
 }
 
-// The completion script for bash. If there are no candidates for an argument, the option `-o default`
-// completes the argument as a file name.
+// Functions that write the completion script for bash. If there are no candidates for an argument, the option
+// `-o default` of bash completes the argument as a file name.
 
 void bash_values(std::string& out, const std::string& command, const std::vector<Choice>& options) {
   for (const Choice& option : options) {
@@ -181,7 +181,7 @@ std::string bash_script(const std::string& program, const Command& top,
   return out;
 }
 
-// The completion script for zsh.
+// Functions that write the completion script for zsh.
 
 std::string zsh_value(const Choice& choice) {
   return choice.words.empty() ? ":file:_files" : ":word:(" + joined(choice.words, " ") + ")";
@@ -234,7 +234,7 @@ std::string zsh_script(const std::string& program, const Command& top, const std
          " \"$@\"\nelse\n  compdef _" + program + " " + program + "\nfi\n";
 }
 
-// The completion script for fish.
+// Functions that write the completion script for fish.
 
 void fish_options(std::string& out, const std::string& begin, const Command& command) {
   for (const Choice& option : command.options) {

@@ -1,5 +1,5 @@
 #pragma once
-// Completion scripts for shells, generated from the options and subcommands of the program.
+// Generates completion scripts for shells from the options and subcommands of the program.
 
 #include <optional>
 #include <string>

@@ -15,8 +15,8 @@
 
 namespace softgrip::tools {
 
-/// Returns the path of a file or folder of the configuration, for example "rig.yaml" or "boards". The path is
-/// in ./config if it exists there, else in the installed configuration.
+/// Returns the path of a file or folder of the configuration, for example "rig.yaml" or "boards". The file or
+/// folder in ./config is used if it exists, otherwise the file or folder in the installed configuration.
 [[nodiscard]] std::string configuration_path(const std::string& name);
 /// Returns the path of the folder with the installed configuration.
 [[nodiscard]] std::string installed_configuration();

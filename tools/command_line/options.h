@@ -1,6 +1,6 @@
 #pragma once
-// Subcommands and their options: the frame of a subcommand, options that several commands share, checks that
-// CLI11 does not provide, and the call of a command.
+// Provides the common code of subcommands: the creation of a subcommand, options that several commands share,
+// and checks of option values that CLI11 does not provide.
 
 #include <cmath>
 #include <memory>
@@ -25,8 +25,8 @@ struct Subcommand {
   Options* options;
 };
 
-/// Adds a subcommand to `program`. If the user chose it, run(options) is called after the command line was
-/// parsed, and the result is stored in `outcome`.
+/// Adds a subcommand to `program`. If the user chose this subcommand, run(options) is called after the
+/// command line was parsed, and the result is stored in `outcome`.
 template <class Options>
 Subcommand<Options> add_command(CLI::App& program, ExitCode& outcome, const std::string& name,
                                 const std::string& about, ExitCode (*run)(const Options&)) {
@@ -36,7 +36,7 @@ Subcommand<Options> add_command(CLI::App& program, ExitCode& outcome, const std:
   return {command, options.get()};
 }
 
-/// Does the same for a function that also gets the call of the command.
+/// Adds a subcommand whose function `run` also gets the command's name and arguments (call_of()).
 template <class Options>
 Subcommand<Options> add_command(CLI::App& program, ExitCode& outcome, const std::string& name,
                                 const std::string& about,
@@ -47,7 +47,7 @@ Subcommand<Options> add_command(CLI::App& program, ExitCode& outcome, const std:
   return {command, options.get()};
 }
 
-/// Adds --seed and --threads to a command that searches with random start points and resampling.
+/// Adds --seed and --threads to a command that uses random start points and resampling.
 template <class Seed, class Threads>
 void add_search_options(CLI::App& command, Seed& seed, Threads& threads) {
   command.add_option("--seed", seed, "Random seed of start points and resampling")->capture_default_str();

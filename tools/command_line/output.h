@@ -14,7 +14,8 @@
 namespace softgrip::tools {
 
 /// Writes a file completely or not at all. "-" is the standard output. An existing path that is not a regular
-/// file, for example /dev/stdout or a pipe, is opened and written. The error is one sentence.
+/// file, for example /dev/stdout or a pipe, is opened and written. On failure, returns a sentence that
+/// describes the error.
 [[nodiscard]] tl::expected<void, std::string> write_output(const std::string& path, std::string_view text);
 
 /// Returns true for "-" and for an existing path that is not a regular file. The name of such an output does

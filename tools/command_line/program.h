@@ -1,6 +1,7 @@
 #pragma once
-// The common frame of the programs: parsing of the command line, its messages, and the options and signals of
-// the programs that serve until a signal ends them (softgrip-web, softgrip-plc and softgrip-rig).
+// Contains the common code of the programs: parsing of the command line, the messages about errors in the
+// command line, and the options and signals of the programs that serve until a signal ends them
+// (softgrip-web, softgrip-plc and softgrip-rig).
 
 #include <cstdint>
 #include <functional>
@@ -53,7 +54,7 @@ void add_gateway_options(
 /// Ignores SIGPIPE, because a failed write already shows that a client has disconnected.
 [[nodiscard]] Descriptor take_server_signals(std::initializer_list<int> others = {});
 
-/// Prints the message that the server is ready, and flushes it.
+/// Prints the message that the server is ready, and flushes the standard output.
 void say_ready(const std::string& message);
 
 }  // namespace softgrip::tools

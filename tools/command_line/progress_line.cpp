@@ -16,7 +16,8 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Returns the two numbers of the first progress such as "3 of 20" in a text, or nullopt.
+/// Returns the two numbers of the first phrase such as "3 of 20" in a text; nullopt if the text has no such
+/// phrase.
 std::optional<std::pair<std::size_t, std::size_t>> share_in(std::string_view text) {
   constexpr std::string_view between = " of ";
   for (std::size_t at = text.find(between); at != std::string_view::npos; at = text.find(between, at + 1)) {
@@ -80,7 +81,8 @@ std::function<void(const std::string&)> ProgressLine::show() {
 std::string ProgressLine::latest() const {
   const double now_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
   std::string line = seconds_text(now_s) + ": " + text_;
-  // Subtract the time since the remaining time was estimated. A remaining time below 1 s is not shown.
+  // Subtract the time that has passed since the estimate of the remaining time. A remaining time below 1 s is
+  // not shown.
   const double rest_s = left_s_ - (now_s - said_s_);
   if (rest_s >= 1) line += ", about " + seconds_text(rest_s) + " left";
   return line;

@@ -12,7 +12,8 @@
 namespace softgrip::tools {
 
 /// Estimates the remaining time of a computation from its elapsed time. The texts state the progress as "3 of
-/// 20". A new estimate begins with a text that states no progress or another total.
+/// 20". A text that states no progress, or a total different from that of the previous text, begins a new
+/// estimate.
 class RestEstimate {
  public:
   /// Returns the remaining time [s] after `text`, which was shown at `now_s`. A negative value means unknown.
@@ -24,8 +25,9 @@ class RestEstimate {
   double began_s_ = 0;
 };
 
-/// Shows the progress. On a terminal, it overwrites one line and clears it at the end. Elsewhere, it prints a
-/// line every 10 s with the latest text, the elapsed time and the estimated remaining time.
+/// Shows the progress. On a terminal, overwrites one line and clears this line at the end. If the output is
+/// not a terminal, prints a line every 10 s with the latest text, the elapsed time and the estimated
+/// remaining time.
 class ProgressLine {
  public:
   explicit ProgressLine(std::FILE* to = stderr, std::chrono::milliseconds every = std::chrono::seconds(10));

@@ -125,7 +125,7 @@ Screen::~Screen() {
 
 void Screen::draw(const std::vector<std::string>& lines) {
   // Write everything at once to avoid flicker. Clear each line before writing it: after a line that fills the
-  // last column, the cursor is still on its last character.
+  // last column, the cursor is still on the last character of this line.
   std::string frame = "\x1b[H";
   const std::size_t rows = std::min<std::size_t>(lines.size(), window().ws_row);
   for (std::size_t i = 0; i < rows; ++i) frame += (i > 0 ? "\r\n\x1b[2K" : "\x1b[2K") + lines[i];

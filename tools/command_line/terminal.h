@@ -24,9 +24,9 @@ namespace softgrip::tools {
 [[nodiscard]] std::size_t terminal_rows();
 
 /// Blocks the signals for the whole process, so that they have no default action. Returns a descriptor that
-/// reports them.
+/// reports the blocked signals.
 [[nodiscard]] Descriptor take_signals(const std::vector<int>& signals);
-/// Takes SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP and SIGWINCH.
+/// Calls take_signals() for SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP and SIGWINCH.
 [[nodiscard]] Descriptor take_ending_signals();
 
 /// Returns the next signal that the descriptor reports, or 0 if there is none.

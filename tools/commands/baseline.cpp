@@ -38,7 +38,7 @@ struct BaselineOptions {
   std::vector<std::string> data;
   std::vector<std::string> check;
   std::string rig;
-  std::string rig_channel;  ///< channel of the rig; "": the value of --channel
+  std::string rig_channel;  ///< channel of the rig; "": the channel that --channel states
   std::vector<std::string> experiments = usual_commissioning();
   double rest_s = CommissioningOptions{}.rest_s;
   std::string gauge;
@@ -55,7 +55,7 @@ struct BaselineOptions {
 struct Runs {
   std::vector<sysid::Log> healthy, again;
   BaselineContents contents;
-  Json rig;  ///< the rig that played the logs; null: the logs come from files
+  Json rig;  ///< description of the rig on which the logs were recorded; null: the logs come from files
 };
 
 tl::expected<model::Model, ExitCode> model_of(const BaselineOptions& options,
@@ -94,7 +94,8 @@ double left_mm(const BaselineOptions& options, const model::Model& model,
   return count > 0 ? std::sqrt(squares / count) : 0;
 }
 
-/// Compares a second run of the healthy finger with the first run. Returns null if there is no second run.
+/// Compares a second run of the healthy finger with the first run. Returns a JSON null if there is no second
+/// run.
 tl::expected<Json, ExitCode> checked(const BaselineOptions& options, const Runs& runs,
                                      const model::Model& model, bool& holds) {
   if (runs.again.empty()) return Json(nullptr);
@@ -146,7 +147,8 @@ tl::expected<Runs, ExitCode> recorded(const BaselineOptions& options) {
   return runs;
 }
 
-/// Returns the files of the baseline folder that contain the played logs, one log per experiment.
+/// Returns the files of the baseline folder that contain the logs recorded on the rig. Each experiment gives
+/// one log.
 std::vector<BaselineFile> files_of_played(const std::vector<sysid::Log>& logs, const std::string& rig) {
   std::vector<BaselineFile> files;
   files.reserve(logs.size());

@@ -61,8 +61,8 @@ std::string names_of(const rig::RigFile& rig) {
   return with_commas(rig.settings.channels, &control::ChannelSettings::name);
 }
 
-/// Sets the pressures of the two calibration positions to the values of --at-kpa or to their defaults.
-/// Refuses values outside the limits.
+/// Sets the pressures of the two calibration positions to the values of --at-kpa, or to default values if the
+/// option is absent. Refuses values outside the limits.
 std::optional<ExitCode> set_pressures(const CalibrateOptions& options, const control::LimitSettings& limits,
                                       calibrate::Settings& settings) {
   calibrate::set_places(settings, limits);
@@ -78,8 +78,8 @@ std::optional<ExitCode> set_pressures(const CalibrateOptions& options, const con
       "--at-kpa LOW HIGH: LOW must be below HIGH, and both must be within the limits of the rig file");
 }
 
-/// Returns the prepared answers, one per visit to a position. If there are two answers, they are repeated for
-/// all visits.
+/// Returns the prepared answers, one for each visit to a position. If the user gave two answers, the pair is
+/// repeated for all visits.
 std::vector<std::string> spread(const std::vector<std::string>& answers, std::size_t repeats) {
   std::vector<std::string> all;
   if (answers.size() != 2) return answers;

@@ -1,5 +1,6 @@
 #pragma once
-// The list of subcommands in the order of `softgrip --help`, one line each. All other code uses this list.
+// Lists the subcommands, one per line, in the order of `softgrip --help`. All other code takes the
+// subcommands from this list.
 
 #include "tools/command_line/command.h"
 

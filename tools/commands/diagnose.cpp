@@ -1,5 +1,5 @@
 // softgrip diagnose: finds the error of a model on measured data and its cause. Extends the model and
-// measures the benefit.
+// measures the benefit of the extension.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -31,8 +31,8 @@
 namespace softgrip::tools {
 namespace {
 
-/// Largest number of parameters of a cause for which all parameters are printed. With more parameters, those
-/// that the logs do not determine are omitted.
+/// Largest number of parameters of a cause for which all parameters are printed. If a cause has more
+/// parameters, those that the logs do not determine are omitted.
 constexpr std::size_t most_undetermined = 5;
 
 struct DiagnoseOptions {
@@ -65,7 +65,7 @@ tl::expected<sysid::Diagnosis, std::string> diagnosed(const std::vector<sysid::L
   return diagnosis;
 }
 
-/// Computes the next experiment and the result of the closed loop, and shows the progress.
+/// Computes the next experiment and simulates the closed loop, and shows the progress of both computations.
 Consequences followed(const sysid::Diagnosis& diagnosis, const ConsequenceOptions& options) {
   ProgressLine line;
   line.show()("simulates experiments and the closed loop");

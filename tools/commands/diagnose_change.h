@@ -15,7 +15,7 @@ struct ChangeQuestion {
   model::Model given;
   sysid::ChangeOptions options;
   std::string out;
-  std::string figures;  ///< folder into which the figures are written as files; "": none are written
+  std::string figures;  ///< folder into which the figures are written as files; "": no figures are written
   std::vector<std::string> call;
   bool json = false;
   bool explain = false;  ///< true: the comparison that led to each reported cause is also printed

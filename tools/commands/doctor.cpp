@@ -42,8 +42,9 @@ bool is_simulated(const rig::RigFile& rig) {
   return std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board);
 }
 
-/// Checks the rig by means of the daemon, and checks the programs that connect clients to the daemon. Disk
-/// and clock are not checked. Returns the daemon's status, or null.
+/// Checks the rig with data from the daemon, and checks the gateway programs, which connect clients to the
+/// daemon. Disk and clock are not checked. Returns the daemon's status, or null if the daemon does not
+/// respond.
 Json ask_running(DaemonClient& client, const std::string& rig, doctor::Findings& findings) {
   const auto status = client.ask({{"command", "status"}});
   const auto statistics = status ? client.ask({{"command", "statistics"}}) : status;

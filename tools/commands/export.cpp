@@ -35,8 +35,8 @@ const std::vector<std::string>& formats() {
   return names;
 }
 
-/// Returns the requested format. Without a request, returns the format for the file's extension, or "" if the
-/// extension is unknown.
+/// Returns the format that the user requested. If the user requested no format, returns the format for the
+/// extension of the output file, or "" if this extension is unknown.
 std::string format_of(const ExportOptions& options) {
   if (!options.format.empty()) return options.format;
   std::string ending = std::filesystem::path(options.out).extension().string();

@@ -1,4 +1,4 @@
-// softgrip health: reports from the recordings of ordinary work which fingers have changed.
+// softgrip health: reports which fingers have changed, based on the recordings of normal operation.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

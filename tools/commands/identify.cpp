@@ -51,7 +51,8 @@ sysid::ShowProgress progress_on(ProgressLine& line, model::OutputUnit output_uni
 
 constexpr const char* automatic = "auto";
 
-/// Returns the model structures among which the command chooses, or nullopt if the user gave a structure.
+/// Returns the set of model structures from which the command chooses one, or nullopt if the user gave a
+/// structure.
 std::optional<sysid::StructureQuestion> question_of(const IdentifyOptions& options) {
   using sysid::HysteresisForm, sysid::StructureQuestion;
   if (options.structure == name_of(HysteresisForm::bouc_wen)) return StructureQuestion::bouc_wen;
@@ -208,7 +209,8 @@ void add_fit_options(CLI::App& command, sysid::IdentifyOptions& fit) {
   command.add_option("--threads", fit.threads, "Number of threads; 0: one per core")->capture_default_str();
 }
 
-/// Adds the option that chooses among structures. It excludes the options of a fit with a given structure.
+/// Adds the option for an automatic choice of the structure. This option cannot be combined with the options
+/// of a fit whose structure is given.
 void add_structure_option(CLI::App& command, IdentifyOptions& options) {
   using sysid::HysteresisForm;
   const std::vector<std::string> names{automatic, std::string(name_of(HysteresisForm::bouc_wen)),

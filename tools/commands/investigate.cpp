@@ -1,5 +1,6 @@
-// softgrip investigate: diagnoses a model, plays the experiment that separates the possible causes and
-// diagnoses again. Afterwards it extends the model, retunes the gains and measures the result.
+// softgrip investigate: diagnoses a model, plays the experiment that separates the possible causes, and
+// repeats the diagnosis. Finally extends the model, retunes the gains and, if possible, measures the tracking
+// error on the rig.
 
 #include <unistd.h>
 
@@ -40,7 +41,7 @@ struct InvestigateOptions {
   std::string gauge;
   std::string out;
   LogInput logs;
-  std::string rig_channel;  ///< channel of the rig; "": the channel of the logs
+  std::string rig_channel;  ///< channel of the rig; "": the rig channel has the name of the log channel
   sysid::DiagnosisOptions diagnosis;
   double budget_minutes = 30;
   double pressure_max_kpa = 0;  ///< with --rig-command, the largest pressure of experiments [kPa]; 0: the
@@ -112,7 +113,7 @@ tl::expected<Playground, ExitCode> playground_of(const InvestigateOptions& optio
 }
 
 /// Measures the benefit of the extended model on the rig. If the measurement is impossible, prints the reason
-/// and returns nullopt. The command then continues.
+/// and returns nullopt. In this case, the command continues without the measurement.
 std::optional<RigTracking> on_rig(const InvestigateOptions& options, const Playground& ground,
                                   const Investigation& investigation,
                                   const std::optional<ClosedLoopGain>& gain) {
@@ -161,7 +162,7 @@ ExitCode exit_code_of(const Investigation& investigation) {
   return ExitCode::failed;
 }
 
-/// Extends the model, retunes the gains, measures the benefit, and writes the results.
+/// Extends the model, retunes the gains, measures the benefit of the extended model, and writes the results.
 ExitCode conclude(const InvestigateOptions& options, const model::Model& given, const Playground& ground,
                   const Investigation& investigation) {
   ConsequenceOptions wanted;

@@ -1,4 +1,4 @@
-// softgrip release: releases the part with the release step of the sequence.
+// softgrip release: releases the gripped part by means of the release step of the sequence.
 
 #include "tools/client/daemon_command.h"
 #include "tools/commands/commands.h"

@@ -1,4 +1,4 @@
-// softgrip report: recomputes the numbers of a report from its logs.
+// softgrip report: recomputes the numbers of a report from the logs of the report.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -22,7 +22,7 @@ namespace softgrip::tools {
 [[nodiscard]] tl::expected<rig::RigFile, ExitCode> read_rig(const std::string& path);
 
 /// The board of a rig in manual mode. Until the object is destroyed, no other program can use the board, and
-/// a signal stops the session.
+/// a signal such as Ctrl-C ends the session.
 class ManualRig {
  public:
   /// Locks the board and connects to it. `rig` must outlive the result.
@@ -31,7 +31,7 @@ class ManualRig {
   [[nodiscard]] MotionSession& session() { return session_; }
   [[nodiscard]] const drivers::Board& board() const { return *board_; }
   [[nodiscard]] const Clock& clock() const { return clock_; }
-  /// Returns true after a signal has requested the end.
+  /// Returns true after a signal has requested the end of the session.
   [[nodiscard]] bool stopped() { return signals_.first() != 0; }
 
  private:
@@ -49,8 +49,8 @@ class ManualRig {
 
 /// Opens the rig of a file and selects a channel; "" selects the only channel. Prints the reason and returns
 /// an exit code in four cases. The file is unreadable or invalid. The channel does not exist. No terminal is
-/// available for the consent. softgripd or another program uses the board, which is impossible for a rig that
-/// is simulated in the process.
+/// available for the consent. softgripd or another program uses the board; this case is impossible for a rig
+/// that is simulated in the process.
 [[nodiscard]] tl::expected<ExperimentRig, ExitCode> rig_to_move(const std::string& path,
                                                                 const std::string& channel, bool yes);
 

@@ -61,7 +61,8 @@ tl::expected<void, std::string> write_series(const std::string& folder,
                                              const std::vector<sysid::LogSeries>& series) {
   std::map<std::string, int> seen;
   for (const sysid::LogSeries& one : series) {
-    // A log may be an input twice: for the fit and for the prediction. The second one needs another folder.
+    // A log may be an input twice: for the fit and for the prediction. The second series of this log needs a
+    // different folder.
     const std::string plain = sysid::series_path(one.name);
     const int count = ++seen[plain];
     const std::string name =

@@ -1,6 +1,6 @@
 #pragma once
-// The files that identify, validate and diagnose write beside their reports: series.csv of every log, and
-// figures.
+// Writes the files that identify, validate and diagnose store beside their reports: series.csv for each log,
+// and figures.
 
 #include <string>
 #include <vector>
@@ -18,8 +18,9 @@ class App;
 
 namespace softgrip::tools {
 
-/// Returns the measured and predicted series of logs. `records` contains the scores of the predictions.
-/// `held_out` is true if none of these logs was used to fit the model.
+/// Returns the measured and predicted series of logs. `scores` contains the predictions, one element for each
+/// log.
+/// @param held_out  true: none of these logs was used to fit the model.
 [[nodiscard]] std::vector<sysid::LogSeries> series_of(const std::vector<sysid::Log>& logs,
                                                       const std::vector<sysid::Record>& records,
                                                       const std::vector<sysid::Score>& scores,
@@ -39,7 +40,7 @@ namespace softgrip::tools {
 /// Adds --figures DIR to a command that writes a report. write_figures() (tools/figures) fills the folder.
 void add_figures_option(CLI::App& command, std::string& folder);
 
-/// Writes FOLDER/LOG/series.csv for each log. The error is a sentence.
+/// Writes FOLDER/LOG/series.csv for each log. On failure, returns a sentence that describes the error.
 [[nodiscard]] tl::expected<void, std::string> write_series(const std::string& folder,
                                                            const std::vector<sysid::LogSeries>& series);
 

@@ -42,7 +42,8 @@ tl::expected<std::uint64_t, ClientFailure> newest_event(DaemonClient& client) {
   return result->value("newest", std::uint64_t{0});
 }
 
-/// Time limit for the response to a start. It is long because the daemon may have to plan the motion first.
+/// Time limit for the response to a start. It is long because the daemon may have to plan the motion before
+/// the response.
 constexpr std::chrono::seconds longest_planning{90};
 
 /// The reason why the program stops following a start: a signal, a failure of the daemon, or a failure of the
@@ -52,8 +53,8 @@ struct Break {
   ClientFailure failure;
 };
 
-/// Follows one start from the request until the sequence ends or the time limit of the user is over. If the
-/// program ends earlier for another reason, it stops the sequence, which must not continue without the
+/// Follows one start, from the request to the end of the sequence or of the user's time limit. If the program
+/// ends for another reason, it stops the sequence first, because the sequence must not continue without the
 /// program.
 class FollowedStart {
  public:

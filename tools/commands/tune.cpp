@@ -1,4 +1,4 @@
-// softgrip tune: finds PID gains and a filter for a model, a feedforward and a rate.
+// softgrip tune: finds PID gains and a filter for a given model, feedforward and control rate.
 
 #include "control/tuning/tune.h"
 

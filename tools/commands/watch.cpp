@@ -46,8 +46,8 @@ void print(const Json& status, bool json) {
   std::fflush(stdout);
 }
 
-/// Returns the exit code after a signal. A signal is the normal end if `count` is 0. Otherwise the user
-/// requested a number of updates, and the signal is an interruption.
+/// Returns the exit code after a signal. If `count` is 0, a signal is the normal end of the program.
+/// Otherwise the user requested a number of updates, and the signal interrupts them.
 ExitCode ended_by(int signal, std::uint64_t count) {
   if (count > 0) note_ending_signal(signal);
   return ExitCode::done;
@@ -77,8 +77,9 @@ ExitCode print_updates(DaemonClient& client, const WatchOptions& options) {
   return ExitCode::done;
 }
 
-/// Pause between two requests for new events [s], and the longest wait of poll() [ms].
+/// Pause between two requests for new events [s].
 constexpr double event_pause_s = 0.5;
+/// Longest wait of poll() [ms].
 constexpr int look_pause_ms = 250;
 constexpr std::uint64_t event_page = 200;
 

@@ -25,8 +25,8 @@ using drivers::BusStatus;
 using drivers::ModbusAddress;
 using drivers::WordOrder;
 
-// Function codes that read registers, and exception codes that show which other setting to try (Modbus
-// Application Protocol V1.1b3, sections 6 and 7).
+// Function codes that read registers, and exception codes after which a different setting of the request may
+// work (Modbus Application Protocol V1.1b3, sections 6 and 7).
 constexpr std::uint8_t read_holding = 3;
 constexpr std::uint8_t read_input = 4;
 constexpr unsigned illegal_function = 1;
@@ -57,7 +57,7 @@ struct Heard {
   std::string detail;
 };
 
-/// A wired input that the given read request covers.
+/// A wired input whose registers a read request covers.
 struct WiredInput {
   std::string channel;
   drivers::InputWiring wiring;
@@ -95,8 +95,8 @@ class BusInquiry {
   }
 
  private:
-  /// Sends the request. Opens a session first if none is open. The session may be closed, because a time-out
-  /// or a wrong response closes it.
+  /// Sends the request. Opens a session first if no session is open, because a time-out or a wrong response
+  /// has closed it.
   Heard ask(const RegisterRead& question) {
     const double patience_s = std::max(rig_.loop.exchange_deadline_s, shortest_patience_s);
     Heard heard{BusStatus::timed_out, 0, {}, {}};
@@ -157,8 +157,8 @@ class BusInquiry {
         "compare the function code, address and count in the board map with the manual of the board");
   }
 
-  /// Sends the request with the other read function. A board offers its inputs either as holding registers
-  /// (function 3) or as input registers (function 4).
+  /// Sends the request with the other of the two read functions. A board offers its inputs either as holding
+  /// registers (function 3) or as input registers (function 4).
   bool try_other_function(const Heard& heard, Findings& findings) {
     const drivers::RegisterBlock& inputs = map_.inputs.registers;
     const int left = inputs.address + static_cast<int>(inputs.registers()) - asked_.address;
@@ -268,7 +268,7 @@ class BusInquiry {
     return status == BusStatus::ok || status == BusStatus::exception;
   }
 
-  /// Returns the readings of the wired inputs as text, or nullopt if a reading is not valid.
+  /// Returns the readings of the wired inputs as text; nullopt if a reading is not valid.
   [[nodiscard]] std::optional<std::string> read_as(const std::vector<std::uint16_t>& words,
                                                    WordOrder order) const {
     const drivers::RegisterKind kind = map_.inputs.registers.kind;
@@ -302,7 +302,8 @@ class BusInquiry {
         if (auto shown = read_as(there, order)) fits.push_back({order, by, std::move(*shown)});
       }
     }
-    // If several interpretations of the registers give valid readings, the cause is not certain.
+    // If several interpretations of the registers give valid readings, the cause is uncertain and is not
+    // reported.
     if (fits.size() != 1) return;
     const Fit& fit = fits.front();
     const std::string name(drivers::name_of(fit.order));

@@ -22,22 +22,23 @@ struct Motion {
 };
 
 struct Results {
-  std::string date;  ///< date of the calibration, for example "2026-11-20"
+  std::string date;  ///< date of the calibration in the form "2026-11-20"
   std::size_t channel = 0;
   std::optional<Line> sensor;
   std::optional<ValveResult> valve;
   std::optional<DeadZoneResult> dead_zone;
-  std::optional<Motion> motion;  ///< motion during the calibration of the sensor; nullopt: a person moved the
-                                 ///< target
+  std::optional<Motion> motion;  ///< motion of the finger during the calibration of the sensor; nullopt: a
+                                 ///< person moved the target
 };
 
 /// Returns YAML lines for the rig file: the maps `sensor`, `valve` and `pressure_monitor` of the channel,
-/// with the findings as comments. A value that was not calibrated is copied from the rig file.
+/// with the results of the calibration as comments. A value that was not calibrated is copied from the rig
+/// file.
 [[nodiscard]] std::string snippet(const rig::RigFile& rig, const Results& results);
 
 /// Formats a number for a rig file: rounded to `decimals`, without trailing zeros.
 [[nodiscard]] std::string rounded(double value, int decimals);
-/// Returns the end of a key that contains electrical values: "v", "ma" or "kpa".
+/// Returns the suffix of a key that contains electrical values: "v", "ma" or "kpa".
 [[nodiscard]] std::string suffix_of(drivers::ElectricalUnit unit);
 
 /// The x and y values of two points as texts for a rig file.
@@ -51,8 +52,8 @@ struct LineText {
 };
 [[nodiscard]] LineText text_of(const drivers::TwoPoints& points);
 
-/// Largest deviation that causes no warning, as a share of the range between the limits or of the motion that
-/// the model predicts.
+/// Largest deviation that causes no warning. It is a share of the range between the limits, or of the motion
+/// that the model predicts.
 inline constexpr double most_share_off = 0.2;
 
 /// Compares each calibrated line with the line in the rig file. Returns one warning for each line whose
@@ -62,15 +63,15 @@ inline constexpr double most_share_off = 0.2;
 
 /// Returns the text of the rig file with the new points of the calibrated maps. All other lines, including
 /// comments, stay unchanged. A comment above each map states the date and the error of the calibration.
-/// `channel_defaults` is not changed: the new points are added to the channel. The new text has passed the
-/// rig-file reader. The error is a sentence that says why a person must insert the lines.
+/// `channel_defaults` is not changed: the new points are added to the channel. The rig-file reader has
+/// accepted the new text. The error is a sentence that says why a person must insert the lines.
 [[nodiscard]] tl::expected<std::string, std::string> updated_rig(const std::string& text,
                                                                  const rig::RigFile& rig,
                                                                  const Results& results);
 
-/// Replaces the text of the file from which `rig` was read by `text`, and keeps a copy of the old file in the
-/// same folder. Returns the path of the copy. If the file has changed since it was read, or if a step fails,
-/// the rig file stays unchanged.
+/// Writes `text` to the file from which `rig` was read, and keeps a copy of the old file in the same folder.
+/// Returns the path of the copy. If the file has changed since it was read, or if a step fails, the rig file
+/// stays unchanged.
 [[nodiscard]] tl::expected<std::string, std::string> write_rig(const rig::RigFile& rig,
                                                                const std::string& text);
 

@@ -14,7 +14,7 @@ namespace {
 
 using CrossingKind = Crossing::Kind;
 
-/// A pressure monitor has followed a valve if its reading changed by at least this share of the commanded
+/// Smallest change of a pressure monitor that counts as a response to a valve, as a share of the commanded
 /// step.
 constexpr double share_of_step = 0.5;
 
@@ -33,8 +33,8 @@ bool monitor_followed(const rig::RigFile& rig, const ChannelSample& rest, const 
   return (seen.mean - rest.pressure_kpa.mean) / step_kpa >= share_of_step;
 }
 
-/// Element i is the only channel whose sensor responded when channel i was moved. It is nullopt if no channel
-/// or several channels responded.
+/// Element i is the channel whose sensor responded when channel i was moved. Element i is nullopt if no
+/// channel or more than one channel responded.
 using Shown = std::vector<std::optional<std::size_t>>;
 
 template <class Followed>
@@ -54,9 +54,9 @@ Shown who_showed(std::span<const Motion> motions, const Followed& followed) {
   return shown;
 }
 
-/// Follows the channels from `first` on: each next channel is the one that responded when the previous
-/// channel was moved. Returns these channels if they return to `first` through other channels, else an empty
-/// vector.
+/// Follows the channels from `first` on: the next channel is the channel that responded when the present
+/// channel was moved. If this path returns to `first` through other channels, returns the channels of the
+/// path. Otherwise, returns an empty vector.
 std::vector<std::size_t> circle_from(const Shown& shown, std::size_t first) {
   std::vector<std::size_t> circle{first};
   for (auto next = shown[first]; next && *next != first; next = shown[*next]) {
@@ -71,8 +71,8 @@ std::vector<std::vector<std::size_t>> circles_of(const Shown& shown) {
   std::vector<std::vector<std::size_t>> circles;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const std::vector<std::size_t> circle = circle_from(shown, i);
-    // Report each cycle once. The search finds a cycle from each of its channels, so report it only from its
-    // lowest channel.
+    // Each cycle is reported once. The search finds a cycle from each of its channels, and the cycle is
+    // reported for the channel with the lowest index.
     if (!circle.empty() && *std::min_element(circle.begin(), circle.end()) == i) circles.push_back(circle);
   }
   return circles;

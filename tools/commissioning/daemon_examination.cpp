@@ -23,7 +23,7 @@ void judge_state(const Json& status, const std::string& rig, Findings& findings)
   }
 }
 
-/// Returns the name of the finding that explains the latched fault, or "" if the cause of the fault is no
+/// Returns the name of another finding that explains the latched fault; "" if the cause of the fault is no
 /// longer present.
 std::string judged_elsewhere(const Json& status, const Json& fault) {
   const Json& present = json_member(fault, "present");

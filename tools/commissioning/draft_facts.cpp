@@ -53,8 +53,8 @@ std::string in_brackets(const std::vector<std::string>& names) {
   return names.empty() ? "" : " (" + with_commas(names) + ")";
 }
 
-/// Returns the path for a word that is a path or the name of a file in a configuration folder. Returns "" if
-/// the word is neither a path nor a name.
+/// Returns the path for a word. The word is a path, or the name of a file in a configuration folder. Returns
+/// "" if the word is neither of these.
 std::string path_of(const std::string& word, const std::string& folder) {
   std::error_code error;
   if (std::filesystem::is_regular_file(word, error)) return word;
@@ -88,7 +88,7 @@ std::optional<std::pair<double, double>> two_numbers(const std::string& text) {
   return std::pair{*first, *second};
 }
 
-// --- Questions about the values of a draft, and checks of the answers
+// --- Questions about the values of a draft, and checks of their answers
 
 std::optional<Question> ask_board(const RigDraft&) {
   return Question{"one or more board maps, each as a file or a name" + in_brackets(names_in("boards")) +

@@ -26,7 +26,8 @@ std::string mark(Verdict verdict, bool colour) {
   return "?";
 }
 
-/// Wraps `text` at spaces into lines of at most `width` characters. Indents all lines after the first.
+/// Wraps `text` at spaces into lines of at most `width` characters. Indents all lines except the first by
+/// `indent` blanks.
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t width) {
   std::string result;
   std::size_t at = 0;

@@ -9,8 +9,8 @@
 
 namespace softgrip::tools::doctor {
 
-/// Result of a check. `not_judged`: the check was omitted, because it depends on another check that has
-/// failed.
+/// Result of a check. `not_judged` means that the check was omitted, because it depends on another check that
+/// has failed.
 enum class Verdict { ok, not_judged, warn, fail };
 /// Returns the name of a verdict: "ok", "not_judged", "warn" or "fail".
 [[nodiscard]] std::string_view name_of(Verdict verdict) noexcept;
@@ -18,8 +18,8 @@ enum class Verdict { ok, not_judged, warn, fail };
 struct Finding {
   std::string name;  ///< name of the check, for example "board" or "sensor left"; part of the public format
   Verdict verdict = Verdict::ok;
-  std::string text;    ///< text of the observation
-  std::string advice;  ///< next step that the user should take; empty if none is needed
+  std::string text;    ///< result of the check as text
+  std::string advice;  ///< next step that the user should take; empty if no step is needed
 };
 
 class Findings {
@@ -31,7 +31,8 @@ class Findings {
   void fail(std::string name, std::string text, std::string advice) {
     add({std::move(name), Verdict::fail, std::move(text), std::move(advice)});
   }
-  /// Adds a check that was omitted. `because` names the problem that must be corrected first.
+  /// Adds a check that was omitted. `because` names the problem that the user must correct before the check
+  /// is possible.
   void not_judged(std::string name, const std::string& because) {
     add({std::move(name), Verdict::not_judged, "not judged: " + because, ""});
   }

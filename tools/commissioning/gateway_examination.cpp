@@ -34,8 +34,8 @@ bool somebody_listens(const Place& place) {
     return false;
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> list(found, &::freeaddrinfo);
   const Descriptor socket{::socket(list->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0)};
-  // 1 s is long enough: the address belongs to this computer, so a listening program accepts the connection
-  // at once.
+  // Time-out of the connection. The address belongs to this computer, so a listening program accepts the
+  // connection far within 1 s.
   const timeval patience{1, 0};
   return socket && ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience) == 0 &&
          ::connect(socket.get(), list->ai_addr, list->ai_addrlen) == 0;

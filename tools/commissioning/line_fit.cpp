@@ -14,7 +14,8 @@ namespace {
 constexpr double improvement = 1.5;
 /// Number of positions along the ramp at which the fit tries a bend.
 constexpr int bends = 200;
-/// Smallest rise of the response, as a multiple of its scatter about the fit.
+/// Smallest rise of the response that counts as a rise, as a multiple of the scatter of the response about
+/// the fit.
 constexpr double least_rise = 5;
 
 struct Means {
@@ -67,8 +68,8 @@ double largest(const std::vector<Visit>& visits, double Visit::*of) {
   return value;
 }
 
-/// Returns the standard uncertainty of one point of the line. It combines the noise of a mean, the drift and
-/// the repeatability.
+/// Returns the standard uncertainty of one point of the line. The uncertainty combines the noise of a mean,
+/// the drift and the repeatability.
 double uncertainty(const std::vector<Visit>& visits, const Line& line) {
   double of_means = 0;
   for (const Visit& visit : visits) {

@@ -41,8 +41,8 @@ std::string user() {
   return entry == nullptr ? std::to_string(::geteuid()) : entry->pw_name;
 }
 
-/// Adds a finding about one real-time setting of the daemon. If the setting is missing, this is a failure if
-/// the daemon requires the setting, else a warning.
+/// Adds a finding about one real-time setting of the daemon. A missing setting is a failure if the daemon
+/// requires the setting, otherwise a warning.
 void take(const RealTimeStep& step, bool required, Findings& findings) {
   switch (step.outcome) {
     case RealTimeStep::Outcome::verified:
@@ -91,7 +91,8 @@ void judge_timer(const rig::RigFile& rig, const daemon::Histogram& wake_up, Find
   if (resolution.tv_sec > 0 || resolution.tv_nsec > 1000) {
     findings.fail("timer", text, "this kernel has no high-resolution timers (CONFIG_HIGH_RES_TIMERS)");
   } else if (static_cast<double>(wake_up.quantile_ns(0.95)) * us_per_ns > period_us / 2) {
-    // One late wake-up per second is tolerable. If one wake-up in 20 is late, the set-up is faulty.
+    // One late wake-up per second is tolerable. If one wake-up in 20 is late, the set-up of the computer is
+    // faulty.
     findings.fail("timer", text,
                   "the control loop will miss cycles: grant SCHED_FIFO, lower rate_hz, or reduce the load of "
                   "the processor");
@@ -104,7 +105,7 @@ void judge_timer(const rig::RigFile& rig, const daemon::Histogram& wake_up, Find
   }
 }
 
-/// Returns the path, or its nearest parent folder that exists.
+/// Returns the path if it exists, otherwise its nearest parent folder that exists.
 std::filesystem::path existing(std::filesystem::path path) {
   std::error_code error;
   path = std::filesystem::absolute(path, error);
@@ -112,7 +113,7 @@ std::filesystem::path existing(std::filesystem::path path) {
   return path;
 }
 
-/// Writes a file of 4 KiB and synchronises it to the disk. Returns 0 or errno.
+/// Writes a file of 4 KiB and synchronises the file to the disk. Returns 0, or the error number (errno).
 int try_writing(const std::filesystem::path& folder) {
   std::string path = (folder / ".softgrip-doctor-XXXXXX").string();
   const int file = ::mkstemp(path.data());
@@ -177,7 +178,7 @@ void examine_clock(Findings& findings) {
 
 namespace {
 
-/// Returns hours as text: "12.5 h" up to two days, whole days above.
+/// Returns a number of hours as text: "12.5 h" up to two days, whole days for a longer time.
 std::string in_hours_or_days(double hours) {
   if (hours < 2 * h_per_day) return significant(hours, 3) + " h";
   return fixed(hours / h_per_day, 0) + " days";

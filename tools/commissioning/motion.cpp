@@ -17,14 +17,15 @@ namespace {
 constexpr double noises = 6;
 /// Smallest displacement that counts as a motion, as a share of the displacement that the model predicts.
 constexpr double share_of_model = 0.2;
-/// Largest tolerated difference between pressure monitor and command, as a share of the commanded step.
-/// Ordinary valves and boards have linearity errors of this size.
+/// Largest tolerated difference between the pressure monitor and the command, as a share of the commanded
+/// step. Linearity errors of ordinary valves and boards are of this size.
 constexpr double allowed_share_of_step = 0.1;
 /// Smallest tolerance of the pressure [kPa]. It is needed because valves cannot control the lowest pressures
 /// accurately.
 constexpr double pressure_floor_kpa = 1;
 
-/// Simulates the model from rest while the finger moves, with the same commands.
+/// Simulates the model of a finger while this finger moves. The simulation starts at rest and gets the same
+/// commands as the finger.
 class Beside {
  public:
   Beside(const control::ChannelSettings& channel, double tick_s, double rest_mm)
@@ -36,8 +37,8 @@ class Beside {
     origin_mm_ = model_.reading_mm(0);
   }
 
-  /// Processes the result of one exchange with the board. The reading is older than the command, which was
-  /// written after it.
+  /// Processes the result of one exchange with the board. The command was written after the reading was
+  /// taken.
   void take(const model::Reading& reading, double command_kpa) {
     pass_time(reading.sampled_at);
     const double moved_mm = model_.reading_mm(0) - origin_mm_;
@@ -143,7 +144,7 @@ bool has_moved(const Sample& rest, const Sample& seen, double model_mm) {
 
 namespace {
 
-/// Checks that the pressure follows the command. Returns false if it does not, so that the caller skips all
+/// Checks that the pressure follows the command. If it does not, returns false, and the caller omits all
 /// checks that depend on the pressure.
 bool judge_valve(const control::ChannelSettings& of, const Sample& monitor, double command_kpa,
                  Findings& findings) {

@@ -22,7 +22,7 @@ using FailureKind = MotionFailure::Kind;
 /// Time after the ramp within which the board must confirm the rest pressures [s].
 constexpr double confirmation_s = 1;
 
-/// Running mean and standard deviation (Welford, Technometrics 4, 1962).
+/// Computes the running mean and standard deviation (Welford, Technometrics 4, 1962).
 class Gathering {
  public:
   void add(double value) {
@@ -68,7 +68,7 @@ Nanoseconds period_of(const rig::RigFile& rig, const drivers::Board& board) {
   return std::max(nanoseconds(1 / rig.settings.rate_hz), nanoseconds(board.budget().exchange_s));
 }
 
-/// Returns `reconnect` with a constant pause between connection attempts. A growing pause would be too long
+/// Returns `reconnect` with a constant pause between connection attempts, because a growing pause is too long
 /// for a person who waits for the result.
 rig::ReconnectSettings steady(rig::ReconnectSettings reconnect) {
   reconnect.longest_pause = reconnect.first_pause;
@@ -146,8 +146,8 @@ void MotionSession::exchange(bool may_rise, bool last) noexcept {
   take_report(schedule_.advance(clock_.now()));
 }
 
-/// Evaluates the report of the bus about one exchange. If an exchange takes so long that cycles are missed,
-/// these cycles count as cycles without data, as in daemon/loop/loop.cpp.
+/// Evaluates the report of the bus about one exchange. If the exchange takes so long that cycles are missed,
+/// the missed cycles count as cycles without data, as in daemon/loop/loop.cpp.
 void MotionSession::take_report(std::uint64_t skipped_cycles) noexcept {
   line_->shared.bus.fetch();
   line_->take_events();
@@ -159,8 +159,8 @@ void MotionSession::take_report(std::uint64_t skipped_cycles) noexcept {
   }
 }
 
-/// Returns the text of the latest failure. For a gap in communication, this is the text of the bus. For any
-/// other failure, it is the text of the board.
+/// Returns the text of the latest failure. For a gap in communication, the bus provides the text. For any
+/// other failure, the board provides it.
 std::string MotionSession::complaint() const {
   const bool gap = line_->failed.status == drivers::BusStatus::watchdog_tripped;
   const std::string text = gap ? line_->failed.detail.data() : board_.detail();
@@ -273,8 +273,8 @@ MotionSession::Expected<void> MotionSession::ramp(std::size_t channel, double to
   }
   moved_ = true;
   while (commands_[channel] != targets_[channel] || silent_cycles_ > 0) {
-    // If the last write was not confirmed, write the same commands again instead of new ones, so that the
-    // pressure does not jump after a reconnection.
+    // If the last write was not confirmed, the same commands are written once more. New commands could cause
+    // a jump of the pressure after a reconnection.
     if (silent_cycles_ == 0) follow_targets(speed_kpa_per_s);
     if (auto done = step(true, watch); !done) return done;
     if (auto failure = beyond()) return end(std::move(*failure));
@@ -297,8 +297,8 @@ bool MotionSession::leave() noexcept {
     fastest = std::max({fastest, channel.limits.slew_down_kpa_per_s, channel.limits.slew_up_kpa_per_s});
   }
   Nanoseconds give_up = 0;
-  // Ramp to rest even if the board does not respond, so that a board that reconnects during or after the ramp
-  // receives the rest pressures.
+  // The ramp to rest continues even if the board does not respond. A board that reconnects during or after
+  // the ramp then receives the rest pressures.
   while (!line_->shared.safe_state_confirmed.load(std::memory_order_relaxed)) {
     follow_targets(fastest);
     const bool rested = commands_ == targets_;

@@ -1,6 +1,7 @@
 #pragma once
-// Moves a rig in manual mode for one command, in one thread, without the control loop and its controllers.
-// `softgrip doctor` and `softgrip calibrate` use it to move fingers and read sensors.
+// Moves a rig in manual mode during one command of the user. The motion runs in one thread, without the
+// control loop and its controllers. `softgrip doctor` and `softgrip calibrate` use it to move fingers and
+// read sensors.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,16 +24,16 @@ struct RigFile;
 
 namespace softgrip::tools {
 
-/// Returns true after the user has requested that the command stops.
+/// Returns true if the user has requested that the command stops.
 using StopRequest = std::function<bool()>;
 
 /// Mean and standard deviation of the readings during an interval.
 struct Sample {
   std::size_t count = 0;                         ///< number of valid readings during the interval
   std::size_t invalid = 0;                       ///< number of invalid readings during the interval
-  model::Validity why = model::Validity::valid;  ///< validity (reason) of the last invalid reading
+  model::Validity why = model::Validity::valid;  ///< reason why the last invalid reading was invalid
   double mean = 0;
-  double deviation = 0;  ///< standard deviation of one reading
+  double deviation = 0;  ///< standard deviation of the readings
   double lowest = 0;
   double highest = 0;
 };
@@ -40,8 +41,10 @@ struct Sample {
 /// The readings of one channel during an interval.
 struct ChannelSample {
   Sample displacement_mm;
-  Sample pressure_kpa;  ///< count is 0 if the channel has no pressure monitor
-  Sample readback_kpa;  ///< count is 0 if the board cannot read its outputs back
+  Sample pressure_kpa;  ///< sample of the pressure monitor; `count` is 0 if the channel has no pressure
+                        ///< monitor
+  Sample readback_kpa;  ///< sample of the output's read-back; `count` is 0 if the board cannot read its
+                        ///< outputs back
 };
 
 /// The reason why a motion of a session has ended.
@@ -81,13 +84,12 @@ class MotionSession {
  public:
   template <class T>
   using Expected = tl::expected<T, MotionFailure>;
-  /// Called after every successful exchange, with the commands that were written and the readings of the
-  /// exchange.
+  /// Called after every successful exchange, with the commands and the readings of this exchange.
   using Watch = std::function<void(const std::vector<double>& commands_kpa,
                                    const std::vector<model::Reading>& readings)>;
 
-  /// Creates a session for `board`, which is not connected yet. The session uses `clock` for all waits and
-  /// for the duration of gaps. All references must outlive the session.
+  /// Creates a session for `board`, which must not be connected yet. The session uses `clock` for all waits
+  /// and to measure gaps in communication. All references must outlive the session.
   MotionSession(const rig::RigFile& rig, drivers::Board& board, const Clock& clock, StopRequest stop);
   MotionSession(const MotionSession&) = delete;
   MotionSession& operator=(const MotionSession&) = delete;
@@ -96,17 +98,17 @@ class MotionSession {
   ~MotionSession();
 
   [[nodiscard]] Expected<void> connect();
-  /// Prevents motion away from rest until the given sensors have given a valid reading. From then on, the
-  /// session ends after `invalid_reading_cycles` consecutive invalid readings.
+  /// Prevents motion away from rest until the sensors in `sight` have given a valid reading. After this
+  /// reading, the session ends when a sensor has given `invalid_reading_cycles` consecutive invalid readings.
   void require(Sight sight);
   /// Holds the commands for `duration_s` and returns the statistics of the readings of every channel.
   [[nodiscard]] Expected<std::vector<ChannelSample>> sample(double duration_s, const Watch& watch = {});
-  /// Changes the command of one channel to `to_kpa` at `speed_kpa_per_s`, within the slew limits. The session
+  /// Ramps the command of one channel to `to_kpa` at `speed_kpa_per_s`, within the slew limits. The session
   /// ends if a finger leaves its displacement limits.
   [[nodiscard]] Expected<void> ramp(std::size_t channel, double to_kpa, double speed_kpa_per_s,
                                     const Watch& watch = {});
-  /// Holds all commands and exchanges data with the board until `done` returns true, for example while a
-  /// person answers a question.
+  /// Holds all commands and exchanges data with the board until `done` returns true. A caller uses it, for
+  /// example, while a person answers a question.
   [[nodiscard]] Expected<void> wait(const std::function<bool()>& done);
   /// Ramps all channels to their rest pressures within the slew limits and ends the session. Returns true if
   /// the board confirmed the rest pressures.
@@ -139,14 +141,15 @@ class MotionSession {
   PeriodicSchedule schedule_;
   bool moved_ = false;
   std::optional<MotionFailure> ended_;
-  std::vector<double> commands_;  // the present outputs; during an exchange, the values that it writes
+  std::vector<double> commands_;  // the present outputs [kPa]; during an exchange, the values that the
+                                  // exchange writes
   std::vector<double> targets_;
   std::vector<double> rest_;
   std::vector<model::Reading> readings_;
-  std::uint64_t silent_cycles_ = 0;  // cycles since the last successful exchange
+  std::uint64_t silent_cycles_ = 0;  // number of cycles since the last successful exchange
   std::optional<Sight> required_;
-  std::uint32_t blind_cycles_ = 0;  // cycles since all required sensors last had valid readings
-  bool may_rise_ = true;            // true: all required sensors have had valid readings since require()
+  std::uint32_t blind_cycles_ = 0;  // number of cycles since all required sensors last had valid readings
+  bool may_rise_ = true;  // true: all required sensors have had valid readings since the call of require()
 };
 
 }  // namespace softgrip::tools

@@ -34,8 +34,8 @@ void compare_lines(const std::string& what, const drivers::TwoPoints& before, co
                   what, at, unit, at + worst, unit, 100 * share));
 }
 
-/// Returns the displacement [mm] that the model predicts in free motion. The command ramps from the rest
-/// pressure to `kpa` [kPa] and stays there for the time motion.wait_s [s].
+/// Returns the displacement [mm] that the model predicts for free motion. The command ramps from the rest
+/// pressure to `kpa` [kPa] and stays at `kpa` for the time motion.wait_s [s].
 double model_mm(const control::ChannelSettings& channel, double kpa, const Motion& motion) {
   control::RunningModel model(channel.model, step_s, 0, step_s);
   double command_kpa = control::resting_kpa(channel.limits);

@@ -13,12 +13,12 @@
 namespace softgrip::tools::calibrate {
 namespace {
 
-/// Smallest distance between the two positions, as a share of the span between the limits. If the positions
-/// were closer, the line would have a large error outside them.
+/// Smallest distance between the two positions, as a share of the span between the limits. At a smaller
+/// distance, the line would have a large error outside the two positions.
 constexpr double least_share_of_span = 0.1;
 constexpr double least_share_of_signal = 0.02;
-/// Largest number of times that a script is asked the same question. After an invalid answer, the script may
-/// give its next answer, or it may have no answer left.
+/// Largest number of times that the program asks a script the same question. After an invalid answer, the
+/// script may give its next answer, or it may have no answer left.
 constexpr int questions_at_most = 5;
 /// A signal counts as saturated if its distance to an end of its valid electrical range is smaller than this
 /// share of the range.
@@ -26,7 +26,7 @@ constexpr double share_of_end = 0.002;
 /// Speed of a motion, as a share of the pressure range per second [1/s]. It is so low that the line pressure
 /// follows the command.
 constexpr double share_per_s = 0.2;
-/// Pressure at the end of the ramp that searches the dead zone, as a share of the pressure range.
+/// Pressure at the end of the ramp with which the dead zone is searched, as a share of the pressure range.
 constexpr double ramp_share = 0.3;
 
 Refusal nonsense(std::string text) {
@@ -46,8 +46,8 @@ Refusal refusal_of(const MotionFailure& failure) {
   return {};
 }
 
-/// Asks a question. Until the answer arrives, exchanges data with the board, so that its watchdog does not
-/// trip.
+/// Asks a question. Until the answer arrives, exchanges data with the board, so that the board's watchdog
+/// does not trip.
 Expected<std::string> ask(MotionSession& session, Operator& person, const std::string& question) {
   person.ask(question);
   std::optional<std::string> answer;
@@ -57,7 +57,7 @@ Expected<std::string> ask(MotionSession& session, Operator& person, const std::s
   return *answer;
 }
 
-/// Asks the question again until the answer is a number.
+/// Asks a question, and repeats it until the answer is a number.
 Expected<double> ask_number(MotionSession& session, Operator& person, const std::string& question) {
   for (int i = 0; person.patient() || i < questions_at_most; ++i) {
     const auto answer = ask(session, person, question);
@@ -100,8 +100,8 @@ Expected<void> move_to(const rig::RigFile& rig, MotionSession& session, Operator
   return {};
 }
 
-/// The readings of the first half and of the second half of an averaging interval. The difference between
-/// their means is the drift.
+/// The readings of the first half and of the second half of an averaging interval. The drift is the
+/// difference between the means of the two halves.
 struct Halves {
   ChannelSample first;
   ChannelSample second;
@@ -148,8 +148,8 @@ Expected<Visit> visit_sensor(const rig::RigFile& rig, MotionSession& session, Op
                              const Settings& settings, bool upper) {
   const drivers::InputWiring& wiring = rig.wiring[settings.channel].displacement;
   if (settings.may_move) {
-    // Always start from rest, because the hysteresis of the finger would otherwise look like hysteresis of
-    // the sensor.
+    // Each visit starts from rest. Otherwise, the hysteresis of the finger would look like hysteresis of the
+    // sensor.
     for (const double kpa : {control::resting_kpa(rig.settings.channels[settings.channel].limits),
                              upper ? settings.high_kpa : settings.low_kpa}) {
       if (const auto moved = move_to(rig, session, person, settings, kpa); !moved)
@@ -221,7 +221,7 @@ Expected<ValveVisit> visit_valve(const rig::RigFile& rig, MotionSession& session
   visit.valve.reference = by_monitor ? (first.mean + second.mean) / 2 : reference;
   visit.valve.count = 1;
   if (by_monitor) {
-    // Convert the noise of the pressure monitor from kPa to electrical units of the valve.
+    // Converts the noise of the pressure monitor from kPa to electrical units of the valve.
     const double per_unit = std::abs(wiring.valve.scaling.x_at(1) - wiring.valve.scaling.x_at(0));
     visit.valve.noise = std::hypot(first.deviation, second.deviation) / std::sqrt(2.0) * per_unit;
     visit.valve.drift = std::abs(second.mean - first.mean) * per_unit;
@@ -256,8 +256,8 @@ std::optional<double> typed_number(std::string text) {
 
 Expected<Line> calibrate_sensor(const rig::RigFile& rig, MotionSession& session, Operator& person,
                                 const Settings& settings) {
-  // If a person moves the target by hand, the target may leave the sensor's range, so valid readings are not
-  // required.
+  // If a person moves the target by hand, the target may leave the sensor's range. In this case, valid
+  // readings are not required.
   if (settings.may_move) session.require({settings.channel, true, false});
   std::vector<Visit> visits;
   for (std::size_t i = 0; i < settings.repeats; ++i) {
@@ -364,8 +364,8 @@ Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, MotionSession
     return tl::unexpected(refusal_of(up.error()));
   }
   result.zone = find_dead_zone(command, response);
-  // If a sensor has a negative slope, its signal falls when the displacement rises. Repeat the search with
-  // the inverted signal.
+  // If a sensor has a negative slope, its signal falls when the displacement rises. The search is therefore
+  // repeated with the inverted signal.
   if (!result.zone && !result.by_pressure) {
     for (double& value : response) value = -value;
     result.zone = find_dead_zone(command, response);

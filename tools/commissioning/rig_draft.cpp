@@ -27,8 +27,8 @@ constexpr std::array<double, 8> usual_rates_hz{200, 100, 50, 40, 20, 10, 5, 2};
 constexpr double bus_lag = 0.25;  // delay of the bus schedule after the loop schedule, as a share of the
                                   // period; equals LoopSettings::bus_offset_fraction
 constexpr double simulated_watchdog_s = 0.5;
-/// Range of valid signals beyond each of the two end points, as a share of the distance between the end
-/// points.
+/// Range of valid signals outside the two end points, on each side, as a share of the distance between the
+/// end points.
 constexpr double beyond_ends = 0.01;
 
 ElectricalRange usual_range(ElectricalUnit unit) noexcept {
@@ -54,8 +54,8 @@ std::string pair_text(double first, double second) {
 /// Largest number of fingers in one rig file.
 constexpr std::size_t max_fingers = 16;
 
-/// Returns the path for the rig file: relative to the file's folder if it is below this folder, else
-/// unchanged.
+/// Returns the path as the rig file must contain it: relative to the rig file's folder if the path is in this
+/// folder or below it, otherwise unchanged.
 std::string named(const std::string& path, const std::filesystem::path& folder) {
   const auto relative = std::filesystem::proximate(path, folder);
   if (relative.empty() || relative.begin()->string() == "..")
@@ -90,7 +90,7 @@ control::LimitSettings limits_of(const RigDraft& draft) {
   return limits;
 }
 
-/// Returns the best kind of feedforward for which the model can be used.
+/// Returns the best kind of feedforward that the model supports.
 control::FeedforwardKind feedforward_of(const RigDraft& draft, const control::LimitSettings& limits,
                                         double period_s) {
   for (const auto kind : {control::FeedforwardKind::full_model, control::FeedforwardKind::planned}) {
@@ -154,8 +154,8 @@ std::string board_text(const RigDraft& draft, double rate_hz, const std::filesys
   return text;
 }
 
-/// Returns the `module` key, for example "module: module_2, ", if several modules of the board are possible.
-/// Otherwise returns "".
+/// Returns the key `module` with its value, for example "module: module_2, ", if several modules of the board
+/// are possible. Otherwise returns "".
 std::string module_key(const RigDraft& draft, bool output) {
   std::size_t candidates = 0;
   std::size_t first = 0;
@@ -222,7 +222,7 @@ int bus_patience(const RigDraft& draft, double rate_hz) {
 
 using Values = std::vector<std::pair<std::string_view, std::string>>;
 
-/// Replaces every `$key$` in the text by the value of the key.
+/// Replaces every `$key$` in the text by the value of this key.
 std::string filled(std::string text, const Values& values) {
   for (const auto& [key, value] : values) {
     const std::string mark = "$" + std::string(key) + "$";

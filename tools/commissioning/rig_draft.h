@@ -21,19 +21,18 @@ struct DraftModule {
   drivers::BoardMap map;
 };
 
-/// The answers of the user. Terminals are used in order: valve i is connected to output i, sensor i to input
-/// i, and the pressure monitors to the last inputs.
+/// The answers of the user. Terminals are used in the order of their numbers: valve i is connected to output
+/// i, sensor i to input i, and the pressure monitors to the last inputs.
 struct RigDraft {
   std::string name = "my_rig";
   std::optional<double> rate_hz;     ///< control rate [Hz]; nullopt: the highest of the usual rates that is
                                      ///< valid for the rig
   std::vector<DraftModule> modules;  ///< modules of the board; empty: the board is simulated in the process
-  std::string host;                  ///< numeric address of a network board; empty: the board is on a serial
-                                     ///< line
+  std::string host;  ///< numeric address of a board on the network; empty: the board is on a serial line
   int port = 502;
-  std::string device;  ///< path of the serial device of the board
+  std::string device;  ///< path of the serial device to which the board is connected
   int baud = 9600;
-  int unit = 1;  ///< unit id of the first module; each further module has the next id
+  int unit = 1;  ///< unit id of the first module; the id of each next module is larger by 1
   std::vector<std::string> fingers{"left", "right"};
   std::string model_path;
   model::Model model;
@@ -48,12 +47,13 @@ struct RigDraft {
   bool service = false;  ///< true: the rig file uses the folders of the system service
 };
 
-/// Returns the module whose outputs are connected to the valves. Returns null if no module has outputs or the
-/// board is simulated. input_module() does the same for the inputs.
+/// Returns the module whose outputs are connected to the valves; null if no module has outputs or if the
+/// board is simulated. The function input_module() returns the module whose inputs are connected to the
+/// sensors.
 [[nodiscard]] const DraftModule* output_module(const RigDraft& draft) noexcept;
 [[nodiscard]] const DraftModule* input_module(const RigDraft& draft) noexcept;
-/// Returns the largest number of fingers for which the board has enough terminals. With `monitor`, each
-/// finger needs one more input.
+/// Returns the largest number of fingers for which the board has a sufficient number of terminals. If
+/// `monitor` is true, each finger needs one additional input.
 [[nodiscard]] std::size_t most_fingers(const RigDraft& draft, bool monitor) noexcept;
 /// Signal range of a valve or sensor at a terminal. The usual range is 0 to 10 V or 4 to 20 mA. For a
 /// terminal in kilopascals, it is the range of the terminal.
@@ -65,12 +65,13 @@ struct ElectricalRange {
 [[nodiscard]] ElectricalRange input_range(const RigDraft& draft);
 [[nodiscard]] drivers::ElectricalUnit output_unit(const RigDraft& draft) noexcept;
 [[nodiscard]] drivers::ElectricalUnit input_unit(const RigDraft& draft) noexcept;
-/// Returns true if every module of the board vents when communication stops. Returns true for a simulated
-/// board.
+/// Returns true if every module of the board vents when communication stops. Also returns true for a
+/// simulated board.
 [[nodiscard]] bool has_watchdog(const RigDraft& draft) noexcept;
 
-/// Returns the text of a commented rig file for `path`. The rig-file reader checks the text; if it finds
-/// problems, they are returned instead. Paths below the file's folder are relative to this folder.
+/// Returns the text of a rig file with comments, for the path `path`. The rig-file reader checks the text. If
+/// the reader finds problems, returns the problems instead. Paths below the rig file's folder are relative to
+/// this folder.
 [[nodiscard]] tl::expected<std::string, document::Problems> draft_text(const RigDraft& draft,
                                                                        const std::string& path);
 

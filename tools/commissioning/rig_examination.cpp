@@ -26,7 +26,7 @@ std::string advice_for_silence(const rig::RigFile& rig, drivers::BusStatus statu
 }
 
 /// Returns true if a finger may hold a part. The part could drop, because an examination writes the rest
-/// pressures even if it moves no finger.
+/// pressures to the board even if no finger is moved.
 bool may_hold_a_part(const rig::RigFile& rig) {
   const auto& safety = rig.settings.safety;
   const bool holds =
@@ -143,7 +143,7 @@ void failed(const MotionFailure& failure, const rig::RigFile& rig, const std::st
   }
 }
 
-/// Warns if a board that counts its clients has other clients.
+/// Reports the number of clients that the board counts. Warns if other clients reset the board's watchdog.
 void judge_clients(const drivers::Board& board, Findings& findings) {
   const unsigned clients = board.clients();
   if (clients > 1 && board.fed_by_readers()) {
@@ -164,8 +164,8 @@ void leave_channels(const rig::RigFile& rig, const std::string& because, Finding
   }
 }
 
-/// Returns the reasons why the motion of a channel cannot be checked, from the problems that are already
-/// known.
+/// Returns the reasons why the motion of a channel cannot be checked. The reasons are problems that earlier
+/// checks have found.
 NotJudged known_of(const rig::RigFile& rig, std::span<const Crossing> crossings, const ChannelSample& rest,
                    std::size_t channel) {
   using Kind = Crossing::Kind;
@@ -182,15 +182,15 @@ NotJudged known_of(const rig::RigFile& rig, std::span<const Crossing> crossings,
   return known;
 }
 
-/// Returns the sensor that shows a motion of this channel: the displacement sensor, or the pressure monitor
-/// if the channel has no displacement sensor.
+/// Returns the sensor that must show a motion of this channel: the displacement sensor, or the pressure
+/// monitor if the channel has no displacement sensor.
 Sight sight_of(const rig::RigFile& rig, std::size_t channel) {
   const bool displacement = rig.settings.channels[channel].displacement_used;
   return {channel, displacement, !displacement && rig.wiring[channel].pressure.has_value()};
 }
 
-/// Returns the name of the finding that prevents a motion of the channel because its sensor has no valid
-/// reading. Returns "" if the channel may move.
+/// Returns the name of the finding that prevents a motion of the channel, because its sensor has no valid
+/// reading. Returns "" if the channel may be moved.
 std::string blind_at(const rig::RigFile& rig, const ChannelSample& rest, std::size_t channel) {
   const Sight sight = sight_of(rig, channel);
   const std::string& name = rig.settings.channels[channel].name;

@@ -1,5 +1,6 @@
 #pragma once
-// The text from which `softgrip init` creates a rig file. `$NAME$` marks a value that softgrip inserts.
+// The text from which `softgrip init` creates a rig file. `$NAME$` in the text marks a value that `softgrip
+// init` inserts.
 
 #include <string_view>
 

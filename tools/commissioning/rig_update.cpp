@@ -20,8 +20,8 @@ using document::Node;
 constexpr std::size_t most_bytes = 256 * 1024;
 constexpr std::string_view mark = "# softgrip calibrate";
 
-/// Data for the replacement of the calibration points in one YAML map of the rig file, for example in the map
-/// `sensor` of a channel.
+/// Data to replace the calibration points in one YAML map of the rig file, for example in the map `sensor` of
+/// a channel.
 struct Target {
   std::string map;  ///< key of the map, for example "sensor"
   std::string is;   ///< key of the values in the map, for example "is_mm"
@@ -40,7 +40,8 @@ std::vector<Target> targets_of(const rig::RigFile& rig, const Results& results) 
   return targets;
 }
 
-/// Returns the map of the channel. If the rig has one channel, the map may be in `channel_defaults`.
+/// Returns the map `map` of the channel. If the rig has a single channel, this map may be in
+/// `channel_defaults`.
 const Node::Entry* map_of(const document::Document& document, std::size_t channel, const std::string& map) {
   const Node* const channels = document::below(&document.root, {"channels"});
   if (channels == nullptr || channel >= channels->items.size()) return nullptr;
@@ -74,8 +75,8 @@ const drivers::TwoPoints* points_of(const drivers::ChannelWiring& wiring, const 
   return wiring.pressure ? &wiring.pressure->scaling : nullptr;
 }
 
-/// Returns true if the changed file `now` contains the new points, and if all its other points equal the
-/// points of `before`.
+/// Returns true if the changed rig `now` contains the new points, and if all its other points equal the
+/// points of the rig `before`.
 bool says(const rig::RigFile& now, const rig::RigFile& before, const std::vector<Target>& targets,
           std::size_t channel) {
   if (now.wiring.size() != before.wiring.size()) return false;

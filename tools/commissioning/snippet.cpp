@@ -16,7 +16,7 @@ std::string pair(double first, double second, int decimals) {
   return "[" + rounded(first, decimals) + ", " + rounded(second, decimals) + "]";
 }
 
-/// Returns the keys of two points for a map: `at_v: [1.2, 7.8], is_mm: [3, 21]`.
+/// Returns the two points of a scaling as text: `at_v: [1.2, 7.8], is_mm: [3, 21]`.
 std::string scaling(const drivers::TwoPoints& points, const std::string& electrical,
                     const std::string& unit) {
   const LineText text = text_of(points);
@@ -34,7 +34,7 @@ std::string error_codes(const drivers::InputWiring& wiring) {
   return ", error_codes: [" + with_commas(wiring.error_codes, text_of) + "]";
 }
 
-/// Returns the `module` key if the board has several modules, else "".
+/// Returns the key `module` with its value if the board has several modules, otherwise "".
 std::string module_of(const rig::RigFile& rig, std::size_t module) {
   const auto* const board = std::get_if<drivers::ModbusSettings>(&rig.board);
   if (board == nullptr || board->modules.size() < 2 || module >= board->modules.size()) return {};

@@ -11,8 +11,8 @@
 
 namespace softgrip::tools::calibrate {
 
-/// Writes questions to the standard error. Takes the prepared answers first. After the last prepared answer,
-/// reads answers line by line from the standard input.
+/// Writes questions to the standard error. Answers come first from the prepared answers. After the last
+/// prepared answer, they are read line by line from the standard input.
 class TerminalOperator final : public Operator {
  public:
   TerminalOperator();

@@ -1,15 +1,14 @@
 #pragma once
-// C99 source text of the parts of an exported model. The C code computes the same values as the classes in
-// model/, but for one fixed sampling interval and without templates.
-// During a sampling interval, the command is a straight line. Therefore no segment is a jump, and the C code
-// omits the rules for jumps.
+// Declares the C99 source text of the parts of an exported model. The C code computes the same values as the
+// classes in model/, but for one fixed sampling interval and without templates. The command changes linearly
+// during a sampling interval. Therefore no segment is a jump, and the C code omits the rules for jumps.
 
 #include <string_view>
 
 namespace softgrip::tools::c_text {
 
-/// Segments and linear responses, as in model/segment.h and model/exponential.h. All other fragments use
-/// them.
+/// Segments and linear responses, as in model/segment.h and model/exponential.h. All other fragments use this
+/// code.
 extern const std::string_view common;
 /// Dead time, as in model/blocks/transport_delay.h. Needs the macro DELAY_PIECES, a power of two.
 extern const std::string_view transport_delay;
@@ -29,8 +28,8 @@ extern const std::string_view kelvin_voigt;
 extern const std::string_view pressure_dependent_creep;
 /// Characteristic map, as in model/characteristic_map.h and model/blocks/characteristic.h.
 extern const std::string_view characteristic;
-/// Computes the pressure at which the blocks behind the valve reach a given displacement one sampling
-/// interval later.
+/// C function that computes the pressure at which the blocks behind the valve reach a given displacement one
+/// sampling interval later.
 extern const std::string_view inverse;
 
 }  // namespace softgrip::tools::c_text

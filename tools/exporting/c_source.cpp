@@ -74,8 +74,9 @@ struct CBlock {
   std::string_view reset;  ///< C expression for the output of the block at rest
   std::string_view step;   ///< for a valve block, a C statement that calls the next block; otherwise a C
                            ///< expression for the output segment
-  std::string_view lead;   ///< for a valve block, the name of the time constant that the inverse compensates;
-                           ///< empty: none
+  /// For a valve block, the name of the time constant that the inverse compensates; empty: the inverse
+  /// compensates no time constant of this block.
+  std::string_view lead;
 };
 
 template <template <class> class Block>
@@ -200,9 +201,9 @@ class Generator {
     }
   }
 
-  /// Returns the size of the delay buffer [segments], a power of two. A sampling interval begins as one
-  /// segment, and each block before the delay divides a segment into two at most. The remaining segments are
-  /// a margin for the segments at both ends of the delay.
+  /// Returns the size of the delay buffer [segments], a power of two. The command of a sampling interval is
+  /// one segment, and each block before the delay divides a segment into at most two segments. The remaining
+  /// segments are a margin for the segments at both ends of the delay.
   [[nodiscard]] std::size_t delay_pieces() const {
     std::size_t needed = 16;
     std::size_t per_tick = 1;
@@ -219,8 +220,8 @@ class Generator {
     return pieces;
   }
 
-  /// Adds the blocks behind the valve. The sum of the elements' outputs passes through the characteristic
-  /// maps.
+  /// Adds the blocks behind the valve. The outputs of the elements are added, and their sum passes through
+  /// the characteristic maps.
   void add_body() {
     text_ += "\n/* Behind the valve. */\ntypedef struct {\n";
     for (const auto* list : {&elements_, &maps_}) {
@@ -315,7 +316,7 @@ class Generator {
     text_ += "  return led;\n}\n";
   }
 
-  /// Smallest number of segments per sampling interval for which the delay buffer has room.
+  /// Smallest number of segments per sampling interval for which the delay buffer must have room.
   static constexpr std::size_t least_per_tick = 4;
 
   const model::Model& model_;

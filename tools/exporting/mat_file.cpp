@@ -23,7 +23,7 @@ using MatVariable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
 
 bool put(mat_t* file, const std::string& name, const std::vector<double>& values) {
   std::array<std::size_t, 2> size{values.size(), 1};
-  // The pointer must not be const, but libmatio only reads through it.
+  // libmatio only reads the values, although its interface requires a pointer that is not const.
   const MatVariable variable{Mat_VarCreate(name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, 2, size.data(),
                                            const_cast<double*>(values.data()), MAT_F_DONT_COPY_DATA),
                              Mat_VarFree};
@@ -35,7 +35,7 @@ struct Column {
   const std::vector<double>* values;
 };
 
-/// Returns the columns under names that MATLAB accepts. Columns of texts are omitted.
+/// Returns the columns with names that MATLAB accepts. Columns of texts are omitted.
 std::vector<Column> columns_of(const SignalGroup& group, std::vector<std::string>& left_out) {
   std::vector<Column> columns{{"time_s", &group.time_s}};
   std::set<std::string> used{"time_s"};
@@ -88,7 +88,8 @@ std::string matlab_name(const std::string& name) {
 tl::expected<MatBytes, std::string> mat_bytes(const SignalGroup& group) {
   MatBytes mat;
   const std::vector<Column> columns = columns_of(group, mat.left_out);
-  // libmatio writes only to a path and does not detect a failed write, so it writes to a file in memory.
+  // libmatio can write only to a path and does not detect a failed write. Therefore this function lets
+  // libmatio write to a file in memory, and then checks this file.
   const Descriptor memory(::memfd_create("softgrip-export", MFD_CLOEXEC));
   const std::string path = "/proc/self/fd/" + std::to_string(memory.get());
   constexpr std::size_t unbounded = std::numeric_limits<std::size_t>::max() - 1;

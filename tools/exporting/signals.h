@@ -43,7 +43,8 @@ struct MatBytes {
 };
 
 /// Returns a compressed file of version 5 with time_s and one column vector per numeric signal. The bytes are
-/// read back and compared with the signals. Equal signals give equal bytes. The error is a sentence.
+/// read back and compared with the signals. Equal signals give equal bytes. On failure, returns a sentence
+/// that describes the error.
 [[nodiscard]] tl::expected<MatBytes, std::string> mat_bytes(const SignalGroup& group);
 
 /// Returns `name` as a name that MATLAB accepts: at most 63 letters, digits and underscores. The first

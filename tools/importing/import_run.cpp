@@ -76,8 +76,8 @@ bool says_columns(const sysid::Mapping& mapping) {
          std::isfinite(mapping.to_s);
 }
 
-/// Returns the words of --missing that are not numbers. Numbers are omitted, because convert() compares
-/// numbers by value.
+/// Returns the words of --missing that are not numbers. Numbers are left out, because convert() recognises
+/// them by their value.
 std::vector<std::string> missing_words(const sysid::Mapping& mapping) {
   std::vector<std::string> words;
   for (const std::string& word : mapping.missing) {
@@ -139,8 +139,7 @@ bool show_guesses(const std::vector<Job>& jobs) {
   return guessed;
 }
 
-/// Returns true if the mapping may be used. This is so if no role was guessed, if --yes is given, or if the
-/// user confirms.
+/// Returns true if no role was guessed, if --yes is given, or if the user confirms the mapping.
 bool agreed(const std::vector<Job>& jobs, const ImportOptions& options) {
   if (!show_guesses(jobs)) return true;
   for (const Job& job : jobs) {
@@ -261,7 +260,7 @@ void report(const std::vector<Job>& jobs, const ImportOptions& options) {
 }
 
 /// Refuses output paths that would overwrite an input. The new mapping file may overwrite the file of --map,
-/// because both have the same meaning.
+/// because the new file also contains the settings of the file of --map.
 std::optional<ExitCode> refuse_own_inputs(const ImportOptions& options,
                                           const std::vector<std::string>& targets) {
   std::vector<std::string> outputs = targets;

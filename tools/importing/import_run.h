@@ -34,17 +34,19 @@ struct ImportOptions {
   bool json = false;
 };
 
-/// Imports the files. Reads all files before it writes any; if there is a problem, it writes nothing. If
-/// column roles were guessed, it shows the mapping and the equivalent options. Without --yes, the user must
+/// Imports the files. Reads all files before the first log is written. If there is a problem, writes nothing.
+/// If column roles were guessed, shows the mapping and the equivalent options. Without --yes, the user must
 /// confirm this mapping on a terminal. If there is no terminal, the exit code is 2.
 ExitCode run_import(const ImportOptions& options);
 
 /// Returns the output paths of the logs. If there is one file and `out` is not a folder, the path is `out`.
-/// Otherwise each log gets a path in the folder `out`. The error is a sentence.
+/// Otherwise each log gets a path in the folder `out`. On failure, returns a sentence that describes the
+/// error.
 [[nodiscard]] tl::expected<std::vector<std::string>, std::string> import_targets(
     const std::vector<std::string>& files, const std::string& out);
 
-/// Returns the mapping `begun`, completed with the settings of the options. The error is a sentence.
+/// Returns the mapping `begun`, completed with the settings of the options. On failure, returns a sentence
+/// that describes the error.
 [[nodiscard]] tl::expected<sysid::Mapping, std::string> mapping_of(const ImportOptions& options,
                                                                    sysid::Mapping begun);
 

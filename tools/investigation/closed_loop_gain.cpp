@@ -28,20 +28,20 @@ using control::FeedforwardKind;
 using Json = nlohmann::ordered_json;
 
 constexpr double rate_hz = 100;
-/// Number of simulated rigs with which the gains are searched, and number of further rigs with which they are
-/// evaluated.
+/// Number of simulated rigs with which the gains are searched, and number of additional rigs with which the
+/// found gains are evaluated.
 constexpr std::uint64_t searched_rigs = 2;
 constexpr std::uint64_t judged_rigs = 5;
 constexpr double largest_sensitivity = 2;
 constexpr double mean_mm = 13;
 constexpr double amplitude_mm = 7;
-/// Smallest span of a finger for which the reference is not scaled down [mm]. The published reference reaches
-/// 20 mm. A finger with a span of 22 mm reaches 20 mm with a reserve for creep.
+/// Smallest span of a finger for which the reference keeps its full size [mm]. The published reference
+/// reaches 20 mm. A finger with a span of 22 mm reaches 20 mm with a reserve for creep.
 constexpr double span_needed_mm = 22;
 constexpr control::GainSearch gain_search{.iterations = 25, .coarseness = 2};
 
-/// Returns the model without the random errors of its sensor. The simulation adds the noise of the sensor
-/// separately.
+/// Returns the model without the random errors of its sensor, because the simulation adds the noise of the
+/// sensor separately.
 model::Model body_of(const model::Model& model) {
   return model::only(model, [](const model::BlockInfo& info) {
     return !model::is<model::SensorNoise, model::Quantisation, model::Outliers>(info);
@@ -63,11 +63,10 @@ class Rigs {
   [[nodiscard]] double mean() const { return mean_mm_; }
   [[nodiscard]] double amplitude() const { return amplitude_mm_; }
 
-  /// Returns the closed-loop result with a feedforward from this model. If the whole model has an inverse,
-  /// the feedforward is this inverse. If it has no inverse, two feedforwards are compared: a plan that is
-  /// computed with the model, and the inverse of the model's invertible part. The result is that of the
-  /// feedforward with the smaller tracking error. If none of these feedforwards can be computed, the tracking
-  /// error is infinite.
+  /// Returns the closed-loop result with a feedforward from this model. If the complete model has an inverse,
+  /// the feedforward is this inverse. Otherwise, two feedforwards are compared: a plan that is computed with
+  /// the model, and the inverse of the model's invertible part. The feedforward with the smaller tracking
+  /// error is used. If neither feedforward can be computed, the tracking error is infinite.
   [[nodiscard]] ClosedLoopScheme with_model(const model::Model& believed) const {
     ClosedLoopScheme whole = measured(believed, FeedforwardKind::full_model);
     if (whole.refused.empty()) return whole;

@@ -1,7 +1,7 @@
 #pragma once
 // Computes the benefit of an extended model in closed loop. Simulated rigs track the same reference twice:
-// with the refitted and with the extended model in the feedforward. One search method tunes the PID gains for
-// both.
+// once with the refitted model in the feedforward, once with the extended model. The PID gains are tuned by
+// the same search method in both cases.
 
 #include <cstdint>
 #include <optional>
@@ -21,29 +21,30 @@ namespace softgrip::tools {
 /// The models, logs and settings that the comparison needs.
 struct ClosedLoopQuestion {
   model::Model recalibrated;
-  model::Model extended;  ///< the extended model; with parameters changed by up to `rig_scatter`, it is also
-                          ///< the simulated rig
+  model::Model extended;  ///< the extended model; the simulated rigs are this model with parameters changed
+                          ///< by up to `rig_scatter`
   double noise_mm = 0.03;
-  double span_mm = 0;  ///< displacement span of the logs [mm]; the reference of 13 ± 7 mm is scaled down if
-                       ///< it exceeds the span; 0: unknown
+  double span_mm = 0;  ///< displacement span of the logs [mm]; 0: unknown. If the reference of 13 ± 7 mm
+                       ///< exceeds the span, the reference is scaled down.
   double pressure_max_kpa = 60;
   double frequency_hz = 0.2;
   double rig_scatter = 0.02;  ///< largest relative difference between a parameter of the simulated rig and
-                              ///< that of the extended model
+                              ///< the same parameter of the extended model
   std::uint64_t seed = 1;
 };
 
 /// The tracking result of one controller on the simulated rigs.
 struct ClosedLoopScheme {
-  double rmse_mm = 0;  ///< median of the RMSE over the simulated rigs
+  double rmse_mm = 0;  ///< median over the simulated rigs of the RMSE of tracking [mm]
   control::PidSettings pid;
-  /// Kind of the feedforward. It is full_model if the model has a causal inverse. Otherwise it is the better
-  /// of planned and full_model of the invertible part. If the PID alone is at least as good as both, the
-  /// value is none, and all results are the results of the PID alone.
+  /// Kind of the feedforward. If the model has a causal inverse, the value is full_model. If it has none, the
+  /// value is the best of three: planned, full_model of the invertible part, and none (the PID alone). If the
+  /// value is none, all results are the results of the PID alone.
   control::FeedforwardKind feedforward = control::FeedforwardKind::none;
-  std::string refused;  ///< reason why the whole model is not used as full_model; empty: it is used
+  std::string refused;  ///< reason why the complete model is not used as full_model; empty: the complete
+                        ///< model is used
   std::optional<control::InvertiblePart> part;  ///< the part of the model that is inverted; nullopt: the
-                                                ///< whole model
+                                                ///< complete model is inverted
   control::TrackingTrace trace;                 ///< trace of the simulated rig that has the median error
 };
 
@@ -67,7 +68,8 @@ struct ClosedLoopGain {
 
 [[nodiscard]] ClosedLoopGain measure_closed_loop(const ClosedLoopQuestion& question);
 
-/// Adds the member "closed_loop" to the JSON of diagnosis.json or investigation.json.
+/// Adds the result of the comparison as the member "closed_loop" to the JSON of diagnosis.json or
+/// investigation.json.
 void add_closed_loop(nlohmann::ordered_json& json, const ClosedLoopGain& gain);
 
 }  // namespace softgrip::tools

@@ -22,8 +22,8 @@ namespace softgrip::tools {
 namespace {
 
 constexpr const char* experiment_file = "next_experiment.yaml";
-/// Name of the file with the invertible part of an extended model. It is written if the whole model has no
-/// inverse.
+/// Name of the file with the invertible part of an extended model. The file is written if the complete model
+/// has no inverse.
 constexpr const char* feedforward_file = "feedforward_model.yaml";
 
 std::string complete_json(const sysid::Diagnosis& diagnosis, const DiagnosisSource& source,
@@ -86,7 +86,7 @@ tl::expected<std::string, std::string> write_diagnosis_folder(const std::string&
   } else {
     std::filesystem::remove(out / feedforward_file, ignored);
   }
-  // Do not overwrite or remove an existing file, because it may contain readings of the user.
+  // An existing file is not overwritten or removed, because it may contain readings of the user.
   if (const auto& check = consequences.experiment.gauge_check;
       check && !std::filesystem::exists(out / sysid::gauge_positions_file, ignored)) {
     files.emplace_back(sysid::gauge_positions_file,

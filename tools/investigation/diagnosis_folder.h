@@ -16,7 +16,7 @@ namespace softgrip::tools {
 /// The next experiment and the closed-loop comparison that follow from a diagnosis.
 struct Consequences {
   sysid::NextExperiment experiment;
-  std::optional<ClosedLoopGain> closed_loop;  ///< benefit of the extension in closed loop; nullopt: not
+  std::optional<ClosedLoopGain> closed_loop;  ///< benefit of the extended model in closed loop; nullopt: not
                                               ///< requested, or the diagnosis found no extension
 };
 
@@ -33,14 +33,15 @@ struct ConsequenceOptions {
 struct DiagnosisSource {
   const std::vector<sysid::Log>& logs;
   const model::Model& given;
-  std::vector<std::string> call;  ///< command line; empty: the diagnosis was not started by a command
+  std::vector<std::string> call;  ///< command line that started the diagnosis; empty: no command started it
 };
 
 /// Returns the names of the files that write_diagnosis_folder() writes, replaces or removes.
 [[nodiscard]] std::vector<std::string> diagnosis_files();
 
-/// Writes the files into `folder` and returns the text of diagnosis.json. Removes the next_experiment.yaml or
-/// feedforward_model.yaml of an earlier diagnosis if this diagnosis has no such file.
+/// Writes the files into `folder` and returns the text of diagnosis.json. If this diagnosis has no
+/// next_experiment.yaml or no feedforward_model.yaml, removes the file of this name from an earlier
+/// diagnosis.
 /// @param channel  channel for which the experiment is written; "": all channels of the rig.
 [[nodiscard]] tl::expected<std::string, std::string> write_diagnosis_folder(const std::string& folder,
                                                                             const sysid::Diagnosis& diagnosis,
@@ -48,7 +49,7 @@ struct DiagnosisSource {
                                                                             const Consequences& consequences,
                                                                             const std::string& channel = "");
 
-/// Returns the input of the closed-loop comparison for a diagnosis.
+/// Returns the models, logs and settings for the closed-loop comparison of a diagnosis.
 [[nodiscard]] ClosedLoopQuestion closed_loop_question(const sysid::Diagnosis& diagnosis, std::uint64_t seed);
 
 /// Returns sentences about the next experiment and the closed loop, one per line.

@@ -9,8 +9,8 @@
 namespace softgrip::tools {
 namespace {
 
-/// Tolerances for duration, pressure and travel, as shares. They exceed the changes of the command by the
-/// daemon's ramps, rests and rounded corners.
+/// Tolerances for duration, pressure and travel of a log, as shares of the requested values. The daemon
+/// changes the command by ramps, rests and rounded corners. The tolerances exceed these changes.
 constexpr double shortest_share = 0.97;
 constexpr double pressure_tolerance = 0.05;
 constexpr double travel_tolerance = 0.1;
@@ -42,7 +42,7 @@ Played of_waveform(const sysid::Waveform& waveform) {
   return asked;
 }
 
-/// Returns true if the readings and predictions suffice to estimate the slope of a line through them.
+/// Returns true if the readings and predictions are sufficient to estimate the slope of a line through them.
 bool is_known(const PairSums& sums) {
   return sums.count >= 10 && sums.variance_x() > 0;
 }
@@ -84,9 +84,9 @@ std::optional<std::string> touched(const sysid::Validation& predicted, const sys
     stopped_at_mm = std::max(stopped_at_mm, reading_mm);
   }
   if (!is_known(lower) || !is_known(upper)) return std::nullopt;
-  // An object blocks the finger if two conditions are met. The slope in the upper part of the stroke is below
-  // half the slope in the lower part. The displacement shortfall exceeds 10 % of the stroke. A model that
-  // fits the earlier logs has smaller errors without contact.
+  // An object blocks the finger if two conditions are met. First, the slope in the upper part of the stroke
+  // is below half the slope in the lower part. Second, the displacement shortfall exceeds 10 % of the stroke.
+  // Without contact, a model that fits the earlier logs has smaller errors than this.
   const bool stopped = upper.slope() < 0.5 * lower.slope() && shortfall_mm > 0.1 * highest_mm;
   if (!stopped) return std::nullopt;
   return "the finger touched an object: the finger stopped at " + significant(stopped_at_mm, 3) + " mm, " +

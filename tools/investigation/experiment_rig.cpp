@@ -24,8 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Largest share of the displacement range that the finger may use. The displacement is predicted with the
-/// gain of the finger in the logs. The first value applies at pressures that the logs contain. The second
-/// applies at higher pressures, where creep and softening may increase the displacement.
+/// gain of the finger in the logs. The first value applies to pressures that the logs contain. The second
+/// value applies to higher pressures, at which creep and softening may increase the displacement.
 constexpr double known_range_share = 0.95;
 constexpr double predicted_range_share = 0.85;
 
@@ -62,7 +62,7 @@ tl::expected<void, NotPlayed> call(const std::string& command, const std::string
   std::fflush(nullptr);
   const int status = std::system((command + " " + shell_word(in) + " " + shell_word(out)).c_str());
   const bool by_signal = WIFSIGNALED(status) || (WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGINT);
-  // Ctrl-C reaches this process as well, but system() ignores it until the command ends.
+  // Ctrl-C also sends a signal to this process, but system() ignores this signal until the command ends.
   const bool by_user =
       (WIFEXITED(status) && by_signal) || (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
   if (by_user) note_ending_signal(SIGINT);
@@ -84,7 +84,7 @@ std::string command_csv(const sysid::Waveform& waveform, double interval_s) {
   std::string csv = "time_s,pressure_command_kpa\n";
   const std::vector<double> samples = sysid::sampled_kpa(waveform, interval_s);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    // Round times to 1 µs, so that programs that print six digits write equal times.
+    // Times are rounded to 1 µs, so that programs that print six decimals write equal times.
     const double time_s = std::round(1e6 * static_cast<double>(i) * interval_s) / 1e6;
     csv += shortest(time_s) + "," + shortest(samples[i]) + "\n";
   }
@@ -145,14 +145,14 @@ tl::expected<std::string, NotPlayed> run_on(const ExperimentRig& rig, const std:
   options.sequence = std::move(*sequence);
   options.record_folder = (fs::path(folder) / name).string();
   options.listen = false;
-  std::string fault;  // the first fault of the run; empty: none
+  std::string fault;  // the first fault of the run; empty: there was no fault
   options.on_event = [&fault](const daemon::EventEntry& event) {
     if (fault.empty() && event.severity == daemon::Severity::error) fault = event.text;
   };
   const auto outcome = rig.run(rig.rig, options);
   if (!outcome) return failed(outcome.error());
   // A signal at the very end of an experiment does not stop this experiment, but it must prevent the next
-  // one.
+  // experiment.
   if (outcome->signal != 0) return stopped("stopped by the user; the rig is vented");
   if (outcome->ending != daemon::Ending::sequence_ended || !outcome->sequence_end ||
       *outcome->sequence_end != control::SequenceEnd::done) {

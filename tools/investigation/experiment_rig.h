@@ -1,7 +1,7 @@
 #pragma once
-// Plays the experiments of an investigation on a rig. This is either the rig of a rig file, controlled by the
-// daemon's own code, or a command that the user provides. Checks that the rig played the requested
-// experiment.
+// Plays the experiments of an investigation on a rig. The rig is either described by a rig file and
+// controlled by the daemon's code, or it is a command that the user provides. Checks that the rig played the
+// requested experiment.
 
 #include <cstdint>
 #include <functional>
@@ -24,28 +24,29 @@ namespace softgrip::tools {
 struct ExperimentRig {
   rig::RigFile rig;
   std::size_t channel = 0;
-  bool simulated = false;  ///< true: the rig is simulated in the process, so nothing moves and time is
+  bool simulated = false;  ///< true: the rig is simulated in this process, so no hardware moves, and time is
                            ///< virtual
-  /// Runs a sequence on the rig. A test may use a function with another clock and another board.
+  /// Runs a sequence on the rig. A test may set a function that uses another clock and another board.
   daemon::DaemonRunner run = daemon::run_daemon;
 
   [[nodiscard]] const std::string& channel_name() const { return rig.settings.channels[channel].name; }
-  /// Returns the rig for run number `occasion`. A simulated rig gets another noise seed for each run.
+  /// Returns the rig for the run with the number `occasion`. A simulated rig has a different noise seed in
+  /// each run.
   [[nodiscard]] ExperimentRig at(std::uint64_t occasion) const;
   /// Returns the limits of the rig, which determine the waveforms of the experiments.
-  /// @param gain_mm_per_kpa  gain of the finger in the logs, with which the displacement is limited; 0:
+  /// @param gain_mm_per_kpa  gain of the finger in the logs, which is used to limit the displacement; 0:
   /// unknown.
-  /// @param known_kpa  largest pressure of the logs. At higher pressures, a smaller share of the displacement
-  /// range is used.
+  /// @param known_kpa  largest pressure of the logs. Above this pressure, a smaller share of the displacement
+  /// range may be used.
   [[nodiscard]] sysid::RigLimits limits(double gain_mm_per_kpa, double known_kpa) const;
 };
 
-/// Returns the position of the channel with this name in the rig file. An empty name selects the only
-/// channel. Returns nullopt if there is no such channel.
+/// Returns the index of the channel with this name in the rig file. An empty name selects the channel of a
+/// rig with one channel. Returns nullopt if there is no such channel.
 [[nodiscard]] std::optional<std::size_t> channel_of(const rig::RigFile& rig, const std::string& name);
 
-/// Returns the rig with the channel of this name. An empty name selects the only channel. The error is a
-/// sentence.
+/// Returns the rig with the channel of this name selected. An empty name selects the channel of a rig with
+/// one channel. The error is a sentence.
 [[nodiscard]] tl::expected<ExperimentRig, std::string> experiment_rig(rig::RigFile rig,
                                                                       const std::string& channel);
 
@@ -59,37 +60,38 @@ struct ExperimentRig {
                                                             const std::string& sequence_yaml,
                                                             const std::string& folder);
 
-/// Function that is called before any motion with a sentence that describes the motion. The motion is allowed
-/// if the function returns true.
+/// Function that is called before any motion with a sentence that describes the motion. If the function
+/// returns true, the motion is allowed.
 using Consent = std::function<bool(const std::string& what)>;
 
 /// Returns a player that runs the experiments in the foreground, as `softgrip run` does. A signal vents the
 /// rig and stops the investigation.
 [[nodiscard]] Player rig_player(ExperimentRig rig, Consent consent);
 
-/// Returns a player that runs `COMMAND COMMAND_CSV LOG_OUT`. The file COMMAND_CSV has the columns time_s and
-/// pressure_command_kpa with one row per `interval_s`. The command must write a log to LOG_OUT.
+/// Returns a player that runs `COMMAND COMMAND_CSV LOG_OUT`, where COMMAND is `command`. The file COMMAND_CSV
+/// has the columns time_s and pressure_command_kpa, with one row per `interval_s`. The command must write a
+/// log to LOG_OUT.
 [[nodiscard]] Player command_player(std::string command, double interval_s, Consent consent);
 
-/// Returns a function that checks the sensor of a simulated rig. It applies known lengths to the sensor
-/// blocks of the simulated model and adds the rig's noise and quantisation. Lengths outside the range of the
-/// sensor are omitted.
+/// Returns a function that checks the sensor of a simulated rig. The function applies known lengths to the
+/// sensor blocks of the simulated model, and adds the rig's noise and quantisation. Lengths outside the range
+/// of the sensor are omitted.
 [[nodiscard]] GaugeTaker simulated_gauge(ExperimentRig rig);
 
-/// Returns a function that checks a sensor: it runs `COMMAND POSITIONS_CSV GAUGE_OUT` and reads the file
-/// GAUGE_OUT.
+/// Returns a function that checks a sensor. The function runs `COMMAND POSITIONS_CSV GAUGE_OUT`, where
+/// COMMAND is `command`, and reads the file GAUGE_OUT.
 [[nodiscard]] GaugeTaker command_gauge(std::string command, Consent consent);
 
-/// Writes the readings to `folder`/gauge.csv and reads this file as it reads the gauge file of a user.
+/// Writes the readings to `folder`/gauge.csv, and reads this file in the same way as a gauge file of a user.
 [[nodiscard]] tl::expected<sysid::GaugeFile, NotPlayed> gauge_file_of(
     const std::vector<sysid::GaugeReading>& readings, const std::string& folder);
 
 /// Returns a sentence if the command of the log differs from the waveform in duration, largest pressure or
-/// total travel. Returns nullopt if it does not.
+/// total travel; otherwise nullopt.
 [[nodiscard]] std::optional<std::string> broken_promise(const sysid::Waveform& asked, const sysid::Log& log);
 
-/// Returns a sentence if an object blocked the finger, else nullopt. The check uses pressures up to
-/// `known_kpa`. A blocked finger moves as predicted in the lower part of its stroke, and far less than
+/// Returns a sentence if an object blocked the finger; otherwise nullopt. The check uses pressures up to
+/// `known_kpa`. A blocked finger moves as predicted in the lower part of its stroke, and much less than
 /// predicted in the upper part.
 /// @param predicted  prediction for the log by a model without contact
 /// @param known_kpa  largest pressure of the logs to which the model was fitted

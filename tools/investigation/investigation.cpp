@@ -56,8 +56,8 @@ class Investigator {
   }
 
  private:
-  /// Makes one diagnosis, and plays the experiment that it proposes, if any. Returns false at the end of the
-  /// investigation.
+  /// Makes one diagnosis. If the diagnosis proposes an experiment, plays this experiment. Returns false at
+  /// the end of the investigation.
   tl::expected<bool, NotInvestigated> step() {
     const std::string name = "step_" + std::to_string(result_.steps.size() + 1);
     sysid::DiagnosisOptions how = options_.diagnosis;
@@ -101,8 +101,8 @@ class Investigator {
     return end(why.stopped ? InvestigationEnd::stopped : InvestigationEnd::failed, why.why);
   }
 
-  /// Sets the reason for the end if the diagnosis proposed no experiment. Either the budget is too small, or
-  /// no experiment separates the causes.
+  /// Sets the reason for the end if the diagnosis proposed no experiment. The reason is that the budget is
+  /// too small, or that no experiment separates the causes.
   bool end_without_experiment(const sysid::NextExperiment& none) {
     sysid::ExperimentOptions unbounded = plan_;
     unbounded.most_minutes = 1e9;
@@ -154,8 +154,8 @@ class Investigator {
     return touched(*result_.steps.back().answer, log, sysid::campaign_size(result_.last.records).largest_kpa);
   }
 
-  /// Checks the sensor against a gauge. The check is needed if the alternatives differ in the sensor, so that
-  /// no waveform separates them.
+  /// Checks the sensor against a gauge. The check is needed if the alternatives differ in the sensor alone,
+  /// because no waveform separates such alternatives.
   bool check_sensor(const sysid::ProposedGaugeCheck& check, const std::string& folder) {
     if (check.minutes > result_.budget_minutes - result_.spent_minutes) {
       return end(InvestigationEnd::budget_spent,

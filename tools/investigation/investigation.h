@@ -1,6 +1,6 @@
 #pragma once
 // Repeats diagnosis and experiment until one cause remains, the time budget is spent, or no experiment
-// separates the alternatives. Formats the investigation as a page.
+// separates the alternatives. Formats the investigation as an HTML page.
 
 #include <functional>
 #include <optional>
@@ -21,10 +21,10 @@ namespace softgrip::tools {
 
 /// The reason why an experiment produced no log.
 struct NotPlayed {
-  bool stopped = false;  ///< true: the user refused consent or pressed Ctrl-C
-  std::string why;       ///< the reason why the experiment produced no log, as a sentence
-  /// not_acceptable: the rig had a fault during the experiment, and its outputs are safe. io: the board
-  /// cannot be reached, or another program uses it.
+  bool stopped = false;  ///< true: the user has refused consent or pressed Ctrl-C
+  std::string why;       ///< reason why the experiment produced no log, as a sentence
+  /// Exit code. not_acceptable: the rig had a fault during the experiment, and its outputs are safe. io: the
+  /// board cannot be reached, or another program uses the board.
   ExitCode code = ExitCode::failed;
 };
 
@@ -43,21 +43,22 @@ struct InvestigationOptions {
   sysid::DiagnosisOptions diagnosis;
   sysid::ExperimentOptions experiment;  ///< settings of the search for the next experiment, with the limits
                                         ///< of the rig
-  double budget_minutes = 30;           ///< largest time on the rig [min]
+  double budget_minutes = 30;           ///< longest permitted time of all experiments on the rig [min]
   std::string out;                      ///< folder in which the folders step_1, step_2, ... are created
   std::string channel;                  ///< channel on which the experiments are played; "": all channels of
                                         ///< the rig
   Player play;
-  GaugeTaker take_gauge;                         ///< checks the sensor; empty: neither a person nor a program
-                                                 ///< can move its target
+  GaugeTaker take_gauge;  ///< function that checks the sensor; empty: neither a person nor a program can move
+                          ///< the sensor's target
   std::function<void(const std::string&)> tell;  ///< function that prints one line of progress
 };
 
 enum class InvestigationEnd {
-  settled,       ///< one cause per effect remains, or the model needs no cause
-  unexplained,   ///< an error remains that no cause in the library explains, so no experiment helps
+  settled,       ///< one cause per effect remains, or the model has no error that needs a cause
+  unexplained,   ///< an error remains that no cause in the library explains, so no experiment would help
   nothing_left,  ///< no experiment separates the alternatives
-  budget_spent,  ///< an experiment separates the alternatives, but needs more time than is left in the budget
+  budget_spent,  ///< an experiment would separate the alternatives, but needs more time than the budget has
+                 ///< left
   contact,       ///< the finger touched an object during an experiment
   not_as_asked,  ///< the rig did not play the requested experiment, because its command differs from the
                  ///< request
@@ -69,7 +70,7 @@ enum class InvestigationEnd {
 /// Name of a step that checks the sensor against a gauge and plays no waveform.
 inline constexpr const char* gauge_check_name = "gauge_check";
 
-/// One diagnosis and the experiment or gauge check after it.
+/// One diagnosis, and the experiment or gauge check that follows this diagnosis.
 struct InvestigationStep {
   std::string folder;  ///< name of the folder of this step, inside the output folder
   sysid::Verdict verdict = sysid::Verdict::unexplained;
@@ -78,41 +79,43 @@ struct InvestigationStep {
   double extended_rmse_mm = 0;      ///< held-out RMSE of the extended model [mm]
   std::vector<std::string> causes;
   std::vector<std::vector<std::string>> alternatives;
-  std::string experiment;  ///< name of the waveform that was played, or gauge_check; empty: neither
+  std::string experiment;  ///< name of the waveform that was played, or gauge_check; empty: no waveform and
+                           ///< no gauge check
   double predicted_separation_sigma = 0;
   double minutes = 0;
   std::string log;  ///< path of the log or of the gauge file of this step
-  /// The response of the rig, compared with the prediction of this step's extended model. Nullopt if the step
-  /// played no waveform.
+  /// Comparison of the rig's response with the prediction by the extended model of this step; nullopt: the
+  /// step played no waveform.
   std::optional<sysid::Validation> answer;
 };
 
 struct Investigation {
   InvestigationEnd end = InvestigationEnd::failed;
-  std::string why;                   ///< reason for the end as a sentence, if the end is not `settled`
-  ExitCode code = ExitCode::failed;  ///< exit code of the program, if the end is `failed`
+  std::string why;                   ///< reason for the end as a sentence; empty if the end is `settled`
+  ExitCode code = ExitCode::failed;  ///< exit code of the program; used if the end is `failed`
   std::vector<InvestigationStep> steps;
   double budget_minutes = 0;
   double spent_minutes = 0;
-  std::vector<sysid::Log> logs;           ///< the given logs, followed by the logs of the experiments
-  std::optional<sysid::GaugeFile> gauge;  ///< readings of the sensor against a gauge, given by the user or
-                                          ///< measured in a step
+  std::vector<sysid::Log> logs;  ///< the logs that the user gave, followed by the logs of the experiments
+  std::optional<sysid::GaugeFile> gauge;  ///< readings of the sensor against a gauge, from the user or from a
+                                          ///< step
   sysid::Diagnosis last;
 };
 
-/// The reason why an investigation has no result. input_refused: the given logs cannot be used. io: a file
-/// cannot be written.
+/// The reason why an investigation has no result. Exit code input_refused: the logs of the user cannot be
+/// used. Exit code io: a file cannot be written.
 struct NotInvestigated {
   ExitCode code = ExitCode::failed;
-  std::string why;  ///< the reason why there is no result, as a sentence
+  std::string why;  ///< reason why there is no result, as a sentence
 };
 
 [[nodiscard]] tl::expected<Investigation, NotInvestigated> investigate(const InvestigationOptions& options);
 
-/// Returns the JSON of investigation.json. `rig` is the rig file or command that played the experiments.
+/// Returns the JSON of investigation.json. `rig` is the path of the rig file, or the command that played the
+/// experiments.
 [[nodiscard]] nlohmann::ordered_json json_of(const Investigation& investigation, const std::string& rig);
 
-/// Returns the HTML page.
+/// Returns the HTML page of an investigation.
 /// @param rig          path of the rig file, or the command that plays the experiments
 /// @param closed_loop  sentences about the closed loop; empty: no closed loop was simulated
 [[nodiscard]] std::string investigation_html(const Investigation& investigation, const std::string& rig,

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int settling_cycles = 1;
 constexpr int measured_cycles = 3;
-/// Index of the step that tracks the reference, in the sequence of tracking_yaml().
+/// Key of the step that tracks the reference, which is its index in the sequence of tracking_yaml().
 constexpr const char* track_step = "1";
 
 std::string tracking_yaml(const ClosedLoopGain& gain, const std::string& channel) {
@@ -26,7 +26,8 @@ std::string tracking_yaml(const ClosedLoopGain& gain, const std::string& channel
          "}\n  - release: {duration_s: 2, purge_s: 1, timeout_s: 20, on_fail: vent}\n";
 }
 
-/// Returns the rig with the given model and gains on its channel, or the reason why the rig cannot use them.
+/// Returns the rig with the model and the gains of the scheme on its channel. If the rig cannot use them,
+/// returns the reason.
 tl::expected<ExperimentRig, NotPlayed> with_scheme(ExperimentRig rig, const model::Model& model,
                                                    const ClosedLoopScheme& scheme) {
   control::ChannelSettings& channel = rig.rig.settings.channels[rig.channel];

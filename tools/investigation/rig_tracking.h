@@ -1,5 +1,5 @@
 #pragma once
-// Measures the closed loop on a rig, which tracks the same sine once with each of two controllers.
+// Measures the closed loop on a rig. The rig tracks the same sine twice, once with each of two controllers.
 
 #include <string>
 
@@ -12,8 +12,8 @@
 
 namespace softgrip::tools {
 
-/// RMS difference between reading and reference over the measured cycles of a track step [mm], per
-/// controller.
+/// RMS difference between reading and reference over the measured cycles of a track step [mm], for each of
+/// the two controllers.
 struct RigTracking {
   double recalibrated_rmse_mm = 0;
   double extended_rmse_mm = 0;
@@ -26,7 +26,7 @@ struct RigTracking {
     const ExperimentRig& rig, const model::Model& recalibrated, const model::Model& extended,
     const ClosedLoopGain& gain, const std::string& folder, const Consent& consent);
 
-/// Adds the member "closed_loop.on_rig" to the JSON of investigation.json.
+/// Adds the measured result as the member "closed_loop.on_rig" to the JSON of investigation.json.
 void add_rig_tracking(nlohmann::ordered_json& json, const RigTracking& tracking);
 
 }  // namespace softgrip::tools

@@ -1,4 +1,4 @@
-// Simulates a gauge check with the sensor blocks of the simulated model, without its finger.
+// Simulates a gauge check with the sensor blocks of the simulated model. The model of the finger is not used.
 
 #include <cmath>
 #include <optional>
@@ -17,7 +17,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Nanoseconds interval = 10'000'000;
-/// Duration of the average at the end of a reading [s]. Before it, the target moves to its position.
+/// Duration of the average at the end of a reading [s]. Before this average, the target moves to its
+/// position.
 constexpr double averaged_s = 2;
 /// Largest length that a simulated output can represent [mm].
 constexpr double longest_mm = 10'000;
@@ -37,7 +38,7 @@ class SensorBench {
   SensorBench(simulation::SimulatedBoardSettings settings, std::size_t channel)
       : channel_(channel), board_(on_bench(std::move(settings), channel), clock_) {}
 
-  /// Returns the mean reading at a position, or nullopt if the sensor gives no valid reading there.
+  /// Returns the mean reading at a position; nullopt if the sensor gives no valid reading at this position.
   std::optional<sysid::GaugeReading> read(double position_mm) {
     if (position_mm < 0) return std::nullopt;
     std::vector<double> commands(board_.channels(), 0.0);

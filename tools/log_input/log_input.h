@@ -1,5 +1,5 @@
 #pragma once
-// Options and readers of logs for the commands that analyse logs.
+// Declares the options and the readers of logs for the commands that analyse logs.
 
 #include <optional>
 #include <string>
@@ -26,9 +26,9 @@ struct LogInput {
   std::string drive = "command";
   std::string begin = "auto";
   bool held = false;
-  /// True: a log with measured pressure gets no additional first sample, even if it begins when its command
-  /// is set (sysid/logs/command_before.h). A separate model of the pressure then begins at the measured
-  /// value.
+  /// True: a log with measured pressure gets no additional first sample, even if the log begins at the moment
+  /// at which its first command is set (sysid/logs/command_before.h). A separate model of the pressure then
+  /// begins at the measured value.
   bool begins_at_measured_pressure = false;
 
   [[nodiscard]] sysid::RecordOptions record_options() const;
@@ -47,13 +47,13 @@ struct RequiredUnit {
 /// Returns mm as the required unit, because rigs use mm.
 [[nodiscard]] RequiredUnit unit_of_rigs();
 
-/// Reads all logs. If one is refused, prints all problems and returns the exit code. Without a required unit,
-/// all logs must have the same unit as the first log.
+/// Reads all logs. If a log is refused, prints all problems and returns the exit code. If no unit is
+/// required, all logs must have the unit of the first log.
 [[nodiscard]] tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(
     const std::vector<std::string>& paths, const LogInput& input,
     const std::optional<RequiredUnit>& required = {});
 
-/// Prints the problems of logs. For each file, also prints a hint if `softgrip import` can convert it.
+/// Prints the problems of logs. For each file, also prints a hint if `softgrip import` can convert the file.
 /// Returns ExitCode::input_refused.
 ExitCode refuse_logs(const document::Problems& problems);
 

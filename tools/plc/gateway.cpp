@@ -14,11 +14,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* own_name = "softgrip-plc";
 constexpr double watch_rate_hz = 25;
-/// Longest time between two lines of a daemon. After this time, the daemon counts as disconnected.
+/// Longest time between two lines of a daemon. If no line arrives in this time, the daemon counts as
+/// disconnected.
 constexpr Nanoseconds longest_silence = ns_per_s;
 constexpr Nanoseconds beat_period = ns_per_s / 10;
-/// Largest number of commands to which the daemon has not responded. This number of commands fits into the
-/// send buffer of the socket, so that sending never blocks.
+/// Largest number of commands that wait for a response of the daemon. This number of commands fits into the
+/// send buffer of the socket, so sending never blocks.
 constexpr std::size_t most_unanswered = 32;
 
 CommandCode command_of(Reaction reaction) {
@@ -35,8 +36,8 @@ CommandCode command_of(Reaction reaction) {
   return CommandCode::none;
 }
 
-/// Returns true if `line` is the final response to a reaction (stop or vent because a client is silent). If
-/// the daemon is busy or starting, its response is not final, and the reaction is sent again.
+/// Returns true if `line` is the final response to a reaction (stop or vent because a client is silent). A
+/// response that the daemon is busy or starting is not final, so the reaction is sent again.
 bool is_final(const Json& line) {
   if (line.value("ok", false)) return true;
   const Json error = line.value("error", Json::object());
@@ -74,7 +75,7 @@ modbus::Reply Gateway::serve(Masters::Id id, const modbus::Request& request, Nan
     if (writes(request.pdu, map.at(Name::command_counter))) take_counter(master, now);
   }
   // The client sends its next request after it has received this response. The next request is therefore
-  // younger than the silence and may start a sequence.
+  // newer than the silence of the client and may start a sequence.
   master.fenced = false;
   modbus::Reply reply;
   reply.pieces.push_back(
@@ -101,7 +102,8 @@ void Gateway::execute(const Handshake::Entry& entry, Nanoseconds now) {
   if (!request) return refuse(request.error());
   const bool starts = entry.command.is(CommandCode::start);
   if (starts && (watch_.silent(now) || watch_.owes())) return refuse(Reason::master_silent);
-  // Send stop and vent even to a daemon that sends nothing, because its lines may only be delayed.
+  // Stop and vent are sent even to a daemon that has been silent for too long, because its lines may only be
+  // delayed.
   const bool hears = hears_daemon(now) || (connected_ && entry.command.halts());
   if (!hears || asked_.size() >= most_unanswered) return refuse(Reason::no_daemon);
   asked_[send(std::move(*request))] = entry.counter;
@@ -117,7 +119,8 @@ void Gateway::notice_silence(Nanoseconds now) {
   if (watch_.look(now)) reaction_confirms_ = false;
 }
 
-/// Sends stop or vent, the reaction to a silent client, until a daemon has given a final response.
+/// Sends the reaction to a silent client, which is stop or vent. Repeats it until a daemon has given a final
+/// response.
 void Gateway::react(Nanoseconds now) {
   notice_silence(now);
   if (settings_.when_silent == Reaction::nothing) watch_.confirm();
@@ -189,12 +192,12 @@ void Gateway::daemon_said(const Json& line, Nanoseconds now) {
   asked_.erase(asked);
   if (line.value("ok", false)) return handshake_.finish(counter, Outcome::accepted);
   const Reason reason = reason_of(line.value("error", Json::object()));
-  // If the daemon reports that the control loop did not respond in time, the loop may still begin the start.
-  // The outcome is then unknown.
+  // If the daemon reports that the control loop did not respond in time, the loop may still begin this start.
+  // The outcome of the command is then unknown.
   handshake_.finish(counter, reason == Reason::no_answer ? Outcome::unknown : Outcome::refused, reason);
 }
 
-/// Writes the registers of the gateway and the registers of this client.
+/// Writes the registers that all clients share, and the registers that belong to this client.
 void Gateway::show(const Master& master, Nanoseconds now) {
   const auto set = [&](Name name, auto value) {
     registers_.set_holding(settings_.registers.at(name), static_cast<std::uint16_t>(value));

@@ -1,6 +1,6 @@
 #pragma once
 // Converts between Modbus registers and JSON lines of the daemon. The gateway has no sockets and no clock:
-// its owner passes received data and the time to it, and sends its output.
+// its owner passes the received data and the time to the gateway, and sends the output of the gateway.
 
 #include <cstdint>
 #include <map>
@@ -21,38 +21,40 @@ namespace softgrip::plc {
 
 class Gateway {
  public:
-  /// Creates a gateway without a daemon. `settings` must outlive the gateway.
+  /// Creates a gateway that is not connected to a daemon. `settings` must outlive the gateway.
   explicit Gateway(const Settings& settings);
 
-  /// Returns the connected clients (Modbus masters). The owner uses this object to add and remove
-  /// connections. It must close each connection that the object has removed.
+  /// Returns the connected clients (Modbus masters). The owner adds and removes connections through this
+  /// object. The owner must close each connection that this object has removed.
   [[nodiscard]] Masters& masters() noexcept { return masters_; }
   [[nodiscard]] const Masters& masters() const noexcept { return masters_; }
-  /// Returns the response to a request of the connection `id`, and passes the client's command to the daemon.
+  /// Returns the response to a request of the connection `id`. If the request contains a command, passes the
+  /// command to the daemon.
   [[nodiscard]] modbus::Reply serve(Masters::Id id, const modbus::Request& request, Nanoseconds now);
-  /// Processes the waiting command and silent clients. Call it after the daemon's lines were processed, and
-  /// at least every `longest_pause`.
+  /// Processes the waiting command and the silent clients. Must be called after the daemon's lines were
+  /// processed, and at least every `longest_pause`.
   void look_after(Nanoseconds now);
   static constexpr Nanoseconds longest_pause = 20'000'000;
 
-  /// Call this function when the connection to the daemon has been opened.
+  /// Notes that the connection to the daemon was opened. Must be called after each new connection.
   void daemon_came(Nanoseconds now);
   /// Processes one line that the daemon has sent.
   void daemon_said(const nlohmann::ordered_json& line, Nanoseconds now);
-  /// Call this function when the connection to the daemon has ended.
+  /// Notes that the connection to the daemon has ended. Must be called after each loss of the connection.
   void daemon_went() noexcept;
-  /// Returns the lines that must be sent to the daemon, oldest first, and removes them.
+  /// Returns the lines that must be sent to the daemon, the oldest line first, and removes them from the
+  /// gateway.
   [[nodiscard]] std::vector<nlohmann::ordered_json> lines_to_daemon();
 
   [[nodiscard]] const Handshake& handshake() const noexcept { return handshake_; }
   [[nodiscard]] const MasterWatch& watch() const noexcept { return watch_; }
-  /// Returns true if a daemon is connected and has recently sent its status.
+  /// Returns true if a daemon is connected and has sent its status within the permitted time.
   [[nodiscard]] bool hears_daemon(Nanoseconds now) const noexcept;
-  /// Returns the counters of the commands to which the daemon has not responded, oldest first.
+  /// Returns the counters of the commands to which the daemon has not responded, the oldest command first.
   [[nodiscard]] std::vector<std::uint16_t> unanswered() const;
   /// reacts() returns true if stop or vent was sent because a client is silent, and the daemon has not
-  /// responded. reaction_confirms() returns true if the response to this command also covers the latest
-  /// silence.
+  /// responded to this command. reaction_confirms() returns true if the response to this command also covers
+  /// the latest silence of a client.
   [[nodiscard]] bool reacts() const noexcept { return reaction_.has_value(); }
   [[nodiscard]] bool reaction_confirms() const noexcept { return reaction_ && reaction_confirms_; }
 
@@ -73,12 +75,12 @@ class Gateway {
   Nanoseconds heard_at_ = 0;  // time at which the daemon last sent its status
   std::vector<nlohmann::ordered_json> to_daemon_;
   std::uint64_t last_id_ = 0;
-  std::map<std::uint64_t, std::uint16_t> asked_;  // counters of the commands without a response, by request
+  std::map<std::uint64_t, std::uint16_t> asked_;  // counter of each command that has no response, by request
                                                   // id
-  std::optional<std::uint64_t> reaction_;         // request id of the stop or vent command for a silent
-                                                  // client; nullopt: none pending
-  bool reaction_confirms_ = false;                // true: no client has become silent since the pending stop
-                                                  // or vent was sent
+  std::optional<std::uint64_t> reaction_;  // request id of the stop or vent command that was sent because of
+                                           // a silent client; nullopt: no such command waits for a response
+  bool reaction_confirms_ = false;         // true: no client has become silent since the pending stop
+                                           // or vent was sent
   Nanoseconds reacted_at_ = 0;
 };
 

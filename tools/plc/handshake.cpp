@@ -9,9 +9,9 @@ bool Handshake::write(Cursor& cursor, const Entry& entry) noexcept {
     return false;
   }
   if (const Entry* const known = find(entry.counter)) {
-    // The connection that wrote this counter may already prepare its next command in the registers, so its
-    // command is ignored. A different command from another connection means that two clients use the same
-    // counter.
+    // The connection that wrote this counter may already write its next command into the registers, so a
+    // repeated counter from the same connection is ignored. A different command with this counter from
+    // another connection means that two clients use the same counter.
     const bool repeats =
         entry.command == known->command || entry.command.is(CommandCode::none) || cursor.at == entry.counter;
     cursor.refused = !repeats;

@@ -10,7 +10,7 @@ namespace softgrip::plc {
 
 /// A command with its parameters, as the registers contain it.
 struct Command {
-  std::uint16_t code = 0;  ///< a CommandCode, or a number that is no CommandCode
+  std::uint16_t code = 0;  ///< code of the command: a CommandCode, or a number that is not a CommandCode
   std::uint16_t recipe = 0;
   std::uint16_t squeeze = no_value;
   std::uint16_t speed = no_value;
@@ -22,10 +22,10 @@ struct Command {
   friend auto operator<=>(const Command&, const Command&) = default;
 };
 
-/// The latest counter that one connection has written.
+/// The latest command counter that one connection has written.
 struct Cursor {
-  /// The latest counter that was the newest counter of all connections when this connection wrote it.
-  /// Nullopt: none.
+  /// The latest counter of this connection that was the newest counter of all connections at the time of the
+  /// write; nullopt: there is none.
   std::optional<std::uint16_t> at;
   /// True if the last counter that this connection wrote was refused.
   bool refused = false;
@@ -33,35 +33,36 @@ struct Cursor {
   friend auto operator<=>(const Cursor&, const Cursor&) = default;
 };
 
-/// Executes a command only if two conditions are met. Its counter is the newest counter plus 1 (0 follows
-/// 65535), and its connection has written the newest counter before. The newest counter is that of the last
-/// command that was executed, is in progress or waits. Therefore a late command of a second connection is
-/// refused, and so is a command of a client that missed a command of another client. Writing the newest
-/// counter again has no effect.
+/// Decides if a command is executed. Two conditions must be met. The counter of the command is the newest
+/// counter plus 1 (65535 is followed by 0), and its connection has written the newest counter before. The
+/// newest counter is the counter of the last command that was executed, is in progress or waits. These
+/// conditions refuse a late command of another connection, and a command of a client that missed a command of
+/// another client. Writing the newest counter once more has no effect.
 ///
 /// The first counter after the start of the gateway is stored, but its command is not executed, because an
-/// earlier gateway process may have executed it.
+/// earlier gateway process may have executed the command.
 class Handshake {
  public:
   struct Entry {
     std::uint16_t counter = 0;
     Command command;
-    Reason refusal = Reason::none;  ///< reason for which the command is refused; none: it may be executed
+    Reason refusal = Reason::none;  ///< reason why the command is refused; none: the command may be executed
 
     friend auto operator<=>(const Entry&, const Entry&) = default;
   };
 
   /// Processes a counter that a connection has written. Returns true if the caller must execute the command
-  /// now.
+  /// of this counter at once.
   [[nodiscard]] bool write(Cursor& cursor, const Entry& entry) noexcept;
-  /// Returns the waiting command if the caller must execute it now, else nullopt.
+  /// Returns the waiting command if the caller must execute it at once; otherwise nullopt.
   [[nodiscard]] std::optional<Entry> take_waiting() noexcept;
-  /// Refuses the waiting command with this reason.
+  /// Refuses the waiting command with the reason `reason`.
   void refuse_waiting(Reason reason) noexcept;
-  /// Stores the end of the command with this counter. If a later command has replaced it, the end is ignored.
+  /// Stores the end of the command with the counter `counter`. Has no effect if a later command has replaced
+  /// this command.
   void finish(std::uint16_t counter, Outcome outcome, Reason reason = Reason::none) noexcept;
-  /// Call this function when the connection to the daemon is lost. The outcome of the command in progress is
-  /// then unknown.
+  /// Sets the outcome of the command in progress to `unknown`. Must be called when the connection to the
+  /// daemon is lost.
   void lose() noexcept;
 
   /// Returns `counter` minus the newest counter, from -32768 to 32767. Returns 0 before the first counter.
@@ -71,8 +72,7 @@ class Handshake {
   [[nodiscard]] Outcome outcome() const noexcept { return executing_ ? Outcome::executing : outcome_; }
   [[nodiscard]] Reason reason() const noexcept { return reason_; }
   [[nodiscard]] bool waits() const noexcept { return waiting_.has_value(); }
-  /// The next three functions return the last command that has ended, the command in progress, and the
-  /// waiting command.
+  /// Return the last command that has ended, the command in progress, and the waiting command.
   [[nodiscard]] const std::optional<Entry>& done() const noexcept { return done_; }
   [[nodiscard]] const std::optional<Entry>& executing() const noexcept { return executing_; }
   [[nodiscard]] const std::optional<Entry>& waiting() const noexcept { return waiting_; }

@@ -1,6 +1,6 @@
 #pragma once
-// Detects that the client (Modbus master) is silent. A stop or vent is then required until the daemon has
-// confirmed it.
+// Detects that the client (Modbus master) is silent. After a silence, a stop or vent is required until the
+// daemon has confirmed the stop or vent.
 
 #include <optional>
 
@@ -8,20 +8,20 @@
 
 namespace softgrip::plc {
 
-/// Watches the heartbeat of the client, beginning with its first change. A client whose heartbeat never
-/// changes is not watched.
+/// Watches the heartbeat of the client, starting with the first change of the heartbeat. A client whose
+/// heartbeat never changes is not watched.
 class MasterWatch {
  public:
   explicit MasterWatch(Nanoseconds silence) noexcept : silence_(silence) {}
 
-  /// Call this function when the heartbeat of the client has changed.
+  /// Notes that the heartbeat has changed. Must be called at each change of the client's heartbeat.
   void beat(Nanoseconds now) noexcept {
-    look(now);  // detects a silence that ends with this heartbeat, before the next call of look()
+    look(now);  // detects a silence that this heartbeat ends, before the next call of look()
     changed_ = now;
     noticed_ = false;
   }
-  /// Returns true once per silence: at the first call after the silence has exceeded its limit. Call this
-  /// function frequently.
+  /// Returns true once per silence, at the first call after the silence has exceeded its limit. Must be
+  /// called several times within this limit.
   bool look(Nanoseconds now) noexcept {
     if (noticed_ || !silent(now)) return false;
     noticed_ = true;
@@ -30,7 +30,8 @@ class MasterWatch {
   }
   [[nodiscard]] bool watched() const noexcept { return changed_.has_value(); }
   [[nodiscard]] bool silent(Nanoseconds now) const noexcept { return changed_ && now - *changed_ > silence_; }
-  /// Returns true from the detection of a silence until confirm(), even if the heartbeat has resumed before.
+  /// Returns true from the detection of a silence until the call of confirm(). A new heartbeat does not
+  /// change the result.
   [[nodiscard]] bool owes() const noexcept { return owes_; }
   void confirm() noexcept { owes_ = false; }
 

@@ -9,7 +9,8 @@ namespace softgrip::plc {
 
 namespace {
 
-/// Largest age of the last request of a connection that is in use. Clients send several requests per second.
+/// Largest age of the last request of a connection that counts as in use. A client normally sends several
+/// requests per second.
 constexpr Nanoseconds in_use = ns_per_s;
 
 bool is_idle(const Master& master, Nanoseconds now) {
@@ -46,9 +47,9 @@ std::size_t Masters::places_of(const std::string& address) const {
 
 Masters::Place Masters::to_drop_for(const std::string& address, Nanoseconds now) {
   const bool has_none = places_of(address) == 0;
-  // Order in which connections are removed. First come the connections of the address with the most
-  // connections. Among these, connections without a request come first, then the connection with the oldest
-  // request.
+  // The rank gives the order in which connections are removed. The connections of the address with the most
+  // connections come first. Among the connections of one address, those without a request come first, and
+  // after them the connection with the oldest request.
   const auto rank = [&](const Place place) {
     const Master& master = place->second;
     return std::tuple(masters_.size() - places_of(master.address), master.asked, master.asked_at);

@@ -1,5 +1,5 @@
 #pragma once
-// Stores the connections of the clients (Modbus masters) and the data of each connection. Uses no sockets.
+// Stores the connections of the clients (Modbus masters), with the data of each connection. Uses no sockets.
 
 #include <array>
 #include <cstddef>
@@ -19,19 +19,19 @@ using Written = std::array<std::uint16_t, static_cast<std::size_t>(Name::master_
 [[nodiscard]] constexpr std::uint16_t& at(Written& written, Name name) {
   return written[static_cast<std::size_t>(name)];
 }
-/// Returns the command that these registers contain.
+/// Returns the command that the registers in `written` contain.
 [[nodiscard]] Command command_in(const Written& written) noexcept;
 
 struct Master {
   std::string address;       ///< numeric IP address of the client
-  Nanoseconds asked_at = 0;  ///< time of the last request, or of the connection if there was no request
+  Nanoseconds asked_at = 0;  ///< time of the last request; before the first request: time of the connection
   bool asked = false;        ///< true: the client has sent a complete request
   bool half = false;         ///< true: the client has sent a part of a request
-  /// True if the client may have sent its next request before its silence was detected. This request cannot
-  /// start a sequence.
+  /// true: the client may have sent its next request before its silence was detected, so this request cannot
+  /// start a sequence
   bool fenced = false;
-  /// The register values that this connection has written. Each connection has its own values, so that values
-  /// of another connection never become part of its command.
+  /// The register values that this connection has written. Values of another connection are stored
+  /// separately, so they never become part of a command of this connection.
   Written written{0, 0, 0, no_value, no_value, no_value, 0};
   std::optional<std::uint16_t> heartbeat;  ///< the heartbeat that this connection wrote last
   Cursor cursor;
@@ -43,36 +43,37 @@ class Masters {
 
   explicit Masters(std::size_t most) : most_(most) {}
 
-  /// Adds a connection from a numeric address. If the largest number of connections is reached, the oldest
-  /// idle connection of the same address is removed, so that lost connections do not block their client. If
-  /// the address has no connection, the address with the most connections loses one. Returns nullopt if no
-  /// connection can be removed.
+  /// Adds a connection from a numeric address. If the number of connections is at its limit, removes the
+  /// oldest idle connection of the same address, so that lost connections do not block their client. If the
+  /// address has no connection, removes a connection of the address with the most connections. Returns
+  /// nullopt if no connection can be removed.
   [[nodiscard]] std::optional<Id> admit(const std::string& address, Nanoseconds now);
-  /// Returns the connection, or null if it was removed. The owner must then close its socket.
+  /// Returns the connection; null if it was removed. In this case, the owner must close the socket of the
+  /// connection.
   [[nodiscard]] Master* find(Id id) noexcept;
   [[nodiscard]] bool has(Id id) const noexcept { return masters_.contains(id); }
   void leave(Id id) noexcept { masters_.erase(id); }
 
-  /// Removes all other connections that have sent a part of a request. Call this function after a write of
-  /// the connection `except`, because the partial requests are older than this write.
+  /// Removes each connection except `except` that has sent a part of a request. Must be called after a write
+  /// of the connection `except`, because the partial requests are older than this write.
   void drop_halves(Id except);
-  /// Prevents the next request of each connection from starting a sequence. Call this function when the
-  /// client was silent, because this request may be older than the stop or vent that followed the silence.
+  /// Ensures that the next request of each connection cannot start a sequence. Must be called after a silence
+  /// of the client, because the next request may be older than the stop or vent that followed the silence.
   void fence() noexcept;
   /// Removes every connection that has sent no request for the time `longest`.
   void drop_silent(Nanoseconds now, Nanoseconds longest);
-  /// Stores the counter of this connection, with which later connections of the same address begin.
+  /// Stores the counter of this connection. Later connections of the same address begin with this counter.
   void remember_counter(const Master& master) { past_[master.address].at = master.cursor.at; }
-  /// Blocks the commands of each connection of this address until this connection writes the newest counter.
-  /// Call this function after a command of the address was refused. Another connection of the same address
-  /// may otherwise send the refused command or an older start, and this command would be executed.
+  /// Blocks the commands of each connection of this address until the connection writes the newest counter.
+  /// Must be called after a command of this address was refused. Without this block, another connection of
+  /// the address could send the refused command or an older start, and the command would be executed.
   void lose_step(const std::string& address);
-  /// Stores a heartbeat. Returns true if it differs from the last heartbeat of this connection. The first
-  /// heartbeat of a new connection is compared with the last heartbeat of its address.
+  /// Stores a heartbeat. Returns true if the heartbeat has changed since the last heartbeat of this
+  /// connection. The first heartbeat of a new connection is compared with the last heartbeat of its address.
   [[nodiscard]] bool take_heartbeat(Master& master, std::uint16_t value);
 
-  /// Data of an address that are kept after its connections have ended. The list of allowed addresses limits
-  /// their number.
+  /// Data of an address that remain stored after the connections of the address have ended. The number of
+  /// these data is limited by the list of allowed addresses.
   struct Past {
     std::optional<std::uint16_t> at;
     std::uint16_t heartbeat = 0;

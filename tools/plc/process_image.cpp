@@ -37,7 +37,8 @@ std::uint16_t number_in(std::string_view code) {
   return number;
 }
 
-/// Returns the quantity that a command register requests, or nullopt if the sequence's default applies.
+/// Returns the quantity that a command register requests; nullopt if the register contains no value, so that
+/// the default of the sequence applies.
 std::optional<double> asked(std::uint16_t counts, double resolution) {
   if (counts == no_value) return std::nullopt;
   return static_cast<std::int16_t>(counts) * resolution;

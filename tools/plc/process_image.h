@@ -1,5 +1,5 @@
 #pragma once
-// Converts between the daemon's JSON and registers. Uses no sockets.
+// Converts between the JSON of the daemon and the Modbus registers. Uses no sockets.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,26 +19,27 @@ namespace softgrip::plc {
 /// Returns all registers of the map with their initial values.
 [[nodiscard]] modbus::Registers make_registers(const RegisterMap& map);
 
-/// Returns a quantity as a signed 16-bit register value in units of `resolution`, limited to the valid range.
-/// Returns no_value if the JSON value is not a number.
+/// Returns a quantity as a signed 16-bit register value in units of `resolution`. A quantity outside the
+/// range of the register is limited to this range. Returns no_value if the JSON value is not a number.
 [[nodiscard]] std::uint16_t counts_of(const nlohmann::ordered_json& value, double resolution);
 
 /// Writes a status of the daemon into the registers.
 void show_status(const nlohmann::ordered_json& status, const RegisterMap& map, modbus::Registers& registers);
-/// Writes the registers for the case that no daemon is connected: the state is no_daemon, and results and
+/// Writes the registers for the time in which no daemon is connected: the state is no_daemon, and results and
 /// readings are unknown.
 void show_no_daemon(const RegisterMap& map, modbus::Registers& registers);
 
-/// Returns the request that is sent to the daemon for a command, or the reason why the command is refused.
+/// Returns the request that must be sent to the daemon for a command. If the command is refused, returns the
+/// reason.
 [[nodiscard]] tl::expected<nlohmann::ordered_json, Reason> request_of(const Settings& settings,
                                                                       const Command& command);
 /// Returns the name that the daemon's socket uses for a command.
 [[nodiscard]] const char* command_of(CommandCode code) noexcept;
-/// Returns the reason code for the `error` of a daemon's response.
+/// Returns the reason code for the member `error` of a daemon's response.
 [[nodiscard]] Reason reason_of(const nlohmann::ordered_json& error);
 
-/// Returns true if a request writes this register. The request must have been executed without a Modbus
-/// exception.
+/// Returns true if a request writes the register at `address`. The caller must know that the request was
+/// executed without a Modbus exception.
 [[nodiscard]] bool writes(std::span<const std::uint8_t> pdu, std::uint16_t address) noexcept;
 
 }  // namespace softgrip::plc

@@ -60,8 +60,8 @@ void Server::run() {
   }
 }
 
-/// Closes the newest connection. Call this function if poll() fails because it would watch more descriptors
-/// than the process may have.
+/// Closes the newest connection. Must be called if poll() fails because it would watch more descriptors than
+/// the process may have.
 bool Server::give_up_line() {
   if (lines_.empty()) return false;
   gateway_.masters().leave(lines_.back().master);

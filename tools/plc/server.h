@@ -18,7 +18,7 @@ namespace softgrip::plc {
 class Server {
  public:
   /// Creates the server. `listener` comes from net::listen_tcp(). `signals` is a signalfd; any signal ends
-  /// run(). The references must outlive the server.
+  /// run(). All references must outlive the server.
   Server(const Settings& settings, Gateway& gateway, Descriptor listener, Descriptor signals);
   void run();
 
@@ -28,11 +28,11 @@ class Server {
     modbus::Connection connection;
     net::PollSet::Place place = {};
   };
-  /// Closes one connection, because the process may not have as many descriptors as it uses. Returns false if
+  /// Closes one connection, because the process uses more descriptors than it may have. Returns false if
   /// there is no connection to close.
   [[nodiscard]] bool give_up_line();
   void accept(Nanoseconds now);
-  /// Processes the events of a connection. Returns false if it has ended or must be closed.
+  /// Processes the events of a connection. Returns false if the connection has ended or must be closed.
   [[nodiscard]] bool serve(Line& line, net::PollSet::Events events, Nanoseconds now);
 
   const Settings& settings_;
@@ -44,8 +44,8 @@ class Server {
   std::list<Line> lines_;
 };
 
-/// Returns the numeric address of the other end of a socket. An IPv4 address that is mapped to IPv6 is
-/// returned as IPv4. Returns "" if the address is unknown.
+/// Returns the numeric address of the other end of a socket. An IPv4 address in IPv6 notation is returned in
+/// IPv4 notation. Returns "" if the address is unknown.
 [[nodiscard]] std::string address_of(int socket);
 
 }  // namespace softgrip::plc

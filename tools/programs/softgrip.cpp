@@ -1,4 +1,4 @@
-// softgrip: the program with all subcommands of the command line.
+// softgrip: the command-line program with all its subcommands.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -34,8 +34,9 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return softgrip::tools::end_of(program, error, argc, argv);
   }
-  // All results are complete and stored. A shell ends a loop over this program only if a signal ends the
-  // program, so the program raises the signal again.
+  // All results are complete and stored at this point. If a signal was received, the program raises this
+  // signal again: a shell that runs the program in a loop ends the loop only if a signal has ended the
+  // program.
   if (softgrip::ending_signal() != 0) softgrip::end_by_signal(softgrip::ending_signal());
   return static_cast<int>(outcome);
 }

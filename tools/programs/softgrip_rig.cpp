@@ -1,4 +1,4 @@
-// softgrip-rig: emulates a rig on Modbus TCP or RTU.
+// softgrip-rig: emulates the board and the fingers of a rig on Modbus TCP or RTU.
 
 #include <sched.h>
 #include <unistd.h>
@@ -92,9 +92,9 @@ void add_options(CLI::App& program, Options& options) {
 }
 
 /// Requests real-time scheduling, because a board responds in time even if the computer is busy. Without the
-/// permission, the process keeps its ordinary scheduling. The thread is bound to one processor. On a busy
-/// computer, a real-time thread that was not bound waited up to 49 ms (Linux 6.18, share of the fair server).
-/// A bound thread waited at most 1.4 ms.
+/// permission, the process keeps its ordinary scheduling. The thread is bound to one processor: on a busy
+/// computer, a real-time thread that was not bound waited up to 49 ms (Linux 6.18, share of the fair server),
+/// a bound thread at most 1.4 ms.
 void ask_for_real_time() {
   constexpr int below_the_daemon = 40;
   sched_param parameters{};
@@ -110,7 +110,8 @@ void ask_for_real_time() {
   (void)::sched_setaffinity(0, sizeof one, &one);
 }
 
-/// Opens the sockets or the serial line of the modules. Appends their addresses to the start-up message.
+/// Opens the sockets or the serial line of the modules. Appends the addresses of the sockets or the line to
+/// the start-up message.
 ExitCode listen(const Setup& setup, simulation::ServerSockets& sockets, std::string& told) {
   if (setup.line) {
     auto end = simulation::SerialEnd::open(*setup.line);

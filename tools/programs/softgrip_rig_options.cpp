@@ -18,16 +18,16 @@
 namespace softgrip::tools {
 namespace {
 
-// Difference between the noise seeds of two neighbouring channels. Any odd number is suitable.
+// Difference between the noise seeds of two channels with consecutive indices. Any odd number is suitable.
 constexpr std::uint64_t seed_step = 0x9e3779b97f4a7c15;
 
-/// Returns the path of a board file. `board` is this path or the name of a file in config/boards.
+/// Returns the path of a board file. `board` is the path itself, or the name of a file in config/boards.
 std::string board_path(const std::string& board) {
   const bool is_path = board.find('/') != std::string::npos || board.ends_with(".yaml");
   return is_path ? board : configuration_path("boards") + "/" + board + ".yaml";
 }
 
-/// Reports that the board file does not exist and suggests the most similar name.
+/// Reports that the board file does not exist, and suggests the existing name that is most similar.
 ExitCode no_such_board(const std::string& board, const std::string& path) {
   const std::vector<std::string> names = document_names(std::filesystem::path(path).parent_path());
   const std::string stem = std::filesystem::path(path).stem();
@@ -89,7 +89,7 @@ void add_faults(const Options& options, simulation::EmulatorSettings& settings,
 
 constexpr std::uint16_t usual_port = 1502;
 
-/// Reads boards, unit ids and wiring from a rig file, as softgripd does.
+/// Reads boards, unit ids and wiring from a rig file, in the same way as softgripd.
 tl::expected<Setup, ExitCode> setup_of_rig(const std::string& path) {
   if (const auto code = unreadable(path)) return tl::unexpected{*code};
   document::Problems problems;
@@ -157,15 +157,15 @@ std::optional<ExitCode> place(const Options& options, Setup& setup) {
   if (setup.addresses.empty()) setup.addresses.push_back({.host = options.bind, .port = usual_port});
   for (std::size_t i = 0; i < setup.addresses.size(); ++i) {
     drivers::TcpAddress& address = setup.addresses[i];
-    // If the rig file names several hosts, a host that is a loopback address keeps it. Every other host
-    // becomes the bind address.
+    // If the rig file names several hosts, a host with a loopback address keeps this address. Every other
+    // host is replaced by the bind address.
     if (setup.addresses.size() == 1 || !net::is_loopback(address.host)) address.host = options.bind;
     if (options.port) address.port = static_cast<std::uint16_t>(*options.port == 0 ? 0 : *options.port + i);
   }
   return std::nullopt;
 }
 
-/// Returns an exit code if an input file cannot be opened, else nullopt.
+/// Returns an exit code if an input file cannot be opened, otherwise nullopt.
 std::optional<ExitCode> any_unreadable(const Options& options) {
   std::vector<std::string> files = options.models;
   if (!options.faults.empty()) files.push_back(options.faults);

@@ -1,5 +1,5 @@
 #pragma once
-// Options of softgrip-rig and the emulator settings that follow from these options.
+// The options of softgrip-rig, and the settings of the emulator that these options determine.
 
 #include <cstdint>
 #include <optional>
@@ -15,20 +15,23 @@
 namespace softgrip::tools {
 
 struct Options {
-  std::vector<std::string> models;               ///< model files: one for all channels, or one per channel
-  std::vector<std::string> boards{"adam-6024"};  ///< board of each module: a file, or a name in config/boards
+  std::vector<std::string> models;  ///< paths of the model files: one file for all channels, or one file per
+                                    ///< channel
+  std::vector<std::string> boards{"adam-6024"};  ///< board file of each module: a path, or the name of a file
+                                                 ///< in config/boards
   std::string rig;                               ///< rig file with the wiring; empty: default wiring
   std::size_t channels = 2;                      ///< number of channels if there is no rig file
-  std::optional<std::uint8_t> unit;              ///< unit id of the first module; each further module has the
-                                                 ///< next id
+  std::optional<std::uint8_t> unit;  ///< unit id of the first module; the id of each next module is larger by
+                                     ///< 1
   std::string bind = "127.0.0.1";
   bool allow_network = false;
-  std::optional<std::uint16_t> port;  ///< TCP port; default: the port of the rig file; without a rig file,
-                                      ///< 1502
-  std::string rtu;                    ///< serial device that is used instead of the network
+  std::optional<std::uint16_t> port;  ///< TCP port; nullopt: the port of the rig file, or 1502 without a rig
+                                      ///< file
+  std::string rtu;  ///< path of the serial device that is used instead of the network; empty: the network is
+                    ///< used
   bool rtu_over_tcp = false;          ///< true: the emulator sends RTU frames over TCP
-  std::optional<std::uint32_t> baud;  ///< baud rate; default: the value of the rig file; without a rig file,
-                                      ///< 9600 8N1
+  std::optional<std::uint32_t> baud;  ///< baud rate [Bd]; nullopt: the value of the rig file, or 9600 (8N1)
+                                      ///< without a rig file
   std::optional<std::string> format;
   std::optional<double> turnaround_s;
   std::string object;
@@ -48,11 +51,11 @@ struct Options {
 struct Setup {
   simulation::EmulatorSettings emulator;
   std::vector<drivers::TcpAddress> addresses;  ///< listening addresses of the emulator, one per link
-  std::optional<drivers::SerialLine> line;     ///< if set, the serial line that is used instead of the
-                                               ///< network
+  std::optional<drivers::SerialLine> line;  ///< serial line that is used instead of the network; nullopt: the
+                                            ///< network is used
 };
 
-/// Creates the setup. On failure, prints all problems and returns the exit code.
+/// Creates the setup from the options. On failure, prints all problems and returns the exit code.
 [[nodiscard]] tl::expected<Setup, ExitCode> make_setup(const Options& options);
 
 }  // namespace softgrip::tools

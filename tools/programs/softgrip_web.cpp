@@ -1,4 +1,4 @@
-// softgrip-web: serves softgripd's data to browsers and Prometheus over HTTP.
+// softgrip-web: provides softgripd's data to browsers and Prometheus over HTTP.
 
 #include <CLI/CLI.hpp>
 #include <cstddef>
@@ -40,7 +40,7 @@ void add_options(CLI::App& program, Options& options) {
   program.footer("The server is ready when it has printed 'listening on http://ADDRESS:PORT/'.");
 }
 
-/// Replaces settings of the file by the settings that the command line gives.
+/// Replaces settings of the file by the settings on the command line.
 void put_in_place(const Options& options, Settings& settings) {
   if (!options.socket.empty()) settings.look_socket = settings.operate_socket = options.socket;
   if (options.port) settings.port = *options.port;
@@ -75,7 +75,7 @@ ExitCode run(const Options& options) {
   const bool six = settings->address.find(':') != std::string::npos;
   tools::say_ready(fmt::format("listening on http://{}{}{}:{}/\n", six ? "[" : "", settings->address,
                                six ? "]" : "", listener->port));
-  // Without this file, the page shows no curves and names the missing package.
+  // If this file does not exist, the page shows no curves and names the missing package.
   auto chart = read_file(chart_path, largest_chart);
   Server(*settings, std::move(tokens), chart ? std::move(*chart) : std::string(), std::move(listener->socket),
          std::move(signals))

@@ -142,7 +142,7 @@ std::string called(const sysid::Recording& recording) {
   return recording.sequence.empty() ? recording.name : recording.sequence + ", " + recording.name;
 }
 
-/// Returns the title of a chart without the comma and the statistics after it.
+/// Returns the title of a chart up to the first comma. The statistics follow this comma.
 std::string subject_of(const Chart& chart) {
   return chart.title.substr(0, chart.title.find(','));
 }

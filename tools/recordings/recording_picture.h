@@ -17,7 +17,7 @@ enum class Pairing { beside, over };
                                       Pairing pairing);
 
 /// Returns the part of a recording from `from_s` to `to_s` with unchanged times. An empty `channel` selects
-/// all channels. The error is a sentence.
+/// all channels. On failure, returns a sentence that describes the error.
 [[nodiscard]] tl::expected<sysid::Recording, std::string> part_of(const sysid::Recording& recording,
                                                                   const std::string& channel, double from_s,
                                                                   double to_s);

@@ -29,9 +29,9 @@ struct Tracking {
 /// empty list if the log has no reference.
 [[nodiscard]] std::vector<double> errors_of(const sysid::Log& log);
 
-/// Returns 1 for each sample of a step in which an object was detected or held, else 0. All samples of the
-/// step count, because a log does not state the time of the contact. All values are 0 if the log has no
-/// columns `step` and `result`.
+/// Returns 1 for each sample of a step in which an object was detected or held, else 0. The value is 1 for
+/// all samples of the step, because a log does not state the time of the contact. All values are 0 if the log
+/// has no columns `step` and `result`.
 [[nodiscard]] std::vector<char> gripping_of(const sysid::Log& log);
 
 /// Returns the statistics as text: "free motion: RMSE 0.04 mm, largest 0.14 mm; gripping: up to 4.4 mm short

@@ -117,7 +117,7 @@ class Verifier {
     return true;
   }
 
-  /// Returns the hash of a file that the report states. `option` is the command-line option whose value is
+  /// Returns the hash that the report states for a file. `option` is the command-line option whose value is
   /// this file.
   [[nodiscard]] std::string hash_of(const std::string& option, const std::string& path) const {
     for (const Json* logs :
@@ -133,7 +133,7 @@ class Verifier {
     return {};
   }
 
-  /// In the command line, replaces the path of every input file by the path at which the file exists now.
+  /// Replaces the path of every input file in the command line by the path at which the file exists now.
   bool find_inputs() {
     static const std::set<std::string> takes_files{"--data", "--validate", "--start", "--model", "--gauge"};
     std::string option;

@@ -44,8 +44,8 @@ void DiskTask::answer_file(std::shared_ptr<const RegularFile> file) {
   done_ = true;
 }
 
-/// Data that the archive shares with its thread. Both own the data, because a disk call that blocks can
-/// outlive the archive.
+/// Data that the archive shares with its disk thread. Both own the data, because the thread may exist longer
+/// than the archive if a disk call blocks.
 struct Archive::Shared {
   using DiskTasks = std::deque<std::shared_ptr<DiskTask>>;
 
@@ -59,11 +59,11 @@ struct Archive::Shared {
   [[nodiscard]] DiskTasks take_quick_ones();
 
   Descriptor told{::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
-  Recordings recordings;  // used by the disk thread alone
+  Recordings recordings;  // used by the disk thread and by no other thread
   std::mutex mutex;
   std::condition_variable changed;
-  DiskTasks quick;     // all tasks except lists of recordings
-  DiskTasks listings;  // lists of recordings that have not begun
+  DiskTasks quick;     // waiting tasks of all kinds except lists of recordings
+  DiskTasks listings;  // waiting tasks for lists of recordings
   bool ends = false;
   bool ended = false;
 };
@@ -100,7 +100,9 @@ Archive::Shared::DiskTasks Archive::Shared::take_quick_ones() {
 
 void Archive::Shared::do_quick_ones() {
   for (const std::shared_ptr<DiskTask>& task : take_quick_ones()) {
-    if (task.use_count() == 1) continue;  // no other object refers to the task, so its answer is not needed
+    if (task.use_count() == 1)
+      continue;  // no object waits for the answer of this task, so the task is
+                 // skipped
     answer(*task);
     tell();
   }
@@ -131,7 +133,8 @@ void Archive::Shared::list(const DiskTasks& tasks) {
 }
 
 void Archive::Shared::tell() const noexcept {
-  // The write can fail only if the counter is full. The descriptor is then readable, as intended.
+  // The write fails if the counter is full, and for no other reason. The descriptor is then already readable,
+  // which is the purpose of the write.
   [[maybe_unused]] const int result = ::eventfd_write(told.get(), 1);
 }
 

@@ -30,22 +30,22 @@ struct DiskRequest {
   std::shared_ptr<const RegularFile> from = nullptr;
 };
 
-/// A request to the disk and its answer. The disk thread skips a task to which no other object refers.
+/// A request to the disk and its answer. The disk thread skips a task if no other object refers to the task.
 class DiskTask {
  public:
   explicit DiskTask(DiskRequest disk_request);
   [[nodiscard]] const DiskRequest& request() const noexcept { return request_; }
-  /// Returns true if the answer is complete. From then on, the answer does not change.
+  /// Returns true if the answer is complete. A complete answer does not change any more.
   [[nodiscard]] bool done() const noexcept { return done_; }
-  /// For a health request: returns the last health result, or null if there is none.
+  /// For a health request: returns the last health result; null if there is none.
   [[nodiscard]] const nlohmann::ordered_json& health() const noexcept { return *health_; }
   /// For a list of recordings: returns `{"recordings": [...]}`. For a piece of a file: returns the bytes, or
   /// "" at the end of the file or after a read error.
   [[nodiscard]] const std::string& text() const noexcept { return *text_; }
-  /// For a file: returns the open file, or null if the file does not exist or may not be shown.
+  /// For a file: returns the open file; null if the file does not exist or may not be shown.
   [[nodiscard]] const std::shared_ptr<const RegularFile>& file() const noexcept { return file_; }
 
-  // The disk thread calls the functions answer_... and fail().
+  // Functions that complete the task; called by the disk thread.
   void answer_health(const nlohmann::ordered_json& health);
   void answer_text(std::shared_ptr<const std::string> text);
   void answer_file(std::shared_ptr<const RegularFile> file);
@@ -62,12 +62,12 @@ class DiskTask {
 
 class Archive {
  public:
-  /// Largest number of bytes of one download that are kept in memory.
+  /// Largest number of bytes of a file that are read into memory at once for a download.
   static constexpr std::size_t piece = std::size_t{16} << 10U;
   /// Shortest time between the starts of two lists of recordings. The pause after a list is at least as long
-  /// as the list took, so that lists use at most half of the disk thread's time.
+  /// as the creation of this list took, so lists need at most half of the disk thread's time.
   static constexpr std::chrono::milliseconds listing_pause{200};
-  /// Longest time that the destructor waits for the disk thread, which a disk can block.
+  /// Longest time for which the destructor waits for the disk thread. A disk call of this thread may block.
   static constexpr std::chrono::milliseconds farewell{1000};
 
   /// Starts the disk thread. An empty `folder` means that there are no recordings.
@@ -78,10 +78,10 @@ class Archive {
   Archive& operator=(Archive&&) = delete;
   ~Archive();
 
-  /// Adds a request without waiting. All requests for a list that arrive before the list begins get the same
-  /// list. All other requests are processed before lists.
+  /// Adds a request without waiting. All requests for a list that arrive before the creation of the list
+  /// begins get the same list. All other requests are processed before the lists.
   [[nodiscard]] std::shared_ptr<const DiskTask> ask(DiskRequest disk_request);
-  /// Returns a descriptor for poll(), which is readable when a task is done.
+  /// Returns a descriptor for poll(), which becomes readable when a task is done.
   [[nodiscard]] int descriptor() const noexcept;
   /// Makes the descriptor unreadable until the next task is done. Call this function when the descriptor is
   /// readable.

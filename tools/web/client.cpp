@@ -13,21 +13,22 @@ namespace softgrip::web {
 
 bool Client::receive() {
   std::array<char, 4096> bytes;
-  // Largest number of reads per call. It suffices for a complete request and limits the time for a client
-  // that never stops sending.
+  // Largest number of reads per call. It is sufficient for a complete request, and it limits the time for a
+  // client that sends without end.
   constexpr std::size_t most_reads = 2 * (longest_head + longest_body) / bytes.size();
   for (std::size_t reads = 0; reads < most_reads;) {
     const ssize_t count = ::recv(socket_.get(), bytes.data(), bytes.size(), 0);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
     if (count == 0) {
-      // Some clients close their sending side after the request and then wait for the response, so keep the
-      // connection. A browser that reads a stream does so only when its page is closed, so end the stream.
+      // Some clients close their sending side after the request and then wait for the response, so their
+      // connection is kept. A browser that reads a stream closes its side when the page is closed, so the
+      // stream is ended.
       const bool known = said_all_;
       said_all_ = true;
       return !known && phase_ != Phase::following;
     }
-    // Store bytes while the request is incomplete, and discard all later bytes.
+    // Bytes are stored while the request is incomplete. All bytes after the request are discarded.
     if (phase_ == Phase::asking && in_.size() < longest_head + longest_body)
       in_.append(bytes.data(), static_cast<std::size_t>(count));
     if (static_cast<std::size_t>(count) < bytes.size()) return true;
@@ -46,11 +47,12 @@ bool Client::send_on(Nanoseconds now) {
     moved_at_ = now;
   }
   if (sent_ < out_.size()) return true;
-  std::string().swap(out_);  // swap() also frees the memory, because the first message of a stream is large
+  std::string().swap(out_);  // swap() also frees the memory of the buffer, because the first message of a
+                             // stream is large
   sent_ = 0;
   if (phase_ != Phase::answering) return true;
-  // Announce the end of the response, but do not close the socket. If it were closed while it has unread
-  // input, the system would discard the response.
+  // shutdown() announces the end of the response to the client. close() is not called here, because the
+  // system discards the response if a socket with unread input is closed.
   ::shutdown(socket_.get(), SHUT_WR);
   return false;
 }

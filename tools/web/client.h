@@ -12,7 +12,7 @@
 namespace softgrip::web {
 
 /// Receives one request and sends one response: a complete response, a file in pieces, or a stream of
-/// messages. A client that reads too slowly is disconnected. The number of unsent bytes of a client is
+/// messages. A client that reads too slowly is disconnected. The number of unsent bytes per client is
 /// limited, so that a slow client does not delay other clients.
 class Client {
  public:
@@ -20,18 +20,19 @@ class Client {
     asking,     ///< the request of the client is not yet complete
     waiting,    ///< the response waits for the daemon or the disk
     answering,  ///< the response is complete; the connection ends when all bytes are sent
-    loading,    ///< a file is sent; pieces are added until finish()
-    following   ///< a stream is sent; messages are added to it
+    loading,    ///< a file is being sent; pieces of the file are added until finish() is called
+    following   ///< a stream is being sent; messages are added to the stream
   };
 
   static constexpr Nanoseconds longest_question = 5 * ns_per_s;
-  /// Longest time in which a response may make no progress.
+  /// Longest time without progress of a response. After this time, the client is disconnected.
   static constexpr Nanoseconds longest_pause = 10 * ns_per_s;
   /// Longest time from the request to the end of the response.
   static constexpr Nanoseconds longest_answer = 60 * ns_per_s;
   static constexpr std::size_t most_kept = std::size_t{1} << 20U;  ///< largest number of bytes that wait to
                                                                    ///< be sent
-  /// Largest number of bytes that one call sends, so that a fast reader does not delay the other clients.
+  /// Largest number of bytes that one call of send_on() sends, so that a fast reader does not delay the other
+  /// clients.
   static constexpr std::size_t most_at_once = std::size_t{256} << 10U;
 
   Client(Descriptor socket, Nanoseconds now) : socket_(std::move(socket)), came_at_(now), moved_at_(now) {}
@@ -48,8 +49,8 @@ class Client {
   void wait() noexcept { phase_ = Phase::waiting; }
   /// Begins the response and discards the request. `next` is the new phase: answering, loading or following.
   void answer(std::string bytes, Phase next, Nanoseconds now);
-  /// Adds messages to a stream or a piece to a file. Returns false if the unsent bytes would exceed
-  /// `most_kept`.
+  /// Adds messages to a stream, or a piece to a file. If the unsent bytes would exceed `most_kept`, adds
+  /// nothing and returns false.
   [[nodiscard]] bool add(std::string_view bytes);
   /// Ends the stream or the file. Bytes that wait in the buffer are sent before the connection ends.
   void finish() noexcept { phase_ = Phase::answering; }
@@ -63,13 +64,14 @@ class Client {
   [[nodiscard]] Phase phase() const noexcept { return phase_; }
   [[nodiscard]] const std::string& request() const noexcept { return in_; }
   [[nodiscard]] Nanoseconds came_at() const noexcept { return came_at_; }
-  /// Returns the time of the last progress of the response. Before any progress, returns the time at which
-  /// the response began.
+  /// Returns the time of the last progress of the response. If there was no progress, returns the time at
+  /// which the response began.
   [[nodiscard]] Nanoseconds moved_at() const noexcept { return moved_at_; }
   [[nodiscard]] bool has_to_send() const noexcept { return !out_.empty(); }
   /// Returns the number of bytes that wait to be sent.
   [[nodiscard]] std::size_t unsent() const noexcept { return out_.size() - sent_; }
-  /// Returns true if the client has closed its sending side, so that poll() need not report input.
+  /// Returns true if the client has closed its sending side. In this case, poll() need not report input of
+  /// this client.
   [[nodiscard]] bool said_all() const noexcept { return said_all_; }
   [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
 

@@ -13,10 +13,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Longest wait for the response to a command. A start may need one second for planning, and further time for
-/// the disk.
+/// Longest wait for the response to a command. A start may need one second for planning, and additional time
+/// for the disk.
 constexpr Nanoseconds longest_wait = 8 * ns_per_s;
-/// Shortest time between two requests to stop the starts that were given up.
+/// Shortest time between two stop requests for the starts that were given up (GivenUp).
 constexpr Nanoseconds pause_between_stops = ns_per_s / 4;
 constexpr std::size_t longest_sequence_name = 128;
 constexpr std::size_t most_parameters = 32;
@@ -30,7 +30,7 @@ bool are_parameters(const Json& value) {
          std::all_of(value.begin(), value.end(), [](const Json& number) { return number.is_number(); });
 }
 
-/// Returns "" if the body of a start request is valid, else an error message.
+/// Returns "" if the body of a start request is valid, otherwise an error message.
 std::string check_start(const Json& body) {
   const auto sequence = body.find("sequence");
   if (sequence == body.end() || !sequence->is_string() || sequence->get<std::string>().empty() ||
@@ -83,8 +83,8 @@ tl::expected<std::uint64_t, Json> Commander::send(Json request, Nanoseconds now)
   return number;
 }
 
-/// Connects to the daemon if there is no connection. If this fails, returns the error that the browser gets
-/// in place of a response from the daemon.
+/// Connects to the daemon if there is no connection. If connecting fails, returns the error that is sent to
+/// the browser in place of a response of the daemon.
 std::optional<Json> Commander::connect() {
   if (daemon_) return std::nullopt;
   if (!may_connect_) return failure("not_allowed", "this page is read-only");
@@ -146,8 +146,8 @@ void Commander::take(Json line) {
   });
   if (stopped == given_up_.end()) return;
   stopped->stop = 0;
-  // A daemon of an older version does not know `start_id` and has refused the start as well. There is nothing
-  // to stop.
+  // A daemon of an older version does not know `start_id`, so it has also refused the start. There is no
+  // start to stop.
   const bool is_older = line.value("error", Json::object()).value("code", "") == "bad_request";
   if (is_older || tools::confirms_stop(line)) given_up_.erase(stopped);
 }
@@ -168,8 +168,8 @@ void Commander::stop(GivenUp& start) {
   start.stop = send_numbered(tools::stop_of(start.start_id));
 }
 
-/// Requests the stop of starts that were given up while there was no connection, and of starts whose stop the
-/// daemon did not confirm.
+/// Requests to stop two kinds of starts: those that were given up while there was no connection, and those
+/// whose stop the daemon has not confirmed.
 void Commander::stop_again(Nanoseconds now) {
   const auto is_due = [](const GivenUp& start) { return start.stop == 0; };
   if (std::none_of(given_up_.begin(), given_up_.end(), is_due)) return;

@@ -20,36 +20,38 @@ namespace softgrip::web {
 /// If the body is invalid, returns an error message.
 [[nodiscard]] tl::expected<nlohmann::ordered_json, std::string> command_in(std::string_view body);
 
-/// Sends commands and gives every start its own id. If the outcome of a start cannot be sent to the browser,
-/// the start must not move the gripper. It is then stopped by its id until a daemon confirms that it is not
-/// running, even over a later connection. This happens if the response to the start is late, if the
-/// connection to the daemon or to the browser is lost, or if the daemon responds that its control loop was
-/// silent.
+/// Sends commands and gives every start its own id. A start whose outcome cannot be sent to the browser must
+/// not move the gripper. Such a start is stopped by its id. The stop is repeated, also on a new connection,
+/// until a daemon confirms that the start does not run. There are three cases: the response to the start is
+/// late; the connection to the daemon or to the browser is lost; the daemon responds that its control loop
+/// was silent.
 class Commander {
  public:
-  /// Largest number of commands that wait for their responses. If it is reached, the same number of further
-  /// stop and vent commands may wait.
+  /// Largest number of commands that wait for their responses. If this number is reached, the same number of
+  /// stop and vent commands may wait in addition.
   static constexpr std::size_t most_waiting = 32;
 
-  /// Creates the object without connecting. `socket` is the path of the daemon's socket for operation.
+  /// Creates the object and does not connect. `socket` is the path of the daemon's socket for clients that
+  /// may move the gripper.
   explicit Commander(const std::string& socket) : may_connect_(!socket.empty()), daemon_(socket) {}
 
-  /// Sends the request and returns a number, with which take_answer() finds its response. The error has the
-  /// format of a response of the daemon.
+  /// Sends the request and returns a number. take_answer() returns the response for this number. The error
+  /// has the format of a response of the daemon.
   [[nodiscard]] tl::expected<std::uint64_t, nlohmann::ordered_json> send(nlohmann::ordered_json request,
                                                                          Nanoseconds now);
-  /// Returns the complete response of the daemon, once for each number. Returns nullopt while the response is
-  /// pending. If the daemon cannot be reached, returns an error response that says so.
+  /// Returns the complete response of the daemon, once for each number. Returns nullopt while there is no
+  /// response. If the daemon cannot be reached, returns an error response that states this.
   [[nodiscard]] std::optional<nlohmann::ordered_json> take_answer(std::uint64_t number, Nanoseconds now);
-  /// Returns true if the request is a start that the daemon has not refused and whose outcome take_answer()
-  /// has not returned.
+  /// Returns true for a start whose outcome is open: the daemon has not refused the start, and take_answer()
+  /// has not returned its outcome.
   [[nodiscard]] bool is_open_start(std::uint64_t number) const;
-  /// Call this function when the client that waits for this response has disconnected.
+  /// Discards the response with this number. Must be called when the client that waits for this response has
+  /// disconnected.
   void forget(std::uint64_t number);
-  /// Reads the responses of the daemon and repeats stop requests. Call this function when the descriptor is
+  /// Reads the responses of the daemon and repeats stop requests. Must be called when the descriptor is
   /// readable, and several times per second.
   void look_after(Nanoseconds now);
-  /// Gives up all waiting commands. Call this function before the program ends.
+  /// Gives up all waiting commands. Must be called before the program ends.
   void leave();
   /// Returns the descriptor of the connection for poll(), or -1 if there is no connection.
   [[nodiscard]] int descriptor() const noexcept { return daemon_.descriptor(); }
@@ -57,13 +59,14 @@ class Commander {
  private:
   struct Waiting {
     Nanoseconds give_up = 0;
-    std::string start_id;  ///< id of a start that may begin or run; empty: none
+    std::string start_id;  ///< id of a start that may begin or that runs; empty: there is no such start
     std::optional<nlohmann::ordered_json> answer;
   };
   /// A start whose outcome cannot be delivered to the browser.
   struct GivenUp {
     std::string start_id;
-    std::uint64_t stop = 0;  ///< number of the stop request without a response; 0: none
+    std::uint64_t stop = 0;  ///< number of the stop request that has no response yet; 0: there is no such
+                             ///< request
   };
   [[nodiscard]] std::optional<nlohmann::ordered_json> connect();
   std::uint64_t send_numbered(nlohmann::ordered_json request);
@@ -79,7 +82,7 @@ class Commander {
   std::uint64_t last_ = 0;
   std::map<std::uint64_t, Waiting> waiting_;
   std::vector<GivenUp> given_up_;
-  Nanoseconds stopped_at_ = 0;  // time at which stop_again() last sent requests
+  Nanoseconds stopped_at_ = 0;  // time at which stop_again() last sent stop requests
 };
 
 }  // namespace softgrip::web

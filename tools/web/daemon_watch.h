@@ -1,5 +1,5 @@
 #pragma once
-// Maintains the connection to the daemon that provides the displayed data. One connection serves any number
+// Maintains the connection to the daemon that provides the data of the page. One connection serves any number
 // of browsers.
 
 #include "base/time.h"
@@ -10,12 +10,12 @@ namespace softgrip::web {
 
 class DaemonWatch {
  public:
-  /// Creates the object without connecting. `socket` is the path of the daemon's read-only socket. `state`
+  /// Creates the object and does not connect. `socket` is the path of the daemon's read-only socket. `state`
   /// must outlive this object.
   DaemonWatch(const std::string& socket, LiveState& state) : state_(state), daemon_(socket) {}
 
-  /// Reads the daemon's lines, sends the requests that are due, and reconnects. Call this function when the
-  /// descriptor is readable, and several times per second.
+  /// Reads the daemon's lines, sends the requests that are due, and reconnects after a loss. Must be called
+  /// when the descriptor is readable, and several times per second.
   void look_after(Nanoseconds now);
   /// Returns the descriptor of the connection for poll(), or -1 if there is no connection.
   [[nodiscard]] int descriptor() const noexcept { return daemon_.descriptor(); }
@@ -31,7 +31,7 @@ class DaemonWatch {
   Nanoseconds heard_at_ = 0;  // time of the last state that the daemon has sent
   Nanoseconds statistics_due_ = 0;
   Nanoseconds sequences_due_ = 0;
-  std::string started_at_;  // start time of the daemon process whose events were received last
+  std::string started_at_;  // start time of the daemon process that sent the last received events
   std::uint64_t last_event_ = 0;
 };
 

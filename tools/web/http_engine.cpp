@@ -7,8 +7,8 @@ namespace softgrip::web {
 
 namespace {
 
-/// A stream in memory that contains a request and receives the response, as cpp-httplib needs. It behaves
-/// like a connection whose client has sent its whole request and has not yet received a response.
+/// A stream in memory that contains a request and receives the response, as cpp-httplib requires. It behaves
+/// like a connection whose client has sent a complete request and waits for the response.
 class MemoryStream final : public httplib::Stream {
  public:
   explicit MemoryStream(std::string_view request) : unread_(request) {}
@@ -36,8 +36,8 @@ class MemoryStream final : public httplib::Stream {
   std::string written_;
 };
 
-/// Removes the byte ranges from a request, so that the response contains the whole file. Overlapping ranges
-/// would turn a small file into a large response.
+/// Removes the byte ranges from a request, so that the response contains the complete file. With overlapping
+/// ranges, a client could make a large response of a small file.
 void forget_ranges(httplib::Request& request) {
   request.ranges.clear();
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Uses cpp-httplib as a function that converts the bytes of a request to the bytes of its response. It does
-// not use the library's sockets and threads, so that a slow client occupies no thread and delays no other
+// Uses cpp-httplib as a function that converts the bytes of a request to the bytes of its response. The
+// sockets and threads of cpp-httplib are not used, so a slow client occupies no thread and delays no other
 // client.
 
 #include <string>

@@ -10,8 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Largest size of the messages that wait for take_news() [bytes]. If it is reached, new messages are
-/// dropped.
+/// Largest size of the messages that wait for take_news() [bytes]. At this size, new messages are dropped.
 constexpr std::size_t longest_news = std::size_t{1} << 20U;
 
 Json list_of(const std::deque<Json>& items) {
@@ -23,13 +22,13 @@ Json list_of(const std::deque<Json>& items) {
 }  // namespace
 
 std::string message_of(std::string_view kind, const Json& data) {
-  // The serialised JSON contains no line breaks, so one data line contains it completely.
+  // The JSON text contains no line breaks, so it fits into one data line of the message.
   return "event: " + std::string(kind) +
          "\ndata: " + data.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n\n";
 }
 
 void LiveState::take_status(Json status) {
-  // If the time is smaller than before, the daemon has restarted, so its trend begins again.
+  // If the time is smaller than in the last status, the daemon has restarted, so the old trend is removed.
   if (json_number(status, "time_s") < json_number(status_, "time_s")) trend_.clear();
   status_ = std::move(status);
   note_trend();

@@ -1,6 +1,6 @@
 #pragma once
-// Stores the latest data of the daemon, from which all responses to browsers and collectors are made. Uses no
-// sockets.
+// Stores the latest data of the daemon. All responses to browsers and collectors are made from these data.
+// Uses no sockets.
 
 #include <cstdint>
 #include <deque>
@@ -18,27 +18,27 @@ class LiveState {
   static constexpr double trend_s = 60;
   static constexpr std::size_t events_kept = 200;
 
-  /// The functions take_... store new data of the daemon and add a message for the open pages.
+  /// The functions take_... store new data of the daemon, and add a message for the open pages.
   void take_status(nlohmann::ordered_json status);
   void take_event(nlohmann::ordered_json event);
   void take_statistics(nlohmann::ordered_json statistics);
   void take_sequences(nlohmann::ordered_json sequences);
   /// Stores the last result of `softgrip health`, which is read from the disk.
   void take_health(nlohmann::ordered_json health) { health_ = std::move(health); }
-  /// Call this function when the connection to the daemon is lost. The status, the statistics and the trend
-  /// are then unknown. The past events are kept.
+  /// Discards the status, the statistics and the trend, because they are unknown. Keeps the past events. Must
+  /// be called when the connection to the daemon is lost.
   void lose();
 
-  /// Returns the last status, or null if no daemon is connected.
+  /// Returns the last status; null if no daemon is connected.
   [[nodiscard]] const nlohmann::ordered_json& status() const noexcept { return status_; }
   [[nodiscard]] const nlohmann::ordered_json& statistics() const noexcept { return statistics_; }
   [[nodiscard]] const nlohmann::ordered_json& sequences() const noexcept { return sequences_; }
-  /// Returns the last health result, or null if there is none.
+  /// Returns the last health result; null if there is none.
   [[nodiscard]] const nlohmann::ordered_json& health() const noexcept { return health_; }
 
-  /// Returns the complete state as a message, the first one of a stream of server-sent events.
+  /// Returns the complete state as a message. It is the first message of a stream of server-sent events.
   [[nodiscard]] std::string greeting() const;
-  /// Returns one message per change since the last call, or "" if nothing has changed.
+  /// Returns one message per change since the last call; "" if there was no change.
   [[nodiscard]] std::string take_news();
 
  private:

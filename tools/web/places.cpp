@@ -8,13 +8,13 @@ namespace softgrip::web {
 
 namespace {
 
-/// Number of descriptors that the program needs for itself: standard streams, listener, signals, two
-/// connections to the daemon, the disk thread, and a reserve for descriptors that are open only briefly.
+/// Number of descriptors that the program itself needs: standard streams, listener, signals, two connections
+/// to the daemon, the disk thread, and a reserve for descriptors that are open for a short time.
 constexpr std::size_t own_descriptors = 24;
 constexpr std::size_t fewest_places = 4;
 
-/// Returns the connection with the lowest role among those for which `may_go` returns true. If several have
-/// this role, returns the one whose last progress is oldest.
+/// Returns the connection with the lowest role among the connections for which `may_go` returns true. If
+/// several connections have this role, returns the connection whose last progress is the oldest.
 template <class MayGo>
 Victim first_to_go(const std::vector<Guest>& guests, const MayGo& may_go) {
   const auto rank = [](const Guest& guest) { return std::tuple(guest.role, guest.moved_at); };

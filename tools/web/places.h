@@ -1,6 +1,6 @@
 #pragma once
-// Chooses the connection that must be closed when the number of connections or the memory reaches its limit.
-// Uses no sockets.
+// Selects the connection to close when the number of connections or the memory reaches its limit. Uses no
+// sockets.
 
 #include <cstddef>
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace softgrip::web {
 
-/// The properties of a connection by which the choice is made.
+/// The properties of a connection that determine if it is closed.
 struct Guest {
   enum class Stay : unsigned char {
     asking,    ///< the request of the connection is not complete
@@ -20,12 +20,12 @@ struct Guest {
   };
   Stay stay = Stay::asking;
   Role role = Role::none;
-  Nanoseconds moved_at = 0;  ///< time of the last progress; before any progress, time at which the client
-                             ///< connected
+  Nanoseconds moved_at = 0;  ///< time of the last progress of the connection; if there was none, time at
+                             ///< which the client connected
   std::size_t unsent = 0;    ///< number of bytes that wait to be sent
 };
 
-/// Time without progress of a response after which its connection may be closed in favour of another
+/// Time without progress of a response after which its connection may be closed to make space for another
 /// connection.
 inline constexpr Nanoseconds long_pause = ns_per_s / 2;
 
@@ -33,29 +33,31 @@ inline constexpr Nanoseconds long_pause = ns_per_s / 2;
 /// sum of this limit, the requests and the system's buffers for 512 connections (server.cpp).
 inline constexpr std::size_t most_unsent = std::size_t{16} << 20U;
 
-/// Returns the number of connections for which the process has enough descriptors. Each connection needs two:
-/// one for its socket and one for a file that is sent. The result is at least 4 and at most `wanted`.
+/// Returns the number of connections for which the process has a sufficient number of descriptors. Each
+/// connection needs two descriptors: one for its socket and one for a file that is sent. The result is at
+/// least 4 and at most `wanted`.
 /// @param descriptors  the number of descriptors that the process may have.
 [[nodiscard]] std::size_t places_for(std::size_t wanted, std::size_t descriptors) noexcept;
-/// Returns the largest number of lingering connections (Guest::Stay). The remaining connections are reserved
-/// for requests that are answered at once, such as stop and vent.
+/// Returns the largest number of lingering connections (Guest::Stay). All other connections are reserved for
+/// requests that are answered at once, such as stop and vent.
 [[nodiscard]] constexpr std::size_t lingering_places(std::size_t places) noexcept {
   return places * 3 / 4;
 }
 
-using Victim = std::optional<std::size_t>;  ///< index of the connection to close; nullopt: none
+using Victim = std::optional<std::size_t>;  ///< index of the connection to close; nullopt: no connection can
+                                            ///< be closed
 
-/// Chooses the connection to close when a client connects and the largest number of connections is reached.
-/// Considers connections whose request is incomplete after `long_pause`. Returns the one with the lowest
-/// role, and among equal roles the oldest.
+/// Selects the connection to close when a client connects and the number of connections is at its limit. The
+/// candidates are connections whose request is still incomplete after `long_pause`. Returns the candidate
+/// with the lowest role; if several have this role, the oldest of them.
 [[nodiscard]] Victim gives_way_to_newcomer(const std::vector<Guest>& guests, Nanoseconds now);
-/// Chooses the connection to close when a client with `role` needs a lingering connection and the largest
-/// number of these is reached. Returns a connection with a lower role, or one with the same role whose
-/// response makes no progress. Nullopt: refuse the client.
+/// Selects the connection to close when a client with `role` needs a lingering connection and the number of
+/// lingering connections is at its limit. Returns a connection with a lower role, or a connection with the
+/// same role whose response makes no progress. Returns nullopt if there is none; the client is then refused.
 [[nodiscard]] Victim gives_way_to_lingering(const std::vector<Guest>& guests, Role role, Nanoseconds now);
-/// Chooses the connection to close when too many bytes are unsent and a client with `role` needs memory.
-/// Returns the connection with the lowest role that has made no progress for the longest time. Nullopt:
-/// refuse the client.
+/// Selects the connection to close when too many bytes are unsent and a client with `role` needs memory.
+/// Among the connections with the lowest role, returns the connection that has made no progress for the
+/// longest time. Returns nullopt if no connection may be closed; the client is then refused.
 [[nodiscard]] Victim gives_way_for_bytes(const std::vector<Guest>& guests, Role role);
 
 [[nodiscard]] std::size_t unsent_of(const std::vector<Guest>& guests);

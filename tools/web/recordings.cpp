@@ -20,8 +20,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t longest_file_name = 128;
 constexpr std::size_t most_files = 50;
-/// Largest resolution of a file system's time stamps. It is several milliseconds for most file systems and
-/// two seconds for FAT.
+/// Largest resolution of a file system's time stamps. For most file systems, the resolution is several
+/// milliseconds; for FAT, it is two seconds.
 constexpr Nanoseconds stamp_resolution = 2 * ns_per_s;
 /// Number of directory entries that are read between two pauses.
 constexpr std::size_t entries_at_once = 256;
@@ -41,7 +41,7 @@ bool is_shown(std::string_view name) {
   return is_plain_name(name) && !content_type_of(name).empty();
 }
 
-/// Sorts the names in the chosen order and drops all but the first `most`.
+/// Sorts the names in the order that `last_first` gives, and removes all names after the first `most`.
 void keep_first(std::vector<std::string>& names, bool last_first, std::size_t most) {
   const auto before = [last_first](const std::string& one, const std::string& other) {
     return last_first ? one > other : one < other;
@@ -87,7 +87,7 @@ Json Recordings::list(Nanoseconds wall_now, const std::function<void()>& between
     files_.clear();
     return list;
   }
-  // The name of a recording begins with the time of its start, so that sorted names are in order of time.
+  // The name of a recording begins with its start time, so sorted names are in the order of time.
   bring_up_to_date(newest_, top, ".", {is_plain_name, true, most_considered});
   std::map<std::string, Names> files;
   for (const std::string& name : newest_.names) {
@@ -120,12 +120,13 @@ void Recordings::bring_up_to_date(Names& known, const Descriptor& parent, const 
   known.settled = complete && wall_now_ - known.stamp.changed_at > stamp_resolution;
 }
 
-/// Reads the names in a folder. Returns true if all names were read.
+/// Reads the names in a folder. Returns true if all names were read. Returns false after an error.
 bool Recordings::read_names(Descriptor folder, const Choice& choice, std::vector<std::string>& names) {
   ++folders_read_;
   const std::unique_ptr<DIR, int (*)(DIR*)> entries(::fdopendir(folder.get()), &::closedir);
   if (!entries) return false;
-  static_cast<void>(folder.release());  // closedir() closes the descriptor, so release it here
+  static_cast<void>(folder.release());  // closedir() closes the descriptor, so the object gives up its
+                                        // ownership
   std::size_t count = 0;
   errno = 0;
   while (const dirent* const entry = ::readdir(entries.get())) {

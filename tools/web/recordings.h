@@ -1,5 +1,6 @@
 #pragma once
-// Lists and opens the daemon's recordings that browsers may see. Checks every name that a browser sends.
+// Lists the daemon's recordings that browsers may see, and opens their files. Checks every name that a
+// browser sends.
 
 #include <cstddef>
 #include <cstdint>
@@ -22,21 +23,21 @@ namespace softgrip::web {
 /// most 128 letters, digits, ".", "-" and "_", and does not begin with a dot.
 [[nodiscard]] bool is_plain_name(std::string_view name);
 
-/// Returns the content type of a file that may be shown, for example "image/svg+xml", or "" for any other
-/// file.
+/// Returns the content type of a file that may be shown, for example "image/svg+xml"; "" for any other file.
 [[nodiscard]] std::string_view content_type_of(std::string_view name);
 
-/// Lists and opens recordings. All calls must come from one thread.
+/// Lists and opens recordings. All functions must be called from one thread.
 class Recordings {
  public:
   static constexpr std::size_t most_listed = 200;
-  /// Largest number of folders that are read for a list; the newest are read. If too few of these folders
-  /// contain a file that may be shown, the list is shorter than `most_listed`. This number limits the memory
-  /// and the time for a list, even if many more folders exist.
+  /// Largest number of folders that are read for a list, beginning with the newest folder. If too few of
+  /// these folders contain a file that may be shown, the list is shorter than `most_listed`. This limit
+  /// bounds the memory and the time for a list, even if there are many more folders.
   static constexpr std::size_t most_considered = 2000;
   static constexpr std::size_t largest_file = std::size_t{16} << 20U;
 
-  /// Stores the folder without reading it. An empty `folder` means that there are no recordings.
+  /// Stores the path of the folder and does not read the folder. An empty `folder` means that there are no
+  /// recordings.
   explicit Recordings(std::string folder) : folder_(std::move(folder)) {}
 
   [[nodiscard]] const std::string& folder() const noexcept { return folder_; }
@@ -62,10 +63,10 @@ class Recordings {
   };
   struct Names {
     Stamp stamp;
-    bool settled = false;  // true: any later change of the folder changes its time stamp
+    bool settled = false;  // true: any change of the folder after this stamp changes the folder's time stamp
     std::vector<std::string> names;
   };
-  /// Selects the names in a folder that are stored, and defines their order.
+  /// Determines which names of a folder are stored, and in which order.
   struct Choice {
     bool (*is_wanted)(std::string_view name) = nullptr;
     bool last_first = false;
@@ -81,8 +82,8 @@ class Recordings {
 
   std::string folder_;
   Names newest_;                        // names of the recordings, newest first
-  std::map<std::string, Names> files_;  // names of the files that may be shown, by recording
-  Nanoseconds wall_now_ = 0;            // time at which the list in progress was requested
+  std::map<std::string, Names> files_;  // names of the files that may be shown, by name of the recording
+  Nanoseconds wall_now_ = 0;            // time at which the list that is being created was requested
   std::function<void()> between_;
   std::size_t folders_read_ = 0;
 };

@@ -30,7 +30,7 @@ bool equal_but_for_case(std::string_view name, std::string_view lower) {
   return std::equal(name.begin(), name.end(), lower.begin(), lower.end(), same);
 }
 
-/// Removes the next line from the text and returns it.
+/// Removes the first line from the text and returns this line.
 std::string_view take_line(std::string_view& text) {
   const std::size_t end = std::min(text.find(line_end), text.size());
   const std::string_view line = text.substr(0, end);

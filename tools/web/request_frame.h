@@ -15,11 +15,11 @@ struct Frame {
   enum class State : unsigned char { incomplete, complete, refused };
   State state = State::incomplete;
   std::size_t size = 0;  ///< size of the complete request with its body [bytes]
-  int status = 0;        ///< HTTP status with which the request is refused; 0: it is not refused
+  int status = 0;        ///< HTTP status with which the request is refused; 0: the request is not refused
 };
 
-/// Checks the bytes that a client has sent so far. The check is stricter than that of cpp-httplib, which
-/// parses the request afterwards. Lines must end with CR LF. Control characters, folded lines, a second
+/// Checks the bytes that a client has sent so far. The check is stricter than the check of cpp-httplib, which
+/// parses the request after this check. Lines must end with CR LF. Control characters, folded lines, a second
 /// Content-Length, chunked bodies and Expect headers are refused.
 [[nodiscard]] Frame frame_of(std::string_view bytes);
 

@@ -16,23 +16,24 @@ namespace {
 /// Longest time between two checks of the daemon, of the time limits and of the sessions.
 constexpr Nanoseconds longest_pause = ns_per_s / 20;
 constexpr Nanoseconds check_period = ns_per_s;
-/// Largest number of connections that are accepted in one cycle, so that existing clients are not delayed.
+/// Largest number of connections that are accepted in one cycle, so that accepting does not delay the
+/// connected clients.
 constexpr int most_accepted = 32;
 constexpr int no_place = 503;
-/// Time limit for reading the health result. If it is exceeded, a collector gets the metrics with the
-/// previous health result.
+/// Time limit for reading the health result. After this time, a collector gets the metrics with the previous
+/// health result.
 constexpr Nanoseconds patience_for_health = ns_per_s;
 constexpr Nanoseconds patience_for_disk = 8 * ns_per_s;
 
-/// Size of the send buffer of a socket [bytes]. If it were not set, the system would buffer megabytes for a
-/// client that does not read. The system doubles this number. The memory limit of the systemd unit includes
-/// these buffers.
+/// Size of the send buffer of a socket [bytes]. Without a set size, the system would buffer megabytes for a
+/// client that does not read. The system doubles the size that is set. The memory limit of the systemd unit
+/// includes these buffers.
 constexpr int kept_by_system = 65536;
 constexpr std::size_t most_connections = 512;  // largest number of connections that the configuration file
                                                // may set
 constexpr std::size_t own_memory = std::size_t{20} << 20U;
 constexpr std::size_t memory_of_unit = std::size_t{128} << 20U;  // memory limit in
-                                                                 // systemd/softgrip-web.service.in
+                                                                 // systemd/softgrip-web.service.in [bytes]
 static_assert(own_memory + most_unsent +
                       most_connections * (2 * std::size_t{kept_by_system} + longest_head + longest_body) <
                   memory_of_unit,
@@ -94,9 +95,9 @@ void Server::serve_until_signal() {
   }
 }
 
-/// Reduces the largest number of connections and closes connections. Call this function if poll() fails
-/// because it would watch more descriptors than the process may have. Returns false if no connection was
-/// closed. The failure then has another cause.
+/// Reduces the largest number of connections and closes connections. Must be called if poll() fails because
+/// it would watch more descriptors than the process may have. Returns false if there was no connection to
+/// close. The failure of poll() then has another cause.
 bool Server::give_up_places() {
   const std::size_t before = visitors_.size();
   places_ = places_for(settings_.max_connections, descriptor_limit());
@@ -119,7 +120,7 @@ void Server::count() {
 void Server::accept(Nanoseconds now) {
   for (int i = 0; i < most_accepted; ++i) {
     Descriptor socket = entrance_.accept(now);
-    // If too few descriptors are free for the next client, close another connection.
+    // If the number of free descriptors is too small for the next client, another connection is closed.
     if (entrance_.short_of_descriptors()) static_cast<void>(make_place(now));
     if (!socket) return;
     ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &kept_by_system, sizeof kept_by_system);
@@ -129,7 +130,8 @@ void Server::accept(Nanoseconds now) {
     }
     ++counts_.turned_away;
     const std::string refusal = Site::refusal(no_place);
-    // Send as many bytes of the refusal as the socket accepts at once. Do not wait for this client.
+    // Sends as many bytes of the refusal as the socket accepts at once, because the server does not wait for
+    // this client.
     [[maybe_unused]] const ssize_t sent =
         ::send(socket.get(), refusal.data(), refusal.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   }
@@ -141,12 +143,13 @@ void Server::look_after(Visitor& visitor, net::PollSet::Events events, Nanosecon
     visitor.leaves = !client.receive();
     if (!visitor.leaves && client.phase() == Phase::asking) {
       serve(visitor, now);
-      // If a client has closed its sending side before its request is complete, the request can never be
-      // completed.
+      // A client that has closed its sending side before the request was complete can never complete the
+      // request, so it is removed.
       if (client.phase() == Phase::asking && client.said_all()) visitor.leaves = true;
     }
   }
-  // A client that has closed its sending side may not receive the outcome of its start, so give up the start.
+  // A client that has closed its sending side may not receive the outcome of its start, so the start is given
+  // up.
   if (client.said_all() && commander_.is_open_start(visitor.command)) visitor.leaves = true;
   if (client.phase() == Phase::waiting && !visitor.leaves) take_reply(visitor, now);
   if (client.phase() == Phase::loading && !visitor.leaves) take_piece(visitor);
@@ -189,8 +192,8 @@ void Server::answer(Visitor& visitor, Outcome outcome, Nanoseconds now) {
   client.answer(std::move(outcome.bytes), next, now);
   visitor.leaves = !client.send_on(now);
   if (visitor.leaves || client.unsent() == 0) return;
-  // The socket did not accept all bytes, so the connection becomes a lingering connection until the rest is
-  // sent.
+  // The socket did not accept all bytes, so the connection becomes a lingering connection until the remaining
+  // bytes are sent.
   visitor.leaves = !make_lingering_place(visitor, now) || !make_room(&visitor, visitor.role);
   if (visitor.leaves) client.drop_unsent();
 }
@@ -222,13 +225,14 @@ void Server::take_piece(Visitor& visitor) {
   const auto piece = std::exchange(download.piece, nullptr);
   const auto bytes = std::string_view(piece->text()).substr(0, download.file->size - download.read);
   download.read += bytes.size();
-  // If the file has become shorter, it has fewer bytes than the head of the response announced.
+  // If the file has become shorter since the response began, it has fewer bytes than the head of the response
+  // has announced. The client is then disconnected.
   visitor.leaves = bytes.empty() || !visitor.client.add(bytes);
   if (download.read == download.file->size) visitor.client.finish();
 }
 
-/// Requests the next piece of a file if the previous piece was sent and memory is available. If memory is
-/// short, the download waits, so that no other client must be disconnected.
+/// Requests the next piece of a file if the previous piece was sent and memory is available. If there is too
+/// little memory, the download waits, so that no other client must be disconnected.
 void Server::ask_for_piece(Visitor& visitor) {
   Download& download = visitor.download;
   if (download.piece || visitor.client.has_to_send() || counts_.unsent + Archive::piece > most_unsent) return;
@@ -236,7 +240,7 @@ void Server::ask_for_piece(Visitor& visitor) {
   download.piece = archive_.ask({.kind = DiskRequest::Kind::piece, .from = download.file});
 }
 
-/// Returns true if the reader of a stream has the same role as at the beginning of the stream.
+/// Returns true if the reader of a stream has the same role now as when the stream began.
 bool Server::still_may(const Follower& follower, Nanoseconds now) {
   const auto role = gate_.admit(follower.credentials, false, now);
   return role && *role == follower.role;
@@ -293,8 +297,8 @@ Server::Crowd Server::crowd_beside(const Visitor* visitor) {
   return crowd;
 }
 
-/// Marks the visitor for removal. Frees its unsent bytes at once, because many responses may be created
-/// before marked visitors are removed.
+/// Marks the visitor for removal at the end of the cycle. Frees the visitor's unsent bytes at once, because
+/// many responses may be created before the end of the cycle.
 void Server::turn_away(Visitor& visitor) {
   visitor.leaves = true;
   visitor.client.drop_unsent();

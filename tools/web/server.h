@@ -33,27 +33,29 @@ class Server {
   struct Download {
     std::shared_ptr<const RegularFile> file;
     std::size_t read = 0;                   // number of bytes of the file that have been read so far
-    std::shared_ptr<const DiskTask> piece;  // the next piece, which is being read from the disk; null: none
+    std::shared_ptr<const DiskTask> piece;  // the next piece of the file, which is being read from the disk;
+                                            // null: no piece is being read
   };
   struct Visitor {
     Client client;
-    Role role = Role::none;                // role of the sender of the visitor's request
-    Follower follower;                     // reader of the stream, in the phase following
-    Download download;                     // file that is sent, in the phase loading
-    std::uint64_t command = 0;             // number of the command that was sent to the daemon; 0: none
+    Role role = Role::none;     // role of the visitor that sent the request
+    Follower follower;          // reader of the stream; used in the phase `following`
+    Download download;          // file that is being sent; used in the phase `loading`
+    std::uint64_t command = 0;  // number of the command that was sent to the daemon; 0: no command was sent
     std::shared_ptr<const DiskTask> task;  // pending request to the disk
     Nanoseconds gives_up_at = 0;           // time at which the wait for the disk ends without a result
     bool leaves = false;                   // true: the visitor is removed at the end of this cycle
     net::PollSet::Place place = {};
   };
-  /// The visitors that are not marked for removal, with the properties that decide which of them is closed.
+  /// The visitors that are not marked for removal, with the properties that determine which visitor is
+  /// removed next.
   struct Crowd {
     std::vector<Guest> guests;
     std::vector<Visitor*> visitors;
   };
 
   void serve_until_signal();
-  /// Closes the newest visitors if the process may have fewer descriptors than before.
+  /// Closes the newest visitors if the process may now have fewer descriptors than before.
   [[nodiscard]] bool give_up_places();
   void accept(Nanoseconds now);
   void look_after(Visitor& visitor, net::PollSet::Events events, Nanoseconds now);
@@ -73,11 +75,11 @@ class Server {
 
   [[nodiscard]] static Guest guest_of(const Visitor& visitor);
   [[nodiscard]] Crowd crowd_beside(const Visitor* visitor);
-  /// Returns true if one more connection is possible. May close another connection for this purpose.
+  /// Returns true if there is space for one more connection. May close another connection to make space.
   [[nodiscard]] bool make_place(Nanoseconds now);
   [[nodiscard]] bool make_lingering_place(const Visitor& visitor, Nanoseconds now);
-  /// Returns true if the unsent bytes of all connections are within the limit. May close other connections
-  /// for this purpose.
+  /// Returns true if the unsent bytes of all connections are within their limit. May close other connections
+  /// to meet the limit.
   [[nodiscard]] bool make_room(const Visitor* visitor, Role role);
 
   const Settings& settings_;

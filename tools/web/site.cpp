@@ -21,13 +21,13 @@ using httplib::Response;
 
 constexpr const char* json_type = "application/json";
 constexpr const char* disk_is_silent = "the disk with the recordings does not respond";
-/// Content-Security-Policy of the page: the page may load only its own files and submit no forms. Other sites
-/// cannot embed the page in a frame.
+/// Content-Security-Policy of the page. The page may load files from this server only, and it may not submit
+/// forms. Other sites cannot embed the page in a frame.
 constexpr const char* page_policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-/// Content-Security-Policy of recordings. A recording may contain files of other people, so it may run no
-/// script and load nothing from other sites.
+/// Content-Security-Policy of recordings. A recording may contain files of other people, so it may not run
+/// scripts and may not load files from other sites.
 constexpr const char* recording_policy =
     "default-src 'none'; style-src 'unsafe-inline'; img-src 'self' data:; sandbox; frame-ancestors 'none'";
 
@@ -45,14 +45,14 @@ void put_error(Response& response, int status, std::string_view message) {
   put_json(response, {{"error", message}}, status);
 }
 
-/// Replaces a header. The old value must be removed first, because the library stores headers in a multimap
-/// and would send both values.
+/// Replaces a header. The old value is removed first, because the library stores headers in a multimap and
+/// would send both the old and the new value.
 void replace_header(Response& response, const char* name, const char* value) {
   response.headers.erase(name);
   response.set_header(name, value);
 }
 
-/// Returns the HTTP status in a line such as "HTTP/1.1 200 OK...", or 0 if the response is empty.
+/// Returns the HTTP status in a line such as "HTTP/1.1 200 OK..."; 0 if the response is empty.
 int status_in(std::string_view answer) {
   constexpr std::size_t at = 9;
   int status = 0;
@@ -201,8 +201,8 @@ void Site::add_data() {
   engine_.Get("/api/stream", [this](const Request&, Response& response) { greet(response); });
 }
 
-/// Begins a stream of messages. The library writes only the head of the response, without a length. The owner
-/// of the connection adds the messages.
+/// Begins a stream of messages. The library writes the head of the response, which contains no length. The
+/// owner of the connection adds the messages.
 void Site::greet(Response& response) {
   if (!need(Role::look, response)) return;
   outcome_.follower = Follower{credentials_, role_};
@@ -246,8 +246,8 @@ void Site::list(Response& response) {
   }
 }
 
-/// Begins the response with a file. The library writes only the head of the response. The file follows in
-/// pieces and is never completely in memory.
+/// Begins the response with a file. The library writes the head of the response. The content of the file is
+/// sent in pieces and is never in memory completely.
 void Site::show(const Request& request, Response& response) {
   if (!need(Role::look, response)) return;
   const std::string name = request.matches[2];

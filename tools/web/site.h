@@ -1,5 +1,5 @@
 #pragma once
-// Creates the responses to HTTP requests. Does not use the sockets of the browsers.
+// Creates the responses to HTTP requests. Does not use the sockets of the clients.
 
 #include <cstdint>
 #include <map>
@@ -19,7 +19,7 @@
 
 namespace softgrip::web {
 
-/// Counters of the program softgrip-web, which its metrics report.
+/// Counters of the program softgrip-web. Its metrics contain these counters.
 struct OwnCounts {
   std::size_t connections = 0;
   std::size_t followers = 0;             ///< number of connections that belong to open pages
@@ -39,35 +39,38 @@ struct Follower {
 struct Outcome {
   std::string bytes;  ///< bytes to send to the client
   int status = 0;
-  Role role = Role::none;  ///< role of the sender of the request
-  /// Set if the bytes begin a stream of messages. The stream continues while its reader keeps the role that
-  /// it had at the beginning.
+  Role role = Role::none;  ///< role of the client that sent the request
+  /// Set if the bytes begin a stream of messages. The stream continues while its reader has the role that it
+  /// had when the stream began.
   std::optional<Follower> follower;
-  /// Set if the content of this file must be sent after the bytes.
+  /// Set if the content of this file must be sent after `bytes`.
   std::shared_ptr<const RegularFile> file;
-  /// Set if this command must be sent to the daemon first. After its response, serve() must be called again.
+  /// Set if this command must be sent to the daemon before there is a response to the client. After the
+  /// daemon's response, serve() must be called once more.
   std::optional<nlohmann::ordered_json> command;
-  /// Set if this request must be sent to the disk first. After its result, serve() must be called again.
+  /// Set if this request must be sent to the disk before there is a response to the client. After the result
+  /// of the disk, serve() must be called once more.
   std::optional<DiskRequest> disk_request;
 };
 
-/// The response to a command or to a disk request that an earlier result of serve() contained.
+/// The response to a command or to a disk request that an earlier call of serve() has returned.
 struct Reply {
   const nlohmann::ordered_json* daemon = nullptr;
-  const DiskTask* disk = nullptr;  ///< result of the disk; not done: the time limit for the disk was exceeded
+  const DiskTask* disk = nullptr;  ///< result of the disk; if it is not done, the time limit for the disk was
+                                   ///< exceeded
 };
 
 class Site {
  public:
-  /// Creates the site. All references must outlive it. `chart_js` is the library that draws curves, or empty
-  /// if it is not installed.
+  /// Creates the site. All references must outlive the site. `chart_js` is the text of the library that draws
+  /// curves; empty if the library is not installed.
   Site(const Settings& settings, Gate& gate, const LiveState& state, const OwnCounts& counts,
        std::string chart_js);
 
   /// Returns the result of processing a request. `request` must be complete according to frame_of().
   [[nodiscard]] Outcome serve(std::string_view request, Nanoseconds now, const Reply& reply = {});
-  /// Returns the refusal of a request that frame_of() refused, or of a client for which no connection is
-  /// left.
+  /// Returns the refusal for a request that frame_of() refused, or for a client for which there is no free
+  /// connection.
   [[nodiscard]] static std::string refusal(int status);
 
  private:
@@ -79,7 +82,7 @@ class Site {
   /// Checks the sender of a request before its handler is called. If the request is refused, writes the
   /// refusal into `response` and returns true.
   bool turn_away(const httplib::Request& request, httplib::Response& response);
-  /// Returns true if the sender has at least this role. Otherwise writes the refusal into `response`.
+  /// Returns true if the sender has at least the role `role`. Otherwise writes the refusal into `response`.
   bool need(Role role, httplib::Response& response) const;
   void greet(httplib::Response& response);
   void command(const httplib::Request& request, httplib::Response& response);

@@ -1,5 +1,6 @@
 #pragma once
-// Defines a cause: the gain drifts during a campaign, with time, during running-in or with use.
+// Defines a cause: the gain of the finger drifts during a campaign. It drifts in proportion to time, in
+// proportion to the travelled distance, or during a running-in time.
 
 #include <algorithm>
 
@@ -33,9 +34,9 @@ struct Ageing {
                      {std::max(s.soonest_s(), 0.07 * s.campaign_s),
                       std::max(s.soonest_s(), 0.2 * s.campaign_s), 0.5 * s.campaign_s}}});
     }
-    /// With a shorter running-in time, the form would describe only the difference between one or two load
-    /// cycles. A longer running-in time cannot be determined, because the data contain only the beginning of
-    /// its curve.
+    /// The running-in time is at least Scales::soonest_s() and at most half of the campaign. A shorter
+    /// running-in would only affect one or two load cycles. A longer running-in time cannot be determined,
+    /// because the data contain only the beginning of its curve.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"run_in_time_s", s.soonest_s(), 0.5 * s.campaign_s}};
     }

@@ -26,8 +26,8 @@ struct AsymmetricHysteresis {
                     {"unloading_kpa", {0.3 * s.largest_kpa}},
                     {"loading_kpa", {0.08 * s.largest_kpa, 0.3 * s.largest_kpa, s.largest_kpa}}});
     }
-    /// If a characteristic length of the curve is far above the largest pressure, the curve is practically a
-    /// straight line.
+    /// Limits the characteristic pressures of the unloading and loading curves to 3 times the largest
+    /// pressure. With a much larger value, the curve is practically a straight line.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"unloading_kpa", 0.01 * s.largest_kpa, 3 * s.largest_kpa},
               {"loading_kpa", 0.01 * s.largest_kpa, 3 * s.largest_kpa}};
@@ -38,7 +38,7 @@ struct AsymmetricHysteresis {
   struct Skew : FormOf<model::AsymmetricBoucWen> {
     static Starts starts(const Scales& s) {
       Starts starts;
-      // The hysteretic state saturates within some tenths of the pressure range.
+      // With these start values, the hysteretic state saturates within some tenths of the pressure range.
       for (const double delta : {-2.0, -0.8, -0.3, 0.3, 0.8, 2.0}) {
         starts.push_back(start({{"delta_per_kpa", delta / s.largest_kpa}}));
         starts.push_back(start({{"epsilon_per_kpa", delta / s.largest_kpa}}));
@@ -55,9 +55,10 @@ struct AsymmetricHysteresis {
       const double gain = s.gain_mm_per_kpa();
       return every({{"gain_mm_per_kpa", {0.05 * gain}}, {"bend", {2, 6}}, {"range_kpa", {s.largest_kpa}}});
     }
-    /// If the bend is near zero, the element has no effect. If the bend is large, the element is a step at
-    /// the end of the range. With a negative gain, the element would release more energy than it stores. The
-    /// parameters of the base structure describe a narrower loop.
+    /// Limits the parameters. If `bend` is near zero, the element has no effect. If `bend` is large, the
+    /// element is a step at the end of the pressure range. The gain is not negative, because the element
+    /// would then release more energy than it stores. A narrower loop is described by the parameters of the
+    /// base structure.
     static Bounds bounds(const Scales&, const model::Model&) {
       return {{"gain_mm_per_kpa", 0}, {"bend", 0.5, 30}};
     }

@@ -138,7 +138,8 @@ constexpr auto table_from(List<C...>) {
 }
 constexpr auto table = table_from(causes::All{});
 
-// This check at compile time fails if the registry does not assign a block of the catalogue.
+// The templates below check at compile time that each block of the catalogue is a form of exactly one cause
+// or is listed once in NoCauses (registry.h).
 
 template <class Block, class... F>
 constexpr bool is_block_of(List<F...>) {

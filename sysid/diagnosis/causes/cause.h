@@ -29,8 +29,8 @@ struct CauseForm {
   /// Returns true if a block of this type has this form. If the pointer is null, every block of the type has
   /// this form.
   bool (*holds)(const model::BlockSpec& block) = nullptr;
-  /// Returns true if a fit may change the parameter `index`. The other parameters keep their start values.
-  /// Examples are a calibrated range, and a limit that the data do not reach.
+  /// Returns true if a fit may change the parameter `index`. The other parameters keep their start values,
+  /// such as the calibrated range of a sensor or a limit that the data do not reach.
   bool (*is_fitted)(std::size_t index) = nullptr;
   /// Returns the range in which a fit may change the parameter `index`, in addition to its declared bounds.
   /// Outside this range, the block would represent a different effect.
@@ -49,7 +49,8 @@ struct Cause {
   bool found_by_fitting = true;
   Column needs = Column::none;
   std::span<const Advice> advice;
-  /// Id of a cause that gives equal readings for every command; empty: no such cause.
+  /// Id of the cause that gives the same readings as this cause for every command; empty: there is no such
+  /// cause.
   std::string_view indistinguishable;
   std::span<const std::string_view> counterparts;
   std::span<const std::string_view> confounded_with;
@@ -76,15 +77,15 @@ struct Cause {
 /// structure or describes the random error of the sensor, because such blocks are not causes.
 [[nodiscard]] const Cause* cause_of(std::size_t block_type);
 
-/// Returns the form of the cause that this block has.
+/// Returns the form of `cause` that `block` represents.
 [[nodiscard]] const CauseForm& form_of(const Cause& cause, const model::BlockSpec& block);
-/// Returns the form that this block has among the forms of all these causes. Returns nullptr if none of the
-/// causes has such a form.
+/// Returns the form that `block` represents, from the forms of all `causes`. Returns nullptr if none of the
+/// causes has a form that matches the block.
 [[nodiscard]] const CauseForm* form_among(std::span<const Cause> causes, const model::BlockSpec& block);
 
-/// Returns the position of the cause's block in a model, or nullopt if the model contains none of its forms.
+/// Returns the index of the block in `model` that is a form of `cause`, or nullopt if there is no such block.
 [[nodiscard]] std::optional<std::size_t> position_of(const model::Model& model, const Cause& cause);
-/// Returns the model after removal of the block of the cause.
+/// Returns `model` without the block of `cause`.
 [[nodiscard]] model::Model without(model::Model model, const Cause& cause);
 
 /// Returns the reason why the data cannot test this cause, such as "needs a temperature_c column that

@@ -75,12 +75,12 @@ enum class Advice : std::uint8_t {
   vary_temperature,
 };
 
-/// Quantity that states the size of a change, and the computation of this quantity from the fitted
-/// parameters.
+/// Quantity that states the size of a change, and how this quantity is computed from the fitted parameters.
 struct SizedBy {
   enum class Of : std::uint8_t {
-    full_pressure,  ///< mean effect at more than 90 % of the largest pressure
-    /// Mean effect at more than 90 % of the largest pressure, as a share of the span of the readings.
+    full_pressure,  ///< mean effect on the readings at pressures above 90 % of the largest pressure
+    /// Mean effect on the readings at pressures above 90 % of the largest pressure, divided by the span of
+    /// the readings.
     span,
     largest,    ///< largest effect on the reading, with its sign
     amplitude,  ///< magnitude of the largest effect on the reading
@@ -88,14 +88,14 @@ struct SizedBy {
   };
   Of of = Of::full_pressure;
   std::string_view what = "at full pressure";
-  std::string_view unit{};  ///< unit of the quantity; empty: unit of the readings
+  std::string_view unit{};  ///< unit of the quantity; empty: the unit of the readings
   /// Name of the parameter for Of::number; a form without this parameter uses full_pressure.
   std::string_view number{};
   double factor = 1;
 };
 
-/// Texts for the operator of a finger that shows the cause but did not show it in its baseline. Empty: the
-/// cause does not develop over time.
+/// Texts for the operator of a finger that has developed the cause since its baseline was recorded. Empty:
+/// the cause does not develop over time.
 struct WhenChanged {
   std::string_view words;                      ///< description of the change: "the finger rings"
   std::array<std::string_view, 2> next_steps;  ///< actions for the operator; the quicker action comes first
@@ -110,7 +110,7 @@ struct Range {
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// A list of types: the forms of a cause, or the causes of the registry.
+/// List of types: the forms of one cause, or all causes of the registry.
 template <class... T>
 struct List {};
 
@@ -147,8 +147,8 @@ struct FormOf {
   };
   using Bounds = std::vector<Bound>;
 
-  /// Returns the parameter values of the block. Parameters that are not given have their neutral value or, if
-  /// they have no neutral value, their default value.
+  /// Returns the parameter values of the block. A parameter that is not in `given` gets its neutral value or,
+  /// if it has no neutral value, its default value.
   [[nodiscard]] static Values start(std::initializer_list<Value> given) {
     Values values;
     for (const model::ParameterSpec& spec : Block<double>::parameters)

@@ -13,7 +13,7 @@ enum class HealthNumber : std::uint8_t {
   gain,           ///< displacement at full pressure in free motion
   zero,           ///< reading at rest before the first motion, relative to the baseline
   lag,            ///< delay of free motion relative to the baseline
-  creep,          ///< motion at constant pressure in addition to that of the baseline
+  creep,          ///< creep at constant pressure, minus the creep in the baseline
   loop_width,     ///< displacement during unloading in addition to that of the baseline
   pressure_loss,  ///< command minus measured pressure during HOLDING
   leak,           ///< decrease of the measured pressure per second at constant command
@@ -45,7 +45,7 @@ inline constexpr std::array<HealthNumberInfo, health_numbers> health_number_info
 /// Direction in which a cause changes an indicator.
 enum class Moves : std::uint8_t { not_at_all, up, down, either_way };
 
-/// An indicator that a cause changes, and the direction of the change.
+/// An indicator that a cause changes, and the direction in which it changes.
 struct HealthSign {
   HealthNumber number = HealthNumber::gain;
   Moves moves = Moves::not_at_all;

@@ -6,14 +6,13 @@
 
 namespace softgrip::sysid::causes {
 
-/// This cause has no block. It is found by fits of complete alternative base structures
-/// (verdict/base_findings.h).
+/// No block represents this cause. It is found by fitting complete model structures with a different type of
+/// hysteresis (verdict/base_findings.h).
 struct HysteresisShape {
   static constexpr std::string_view id = "hysteresis_shape";
   static constexpr std::string_view title = "Hysteresis shape";
   static constexpr bool found_by_fitting = false;
-  /// This member is empty because the search for a change since the baseline does not change the form of the
-  /// base structure.
+  /// Empty, because the search for changes since the baseline does not test other types of hysteresis.
   static constexpr WhenChanged when_changed{};
 
   struct Plays : FormOf<model::PrandtlIshlinskii> {};

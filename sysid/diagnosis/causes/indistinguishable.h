@@ -9,10 +9,11 @@
 
 namespace softgrip::sysid {
 
-/// Returns the cause that has the same effect as `cause` on the other side of the load. For example,
-/// stiffening and sensor nonlinearity are both unknown functions of the displacement, so a fit of their forms
-/// does not show where the nonlinearity is. If `model` has a block with memory between the two positions
-/// (Cause::makes_distinguishable), the two causes give different readings, and the result is nullopt.
+/// Returns the cause in another component that gives the same readings as `cause` for every command. For
+/// example, stiffening of the finger and a nonlinear sensor are both unknown functions of the displacement,
+/// so a fit does not show which of the two is present. Returns nullopt if there is no such cause. Also
+/// returns nullopt if `model` has a block with memory between the two components, because the readings then
+/// differ (Cause::makes_distinguishable).
 [[nodiscard]] std::optional<Cause> indistinguishable_from(const Cause& cause, const model::Model& model);
 
 /// Returns the causes that may explain the effect of `cause` instead, in the order of testing. For an

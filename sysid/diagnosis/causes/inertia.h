@@ -17,8 +17,8 @@ struct Inertia : FormOf<model::Inertia> {
     return every({{"period_s", {0.05, 0.15, 0.4, 1.0}}, {"damping_ratio", {0.15, 0.5}}});
   }
   static Bounds bounds(const Scales& s, const model::Model&) {
-    // A period below two samples cannot be resolved. A block with a damping ratio of 1/sqrt(2) or more has no
-    // resonance and acts like two lags in series.
+    // A period shorter than two sample intervals cannot be resolved. A block with a damping ratio of
+    // 1/sqrt(2) or more has no resonance and acts like two lags in series.
     return {{"period_s", 2 * s.sample_s}, {"damping_ratio", 0.005, 0.7}};
   }
 };

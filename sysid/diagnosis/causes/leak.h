@@ -6,11 +6,11 @@
 
 namespace softgrip::sysid::causes {
 
-/// This cause is found if the measured pressure is below the command (verdict/valve_findings.h). In the
-/// displacement, a leak has the same effect as a smaller gain.
+/// This cause is found if the measured pressure is below the command (verdict/valve_findings.h). The
+/// displacement alone does not distinguish a leak from a smaller gain of the finger.
 struct Leak : FormOf<model::Leak> {
   static constexpr bool found_by_fitting = false;
-  /// This member is empty because a separate search finds a leak that has developed since the baseline
+  /// Empty, because a separate search finds a leak that has developed since the baseline
   /// (changes/causes_without_block.h).
   static constexpr WhenChanged when_changed{};
 };

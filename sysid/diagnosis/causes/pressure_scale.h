@@ -6,12 +6,13 @@
 
 namespace softgrip::sysid::causes {
 
-/// This cause is only listed as an alternative to a leak (verdict/valve_findings.h). The user enters the
-/// scale. In the displacement, a wrong scale has the same effect as a different gain.
+/// A diagnosis lists this cause only as an alternative to a leak (verdict/valve_findings.h). The scale is a
+/// setting that the user enters. The displacement alone does not distinguish a wrong scale from a different
+/// gain of the finger.
 struct PressureScale : FormOf<model::PressureScale> {
   static constexpr bool found_by_fitting = false;
-  /// This member is empty because no recorded quantity separates a change of the scale from a leak or from a
-  /// change of the finger.
+  /// Empty, because no recorded quantity separates a changed scale from a leak or from a change of the
+  /// finger.
   static constexpr WhenChanged when_changed{};
 };
 

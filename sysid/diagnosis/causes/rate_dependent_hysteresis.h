@@ -31,18 +31,20 @@ struct RateDependentHysteresis {
       return {// An element that does not saturate within the pressure range acts like a linear
               // viscous branch.
               {"width_kpa", 0.01 * s.largest_kpa, 0.5 * s.largest_kpa},
-              // The data cannot determine a time constant that is longer than the load cycles.
+              // The time constant is at most 10 % of the campaign. The data cannot determine a longer one.
               {"time_constant_s", s.sample_s, 0.1 * s.campaign_s}};
     }
   };
 
-  /// Form of the cause: the hysteresis of the base structure, with parameters that depend on the rate.
+  /// Form of the cause: the hysteresis of the base structure, with parameters that depend on the rate of the
+  /// pressure.
   template <template <class> class Block>
   struct Following : FormOf<Block> {
     using Form = FormOf<Block>;
     static typename Form::Starts sized(typename Form::Parameter size, const std::vector<double>& sizes,
                                        const Scales& s) {
-      // At these rates, the pressure would rise from 0 to its largest value in 5 s, in 1 s and in 0.2 s.
+      // These three rates correspond to a rise of the pressure from 0 to its largest value in 5 s, in 1 s and
+      // in 0.2 s.
       return Form::every({{"rate_kpa_per_s", {0.2 * s.largest_kpa, s.largest_kpa, 5 * s.largest_kpa}},
                           {"settling_s", {0.03, 0.2}},
                           {size, sizes}});
@@ -55,11 +57,11 @@ struct RateDependentHysteresis {
               {"settling_s", 0.5 * s.sample_s, 0.5}};
     }
   };
-  /// Form of the cause: the width of the hysteresis increases with the rate.
+  /// Form of the cause: the width of the hysteresis increases with the rate of the pressure.
   struct Growing : Following<model::RateDependentWidth> {
     static Starts starts(const Scales& s) { return sized("growth", {0.06, 0.2, 0.6}, s); }
   };
-  /// The saturation of the hysteresis changes with the rate.
+  /// Form of the cause: the saturation of the hysteresis changes with the rate of the pressure.
   struct Saturating : Following<model::RateDependentLevelling> {
     static Starts starts(const Scales& s) { return sized("levelling", {-0.3, 0.5, 3.0}, s); }
   };

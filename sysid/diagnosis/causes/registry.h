@@ -1,7 +1,7 @@
 #pragma once
-// Lists all causes of the project. To add a cause, write its file and add a line to the list below
-// (docs/how-to/add-a-cause.md). A block of the catalogue that is in neither of the lists below causes a
-// compile error.
+// Lists all causes of the project. To add a cause, write its file and add the cause to the list `All`
+// (docs/how-to/add-a-cause.md). If a block of the catalogue is neither a form of a listed cause nor in the
+// list `NoCauses`, the compiler reports an error.
 
 #include "model/registry.h"
 #include "sysid/diagnosis/causes/actuator_threshold.h"

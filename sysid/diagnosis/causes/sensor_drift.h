@@ -33,20 +33,21 @@ struct SensorDrift {
     }
   };
 
-  /// The zero offset drifts while the sensor warms up.
+  /// Form of the cause: the zero offset drifts while the sensor warms up.
   struct WarmUp : FormOf<model::SensorWarmUp> {
     static Starts starts(const Scales& s) {
       return every(
           {{"warm_up_mm", {-0.05 * s.span_mm, 0.05 * s.span_mm}}, {"warm_up_time_s", {0.3 * s.campaign_s}}});
     }
-    /// A faster warm-up has the same effect as creep of the actuator. A slower warm-up has the same effect as
-    /// a steady drift.
+    /// The warm-up time is at least Scales::soonest_s() and at most the duration of the campaign. A faster
+    /// warm-up has the same effect as creep of the actuator. A slower warm-up has the same effect as a steady
+    /// drift.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"warm_up_time_s", s.soonest_s(), s.campaign_s}};
     }
   };
 
-  /// The zero offset follows a slow sinusoid.
+  /// Form of the cause: the zero offset follows a slow sinusoid.
   struct Sinusoidal : FormOf<model::SensorWander> {
     /// Returns start points with different periods, eight phases and two amplitudes.
     static Starts starts(const Scales& s) {
@@ -75,7 +76,8 @@ struct SensorDrift {
     static constexpr bool free_form = true;
     static constexpr std::array<Parameter, 0> fitted{};
     static Starts starts(const Scales& s) {
-      constexpr double closest_s = 12;  // at shorter intervals, the curve would follow the hysteresis loops
+      // smallest knot interval; with a shorter one, the curve would follow the load cycles
+      constexpr double closest_s = 12;
       const auto knots = static_cast<std::size_t>(std::clamp(s.campaign_s / closest_s, 2.0, 16.0));
       Values values = start({{"knot_interval_s", s.campaign_s / static_cast<double>(knots)}});
       values.resize(values.size() + knots, 0.0);

@@ -17,7 +17,7 @@ struct SensorSaturation : FormOf<model::SensorSaturation> {
       "the reading saturates",
       {"Check the distance between sensor and target: the range of the sensor must cover the whole stroke.",
        "Move the target by hand beyond the position at which the reading saturates, and note the reading."}};
-  /// The lower limit is not fitted. Its value is one that the data do not reach.
+  /// The lower limit is not fitted. It keeps the value no_floor_mm, which no reading reaches.
   static constexpr std::array<Parameter, 1> fitted{"upper_mm"};
   static constexpr double no_floor_mm = -1e4;
 

@@ -27,7 +27,7 @@ struct StressSoftening {
       return every({{"softening_per_kpa", {0.05 / s.largest_kpa, 0.3 / s.largest_kpa}}});
     }
   };
-  /// The softening saturates at large pressures.
+  /// Form of the cause: the softening saturates at large pressures.
   struct Saturating : FormOf<model::StressSoftening> {
     static Starts starts(const Scales& s) {
       return every({{"softening_per_kpa", {0.5 / s.largest_kpa}},
@@ -42,8 +42,8 @@ struct StressSoftening {
       return every({{"softening_per_kpa", {0.05 / s.largest_kpa, 0.3 / s.largest_kpa}},
                     {"range_kpa", {0.1 * s.largest_kpa, 0.3 * s.largest_kpa}}});
     }
-    /// If the range is smaller, the softening is practically immediate. If the range is larger, its effect is
-    /// not visible.
+    /// Limits `range_kpa` to between 2 % and 200 % of the largest pressure. Below this range, the softening
+    /// is practically immediate. Above it, the effect of the softening is not visible.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"range_kpa", 0.02 * s.largest_kpa, 2 * s.largest_kpa}};
     }

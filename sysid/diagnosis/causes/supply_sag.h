@@ -15,7 +15,8 @@ struct SupplySag : FormOf<model::SupplySag> {
       {{{HealthNumber::pressure_loss, Moves::up}}},
       {SizedBy::Of::number, "relative pressure decrease at the finger per relative decrease of the supply",
        "%", "coupling", 100}};
-  /// The nominal supply is not fitted, because the coupling is defined relative to it.
+  /// The nominal supply is not fitted, because the parameter `coupling` is defined relative to the nominal
+  /// supply.
   static constexpr std::array<Parameter, 1> fitted{"coupling"};
 
   static Starts starts(const Scales& s) {

@@ -34,10 +34,10 @@ struct ValveDeadband {
       return starts;
     }
 
-    /// Returns start values of the band. The model error has a local minimum at each band with which the
-    /// stick-slip motion reaches the largest pressure in a whole number of jumps. Start values whose numbers
-    /// of jumps differ by one cover all minima, down to bands of 1/60 of the largest pressure. Two similar
-    /// bands below this value have similar effects, so these start values are 10 % apart.
+    /// Returns start values of the band. A sticking valve reaches the largest pressure in jumps as large as
+    /// the band. The model error has a local minimum at each band that gives a whole number of jumps. One
+    /// start value per number of jumps covers all minima down to a band of 1/60 of the largest pressure.
+    /// Smaller bands have similar effects, so their start values are 10 % apart.
     static std::vector<double> bands_kpa(const Scales& s) {
       std::vector<double> bands;
       for (int steps = 5; steps < 60; ++steps) bands.push_back(s.largest_kpa / steps);

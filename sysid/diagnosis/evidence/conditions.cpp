@@ -11,8 +11,8 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-/// Half the time window from which the slope of the pressure is computed. Deliberate changes by a user or a
-/// regulator last longer than the window.
+/// Half the width of the time window in which the slope of the pressure is computed [s]. Deliberate pressure
+/// changes by a user or a regulator last longer than this window.
 constexpr double half_window_s = 0.05;
 constexpr std::size_t most_cycles = 8;
 
@@ -25,7 +25,7 @@ void add_rates(const Record& record, DriveHistory& h) {
     while (record.time_s[i] - record.time_s[before] > half_window_s) ++before;
     while (after + 1 < p.size() && record.time_s[after] - record.time_s[i] < half_window_s) ++after;
     after = std::max(after, i);
-    // If the window contains no other sample, the slope is computed from the adjacent samples.
+    // If the window contains only this sample, the slope is computed from the adjacent samples.
     const std::size_t a = before == i && i > 0 ? i - 1 : before;
     const double change = p[after] - p[a];
     const double time = record.time_s[after] - record.time_s[a];
@@ -85,8 +85,8 @@ bool varies(const std::vector<double>& values) {
   return high - low > 1e-6 * std::max(1.0, std::abs(high));
 }
 
-/// Returns a condition. @param value  function that computes the value of the condition from the record and
-/// the index of the sample.
+/// Returns a condition with its value at each of the samples. @param value  function that computes the value
+/// from a record and the index of a sample.
 template <class Value>
 Condition condition(std::string id, std::string axis, std::string phrase, const Samples& samples,
                     Value&& value) {

@@ -19,7 +19,7 @@ struct DriveHistory {
   std::vector<double> rate_kpa_per_s;  ///< slope of the pressure over 0.1 s; 0 at constant pressure
   std::vector<Branch> branch;
   std::vector<bool> falling;    ///< true: the last change of the pressure was a decrease
-  std::vector<double> dwell_s;  ///< time since the pressure became constant; NaN while it changes
+  std::vector<double> dwell_s;  ///< time since the pressure became constant; NaN while the pressure changes
   /// Time since the pressure last reversed, started to change or stopped changing.
   std::vector<double> since_turn_s;
   std::vector<double> turn_kpa;  ///< pressure at the last reversal, start or stop of a change
@@ -30,7 +30,8 @@ struct DriveHistory {
 };
 [[nodiscard]] DriveHistory history_of(const Record& record);
 
-/// Samples of all records that have a reading, evenly thinned and combined into one list.
+/// Samples of all records in one list. Only samples with a reading are included, and the list is thinned
+/// evenly.
 struct Samples {
   std::vector<std::size_t> record;
   std::vector<std::size_t> index;  ///< for each sample, its index in its record
@@ -38,10 +39,10 @@ struct Samples {
 
   [[nodiscard]] std::size_t size() const noexcept { return record.size(); }
 };
-/// Returns about `most` samples of all records. Samples whose residual is NaN are left out.
+/// Returns about `most` samples of all records. Samples whose residual is NaN are omitted.
 [[nodiscard]] Samples pooled_samples(const std::vector<Record>& records,
                                      const std::vector<std::vector<double>>& residual_mm, std::size_t most);
-/// Returns the values of `by_record` at the given samples.
+/// Returns the values of `by_record` at these samples, in one list. `by_record` has one vector per record.
 [[nodiscard]] std::vector<double> pooled(const Samples& samples,
                                          const std::vector<std::vector<double>>& by_record);
 
@@ -54,7 +55,8 @@ struct Condition {
   std::vector<double>
       value;  ///< value of the condition at each sample; NaN: the condition is not defined for the sample
   bool logarithmic = false;
-  /// Names of the values 0, 1, ... of the condition; empty: the values are numbers.
+  /// Names of the categories if the condition has the values 0, 1, ... for categories; empty: the values are
+  /// numbers.
   std::vector<std::string> categories;
   /// For each sample, the index of its group in `groups`. Each group, such as loading or unloading, gets its
   /// own curve.
@@ -65,8 +67,8 @@ struct Condition {
 
 /// Returns the conditions branch, cycle, amplitude, rate, dwell, history, position, loop (position and
 /// direction of the last motion), campaign_time, temperature and supply, in this order.
-/// @param prediction_mm  one vector per record. The position is the output of the model, because a measured
-/// position contains the same errors as the residual.
+/// @param prediction_mm  output of the model, one vector per record. The position is taken from this output,
+/// because a measured position contains the same errors as the residual.
 [[nodiscard]] std::vector<Condition> conditions_of(const std::vector<Record>& records,
                                                    const std::vector<std::vector<double>>& prediction_mm,
                                                    const Samples& samples);

@@ -19,12 +19,13 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_samples = 12000;
 constexpr std::size_t most_bins = 10;
-/// Smallest length of a block in correlation times of the residual, and smallest number of blocks.
+/// Smallest length of a block, as a multiple of the correlation time of the residual, and smallest number of
+/// blocks.
 constexpr double memories_per_block = 8;
 constexpr std::size_t fewest_blocks = 12;
 
-/// Returns the correlation time of the coloured part of the residual: the integral of the autocorrelation
-/// from the first lag on, divided by its value at the first lag.
+/// Returns the correlation time [s] of the residual without its white noise: the integral of the
+/// autocorrelation from the first lag on, divided by its value at the first lag.
 double memory_s(const Samples& samples, const std::vector<double>& residual, double interval_s) {
   const double mean =
       std::accumulate(residual.begin(), residual.end(), 0.0) / static_cast<double>(residual.size());
@@ -41,7 +42,8 @@ double memory_s(const Samples& samples, const std::vector<double>& residual, dou
   if (first < 4 / std::sqrt(static_cast<double>(residual.size()))) return interval_s;
   double sum = 0;
   const std::size_t furthest = residual.size() / fewest_blocks / 2;
-  // The step between lags grows with the lag, because the autocorrelation is smooth at large lags.
+  // The step from one lag to the next grows with the lag, because the autocorrelation is smooth at large
+  // lags.
   for (std::size_t lag = 1, step = 1; lag < furthest; lag += step) {
     const double r = correlation(lag) / first;
     if (r < 0.05) break;
@@ -68,7 +70,7 @@ std::vector<std::size_t> blocks_of(const Samples& samples, double block_s, std::
   return block;
 }
 
-/// Assigns each sample to a bin of a condition. none_bin: the sample belongs to no bin.
+/// Assigns each sample to a bin of a condition. A sample that belongs to no bin has the index none_bin.
 struct Binning {
   static constexpr std::size_t none_bin = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> bin;
@@ -167,8 +169,8 @@ Sums sums_of(const Binning& binning, const std::vector<double>& residual,
   return s;
 }
 
-/// Returns the sum of squares between bins. Before, the residuals of each block are multiplied by the sign of
-/// this block.
+/// Multiplies the residuals of each block by the sign of this block and returns the resulting sum of squares
+/// between bins.
 double between(const Sums& s, const std::vector<double>& counts, const std::vector<double>& sign,
                std::vector<double>& scratch) {
   scratch.assign(s.bins, 0.0);
@@ -198,8 +200,8 @@ double sign_flip_p(const Sums& s, std::uint64_t seed) {
   return static_cast<double>(as_large + 1) / static_cast<double>(limits::bootstrap_draws + 1);
 }
 
-/// Returns the amount by which the bin means predict the residual better than the overall mean [sum of
-/// squares]. For each block, both predictions are computed from the other blocks.
+/// Returns the reduction of the sum of squared prediction errors if each residual is predicted by the mean of
+/// its bin instead of the overall mean. For each block, both means are computed from the other blocks.
 double cross_validated_gain(const Sums& s) {
   std::vector<double> sum(s.bins), count(s.bins);
   for (std::size_t k = 0; k < s.bins; ++k) {
@@ -222,8 +224,8 @@ double cross_validated_gain(const Sums& s) {
       if (n == 0) continue;
       const double rest = count[k] - n;
       const double mean = rest > 0 ? (sum[k] - here) / rest : overall;
-      // The added value is the sum of (r - overall)^2 - (r - mean)^2 over the samples r in this bin of the
-      // block.
+      // The reduction in this bin of the block is the sum of (r - overall)^2 - (r - mean)^2 over its
+      // residuals r.
       gain += 2 * here * (mean - overall) + n * (square(overall) - square(mean));
     }
   }

@@ -1,13 +1,14 @@
 #pragma once
-// Determines from the residual of a model on which conditions its error depends. The tests are valid also if
-// adjacent errors are correlated.
+// Determines from the residual of a model on which conditions its error depends. The tests remain valid if
+// the errors of adjacent samples are correlated.
 //
-// The samples are divided into blocks that are longer than the correlation time of the residual. The interval
-// of the mean error under a condition is that of a mean of clusters (Liang and Zeger 1986). Differences
-// between these means are tested by random changes of the sign of whole blocks (wild bootstrap, Liu 1988). If
-// the error does not depend on the condition, both signs are equally likely. The test preserves the
-// correlation in a block and the variance of each block. The share of the variance that a condition explains
-// is cross-validated: the means that predict a block are computed from the other blocks.
+// The samples are divided into blocks that are longer than the correlation time of the residual. The
+// confidence interval of a mean error treats the blocks as clusters (Liang and Zeger 1986). Differences
+// between the mean errors in the bins of a condition are tested by random changes of the sign of whole blocks
+// (wild bootstrap, Liu 1988). If the error does not depend on the condition, both signs of a block are
+// equally likely. The test preserves the correlation in a block and the variance of each block. The share of
+// the variance that a condition explains is cross-validated: the means that predict a block are computed from
+// the other blocks.
 
 #include <cstddef>
 #include <cstdint>
@@ -37,9 +38,11 @@ struct ConditionBin {
 struct ConditionEvidence {
   Condition condition;  ///< the condition; its vector of values is empty
   std::vector<ConditionBin> bins;
-  /// Share of the variance above the noise that the condition explains on held-out blocks; 0 if negative.
+  /// Share of the residual variance above the noise that the condition explains on held-out blocks; at least
+  /// 0.
   double share_percent = 0;
-  /// Probability that chance alone makes the differences between the means so large.
+  /// Probability of differences between the bin means that are at least as large as the observed ones, if the
+  /// error does not depend on the condition.
   double p_value = 1;
   double p_adjusted = 1;  ///< p-value adjusted for the number of tested conditions (Holm 1979)
   bool clear = false;     ///< true: significant according to is_clear(p_adjusted, share_percent)
@@ -51,19 +54,21 @@ struct SpectrumEvidence {
   std::vector<double> density_mm2_per_hz;
   double peak_hz = 0;  ///< frequency of the most significant line in the spectrum
   double peak_amplitude_mm = 0;
-  double share_percent = 0;  ///< share of the variance above the noise that the line contains
-  double p_value = 1;  ///< probability that a smooth spectrum has such a line at any frequency (Bonferroni)
+  double share_percent = 0;  ///< share of the residual variance above the noise that this line contains
+  /// upper bound of the probability that a smooth spectrum has a line as significant as this one (Bonferroni)
+  double p_value = 1;
   std::string why_not;
 };
 
 /// Complete description of the residual of one model.
 struct ResidualEvidence {
   double rms_mm = 0;
-  double structure_mm = 0;  ///< square root of the part of the residual's variance that exceeds the noise
+  double structure_mm = 0;  ///< root mean square of the part of the residual that exceeds the noise
   double memory_s = 0;      ///< correlation time of the residual after subtraction of its white noise
   double block_s = 0;
   std::size_t blocks = 0;
-  /// Sorted by decreasing share; conditions that were not tested come last.
+  /// Results for all conditions. The condition with the largest share comes first, and conditions that were
+  /// not tested come last.
   std::vector<ConditionEvidence> conditions;
   SpectrumEvidence spectrum;
 };

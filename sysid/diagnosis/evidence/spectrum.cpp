@@ -23,7 +23,7 @@ constexpr std::size_t around = 40;
 /// Half the width of the main lobe of a Hann window plus a margin, in frequency bins.
 constexpr std::size_t lobe = 3;
 
-/// For each frequency of a common grid, the sum of |FFT(window * residual)|^2 over the records.
+/// Sum of |FFT(window * residual)|^2 over the records, for each frequency of a common grid.
 struct Periodogram {
   double step_hz = 0;
   double window_squares = 0;      ///< sum of the squared windows of all records
@@ -91,9 +91,9 @@ void add_curve(const Periodogram& p, SpectrumEvidence& evidence) {
   }
 }
 
-/// Returns the level of the spectrum near bin b, without the main lobe of the line in this bin. The spectrum
-/// of a model error is steep, so the level is the larger one of the medians on the two sides. Returns 0 if
-/// one side has too few bins.
+/// Returns the level of the spectrum around bin b, without the main lobe of the line in this bin. The
+/// spectrum of a model error is steep, so the level is the larger of two medians: below the line and above
+/// the line. Returns 0 if there are too few bins below or above the line.
 double level_around(const Periodogram& p, std::size_t b, std::size_t padding) {
   const std::size_t reach = around * padding, width = lobe * padding;
   std::vector<double> low, high;
@@ -136,8 +136,8 @@ void find_line(const Periodogram& p, const Periodogram& drive, double structural
   const double amplitude2 = 4 * std::max(0.0, p.power[at] - background) / p.window_mean_square;
   evidence.peak_amplitude_mm = std::sqrt(amplitude2);
   const auto lines = static_cast<double>(p.power.size()) / static_cast<double>(padding);
-  // For a single record, the ratio of a line to the mean level is exponentially distributed. For several
-  // records, large ratios are less likely, so the p-value is an upper bound.
+  // For a single record of noise, the ratio of the power in a bin to the mean level is exponentially
+  // distributed. For several records, large ratios are less likely, so this p-value is an upper bound.
   evidence.p_value = std::min(1.0, lines * std::exp(-strongest * std::numbers::ln2));
   if (structural_mm2 > 0)
     evidence.share_percent = std::clamp(100 * amplitude2 / 2 / structural_mm2, 0.0, 100.0);

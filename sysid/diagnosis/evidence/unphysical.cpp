@@ -12,8 +12,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A branch counts as having a stiffness near zero if the motion that it adds exceeds this multiple of the
-/// measured span.
+/// Limit of the motion of a creep branch, as a multiple of the measured span. If a branch adds a larger
+/// motion, its stiffness counts as near zero.
 constexpr double spans_of_a_branch = 3;
 
 void add_branches(const model::Model& model, const std::vector<Record>& records,

@@ -17,16 +17,16 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A larger separation than this value is counted as this value, because the result of the experiment is then
-/// practically certain.
+/// Largest separation that the ranking takes into account [standard deviations]. The result of an experiment
+/// with a larger separation is practically certain, so a further increase has no value.
 constexpr double certain_sigma = 40;
-/// Number of waveforms for which nonlinear fits confirm the separation.
+/// Number of the best waveforms whose separations are computed again with nonlinear fits.
 constexpr std::size_t confirmed = 2;
 constexpr double usual_slew_kpa_per_s = 300;
 /// Time [s] in which a rig comes to rest before an experiment starts.
 constexpr double rest_before_s = 10;
 
-/// A named cause of the verdict and its alternatives, which an experiment should separate.
+/// Competing explanations of the logs that an experiment should separate: a named cause and its alternatives.
 struct Contest {
   std::vector<Hypothesis> hypotheses;  ///< hypotheses; the first one contains the named cause
   std::vector<std::string> ids;
@@ -120,8 +120,8 @@ class Designer {
     add_contest(rest, alternatives, std::string(named.cause.id), d_.extended);
   }
 
-  /// Adds a comparison of the refitted model with the best rejected causes. It is used if the verdict names
-  /// no cause.
+  /// Adds a comparison of the refitted model with at most two rejected causes. It is used if the verdict
+  /// names no cause.
   void add_contest_of_rejected() {
     std::vector<Cause> alternatives;
     for (const CandidateScore& score : d_.rejected) {
@@ -144,8 +144,8 @@ class Designer {
     contests_.push_back(std::move(contest));
   }
 
-  /// Returns the waveform as a record that follows the last log. Conditions such as the temperature have the
-  /// values at the end of the last log.
+  /// Returns the waveform as a record that follows the last log. Conditions such as the temperature keep the
+  /// values that they have at the end of the last log.
   [[nodiscard]] Record record_of(const Waveform& waveform) const {
     const Record& last = d_.records.back();
     Record record;
@@ -174,7 +174,8 @@ class Designer {
 
   [[nodiscard]] double distance(const Record& record, const Pair& pair, Way way) const {
     const Contest& contest = contests_[pair.contest];
-    // No waveform separates these causes; a computed distance would only be due to the form of the blocks.
+    // No waveform separates these two causes, so their distance is 0. A computed distance would only show
+    // that their blocks have different equations.
     if (pair.indistinguishable) return 0;
     const auto from = [&](std::size_t truth, std::size_t alternative) {
       const std::vector<double> truth_mm = contest.hypotheses[truth].prediction(record);
@@ -209,8 +210,8 @@ class Designer {
   }
 
   /// Computes the separations of causes for the first `count` waveforms in `menu`.
-  /// @param way  linear, or with a refit. The refit is more accurate; its result replaces the linear result
-  /// only if it is smaller than the linear result.
+  /// @param way  linear approximation or nonlinear refit. The result of the refit replaces the linear result
+  /// if it is smaller than the linear result.
   void separate(std::size_t count, Way way) {
     parallel_for(count * pairs_.size(), options_.threads, [&](std::size_t job) {
       JudgedWaveform& judged = result_.menu[job / pairs_.size()];
@@ -220,7 +221,7 @@ class Designer {
     });
   }
 
-  /// Ranks the waveforms by the squared separation per minute. The squared separations of repeated
+  /// Ranks the waveforms by the squared separation per minute, because the squared separations of repeated
   /// experiments add up.
   void rank() {
     for (JudgedWaveform& judged : result_.menu) {

@@ -1,7 +1,7 @@
 #pragma once
 // Designs the next experiment. Several causes may explain the logs equally well; the waveform that best
-// separates these alternatives is selected. Before two alternatives are compared, each of them is refitted to
-// the prediction of the other one.
+// separates these causes is selected. To compare two causes, the response with one cause is predicted, and
+// the model with the other cause is refitted to this response.
 
 #include <optional>
 #include <string>
@@ -20,7 +20,7 @@ struct ExperimentOptions {
   /// True: if the verdict lists no alternatives, the experiment compares the verdict with the best rejected
   /// candidates.
   bool always = false;
-  /// True: the rig can record the measured pressure. The advice uses this if the logs do not contain it.
+  /// True: the pressure is recorded. If false, the advice may propose to record the pressure.
   bool pressure_recorded = false;
   double most_minutes = 10;
   /// Names of waveforms that the rig has already executed. They are not proposed.
@@ -32,13 +32,13 @@ struct ExperimentOptions {
 struct Separation {
   std::string one;
   std::string other;
-  /// Distance in standard deviations of the noise: the root of the sum of squared differences that remain
-  /// after a refit. The correlation of the noise is taken into account. There are two cases: `one` is true
-  /// and `other` is refitted, or `other` is true and `one` is refitted. The smaller distance is used.
+  /// Distance of the two responses in standard deviations of the noise. The correlation of the noise is taken
+  /// into account. The distance is computed twice: once, the structure `one` is true and `other` is refitted
+  /// to its response; once, `other` is true and `one` is refitted. This member is the smaller distance.
   double sigma = 0;
 };
 
-/// A waveform that an experiment can apply, with the separations of causes that are predicted for it.
+/// A waveform that an experiment can apply, and the predicted separation of each pair of causes.
 struct JudgedWaveform {
   Waveform waveform;
   double minutes = 0;  ///< duration of the waveform and of the rest before it
@@ -46,10 +46,10 @@ struct JudgedWaveform {
   double merit = 0;  ///< sum of the squared separations, divided by `minutes`
 };
 
-/// A proposed check of the sensor at known positions. It can separate alternatives that no waveform
-/// separates, if their sensors differ in shape.
+/// A proposed check of the sensor at known positions. It can separate causes that no waveform separates if
+/// these causes imply different static shapes of the sensor.
 struct ProposedGaugeCheck {
-  /// Positions in the order in which the sensor is read there.
+  /// Positions at which the sensor is to be read, in this order.
   std::vector<double> positions_mm;
   model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of `positions_mm`
   std::vector<std::string> separates;                     ///< ids of the causes that the check separates
@@ -63,10 +63,10 @@ struct NextExperiment {
   /// Smallest separation of all pairs of causes that `best` separates.
   double predicted_separation_sigma = 0;
   std::vector<JudgedWaveform> menu;  ///< all waveforms that were evaluated
-  /// Absent if a gauge check separates no causes or was already made.
+  /// Proposed gauge check; not set if a gauge check separates no causes or was already made.
   std::optional<ProposedGaugeCheck> gauge_check;
-  /// Advice on actions that no waveform can replace, such as recording a column or changing a load. Each
-  /// element is one or more sentences.
+  /// Advice on actions that supplement the waveform, such as recording a further column or changing the load.
+  /// Each element is one or more sentences.
   std::vector<std::string> advice;
 };
 
@@ -74,7 +74,7 @@ struct NextExperiment {
 /// proposed.
 inline constexpr const char* gauge_positions_file = "gauge_positions.csv";
 
-/// Two causes count as distinguishable from this separation on.
+/// Smallest separation [standard deviations] at which two causes count as distinguishable.
 inline constexpr double separation_needed_sigma = 5;
 
 /// Designs the next experiment for a diagnosis. If the verdict requires no experiment, the result contains no

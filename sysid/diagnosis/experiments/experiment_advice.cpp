@@ -18,7 +18,7 @@ constexpr const char* vary_temperature =
     "add a temperature_c column and repeat the run at a different temperature: if the gain depends on the "
     "temperature, the cause is not wear or drift";
 
-/// Returns advice on the separation of two causes that no waveform can separate.
+/// Returns advice on how to separate two causes that no waveform can separate.
 std::string instead_of_waveform(const Cause& one, const Cause& other, const std::string& names,
                                 bool gauge_made) {
   if (has(one, Advice::change_load) && has(other, Advice::change_load)) {

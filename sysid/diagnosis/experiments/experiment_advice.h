@@ -14,8 +14,8 @@ struct AdviceFacts {
   bool gauge_made = false;  ///< true: the sensor was already checked against a gauge
 };
 
-/// Returns advice on the separation of two causes, given by their ids. Each element is a sentence. The list
-/// is empty if a waveform separates the causes.
+/// Returns advice on how to separate the causes with the ids `one` and `other`. Each element is a sentence.
+/// The list is empty if a waveform separates the causes.
 [[nodiscard]] std::vector<std::string> advice_for(std::string_view one, std::string_view other,
                                                   const AdviceFacts& facts);
 

@@ -15,8 +15,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// This share of the information on a parameter is added to its diagonal element. The system of equations can
-/// then be solved even if the data contain no information on some combination of parameters.
+/// Each diagonal element of the information matrix is increased by this share of its value. The system of
+/// equations can then be solved even if the data contain no information on some combination of parameters.
 constexpr double ridge = 1e-9;
 constexpr FitEffort few_iterations{.most_iterations = 10, .tolerance = 1e-6};
 

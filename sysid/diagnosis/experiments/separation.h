@@ -10,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// A structure that may be true, with the information of the existing records on its parameters.
+/// A model structure that may be true, with the information of the existing records on its parameters.
 class Hypothesis {
  public:
   /// `records` must outlive this object.
@@ -19,12 +19,13 @@ class Hypothesis {
   [[nodiscard]] const StructureFit& fit() const noexcept { return fit_; }
   /// Returns the prediction for a record that starts from rest.
   [[nodiscard]] std::vector<double> prediction(const Record& record) const;
-  /// Returns the distance from the prediction of this hypothesis to `truth_mm`, in standard deviations of the
-  /// noise. `truth_mm` is the prediction of another hypothesis for `record`. Before, the parameters are
-  /// fitted to `truth_mm` as far as the existing records permit. The model is linearised.
+  /// Returns the distance between `truth_mm` and the prediction of this hypothesis, in standard deviations of
+  /// the noise. `truth_mm` is the prediction of another hypothesis for `record`. The parameters of this
+  /// hypothesis are first fitted to `truth_mm` as far as the existing records permit. The fit uses a
+  /// linearised model.
   [[nodiscard]] double linear_distance(const Record& record, const std::vector<double>& truth_mm) const;
-  /// Returns the distance of linear_distance() after a few nonlinear iterations of a fit to the existing
-  /// records and the new record.
+  /// Returns the same distance as linear_distance(), but with a few iterations of a nonlinear fit to the
+  /// existing records and the new record.
   [[nodiscard]] double refitted_distance(const Record& record, const std::vector<double>& truth_mm) const;
 
  private:
@@ -36,8 +37,8 @@ class Hypothesis {
   Eigen::MatrixXd information_;
 };
 
-/// Returns the innovations of a series, divided by their standard deviation. They are white noise if the
-/// noise model is correct.
+/// Returns the innovations of `series`, divided by their standard deviation. The innovations are white noise
+/// if the noise model is correct.
 [[nodiscard]] std::vector<double> whitened(const std::vector<double>& series, const NoiseModel& noise);
 
 }  // namespace softgrip::sysid

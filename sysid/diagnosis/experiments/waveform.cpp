@@ -7,10 +7,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Share of the slew limit of the rig that a waveform uses. If a command reaches the limit, the rig changes
-/// its shape.
+/// Share of the slew limit of the rig that a waveform uses. If a command reached the slew limit, the rig
+/// would change the shape of the command.
 constexpr double slew_share = 0.9;
-/// Rest before and after a waveform [s]. The log then contains the complete first and last motion.
+/// Time at zero pressure before and after a waveform [s]. With it, the log contains the complete first and
+/// last motion.
 constexpr double lead_s = 1;
 constexpr double tail_s = 5;
 

@@ -17,10 +17,9 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Distance of the lower clipping limit from the lowest reading of the logs, and of the upper limit from the
-/// highest reading. One value is a share of the range of the readings, the other a number of standard
-/// deviations of the noise. The distance is large enough to distinguish a sensor that saturates from a sensor
-/// that does not.
+/// Distance of a clipping limit from the nearest extreme reading of the logs: the larger of this share of the
+/// range of the readings, and this number of standard deviations of the noise. The distance is large enough
+/// to distinguish a sensor that saturates from a sensor that does not.
 constexpr double beyond_share = 0.05;
 constexpr double beyond_noise = 10;
 
@@ -203,8 +202,8 @@ class Checker {
     return chi_square(fit, tolerance_mm) <= chi_square_limit(freedom);
   }
 
-  /// Compares every hypothesis with the most likely one. A share of the difference between the two is
-  /// tolerated.
+  /// Compares every hypothesis with the most likely hypothesis. Part of the difference between their
+  /// predictions is tolerated in addition to the noise.
   void compare() {
     std::vector<GaugeFit>& fits = result_.fits;
     const auto likelier = [](const GaugeFit& a, const GaugeFit& b) { return a.rms_mm < b.rms_mm; };

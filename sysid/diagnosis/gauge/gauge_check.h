@@ -59,7 +59,8 @@ struct GaugeFit {
   double tolerance_mm = 0;
   bool explains = false;  ///< true: the hypothesis explains the gauge readings
   bool ruled_out = false;
-  /// Logarithm of the ratio: likelihood of the most likely hypothesis / likelihood of this hypothesis.
+  /// Logarithm of a likelihood ratio: the likelihood of the most likely hypothesis divided by the likelihood
+  /// of this hypothesis.
   double behind = 0;
 };
 
@@ -69,8 +70,8 @@ enum class GaugeOutcome {
   /// Several hypotheses explain the readings. The readings are too noisy, or they are not at the positions
   /// where the hypotheses differ.
   undecided,
-  /// No hypothesis explains the readings. A hypothesis that is much less likely than another one may still be
-  /// ruled out.
+  /// No hypothesis explains the readings. A hypothesis may still be ruled out if it is much less likely than
+  /// another hypothesis.
   unexplained,
   /// The readings cover less than half of the range of the logs, so no hypothesis is tested.
   uncovered,
@@ -82,7 +83,7 @@ struct GaugeCheck {
   double lower_mm = 0;         ///< lower limit at which readings are clipped
   double upper_mm = 0;         ///< upper limit at which readings are clipped
   std::vector<double> cut_mm;  ///< gauge readings after they were clipped at these limits
-  /// Share of the range of the readings in the logs that the gauge readings cover.
+  /// Part of the range of the logged readings that the gauge readings cover, from 0 to 1.
   double covered_share = 0;
   double repeat_noise_mm = 0;  ///< scatter of repeated readings at one position; 0: no position was repeated
   double noise_mm = 0;         ///< standard deviation of the noise that the test assumes for a reading

@@ -15,7 +15,7 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::size_t most_bytes = std::size_t{16} * 1024 * 1024;
-/// Two positions count as equal if their distance is at most this value.
+/// Largest distance of two positions that count as equal.
 constexpr double same_mm = 1e-6;
 constexpr double beyond = 1.3;
 constexpr std::size_t fewest_planned = 9;
@@ -155,7 +155,7 @@ class GaugeReader {
   std::vector<GaugeReading> readings_;
 };
 
-/// Returns the largest round step that gives enough positions in the span.
+/// Returns the largest round step with which the span contains at least `fewest_planned` positions.
 double round_step(double span) {
   const double most = span / static_cast<double>(fewest_planned - 1);
   const double decade = std::pow(10.0, std::floor(std::log10(most)));

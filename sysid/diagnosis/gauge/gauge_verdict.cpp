@@ -15,7 +15,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A possible cause at one position of the selection. Each position is one named cause.
+/// One of the causes between which a gauge check decides: a named cause or a cause that may replace it.
 struct Standing {
   Cause cause;
   StructureFit fit;
@@ -23,9 +23,10 @@ struct Standing {
   bool implied = false;
 };
 
-/// A possible explanation of the logs, which contains one cause for each position.
+/// A possible explanation of the logs. For each named cause, it contains this cause or a replacement.
 struct Explanation {
-  std::vector<std::size_t> standing;  ///< for each position, the index of one of its possible causes
+  /// for each named cause, the index of the cause that is used: the named cause or a replacement
+  std::vector<std::size_t> standing;
   std::size_t shape = 0;
 };
 
@@ -97,8 +98,8 @@ class Weighing {
     return fit_without_cause(data_.records, selection_.extended, selection_.chosen[place].cause);
   }
 
-  /// Lists every combination of possible causes with one cause per position, and the resulting sensor shape.
-  /// @param with_implied  true: include implied causes.
+  /// Lists every combination in which each named cause is kept or replaced, and the resulting sensor shapes.
+  /// @param with_implied  true: include replacements that the logs do not list as alternatives.
   void explain(bool with_implied) {
     std::vector<std::size_t> at(places_.size(), 0);
     explanations_.clear();
@@ -140,7 +141,8 @@ class Weighing {
     return shapes_.size() - 1;
   }
 
-  /// Returns true if the gauge readings permit an explanation with this cause at this position.
+  /// Returns true if at least one explanation with this cause is not ruled out by the gauge readings.
+  /// @param place  index of the named cause. @param standing  index of the cause that is used for it.
   [[nodiscard]] bool survives(std::size_t place, std::size_t standing) const {
     return std::any_of(explanations_.begin(), explanations_.end(), [&](const Explanation& e) {
       return e.standing[place] == standing && !evidence_.check.fits[e.shape].ruled_out;
@@ -174,8 +176,8 @@ class Weighing {
     replace(now);
   }
 
-  /// Updates the alternatives at a position to those that the gauge readings permit. If the gauge check has
-  /// added the first cause, the cause that the logs named becomes an alternative to this cause.
+  /// Reduces the alternatives of a named cause to those that the gauge readings permit. If the gauge check
+  /// has put a new cause first, the cause that the logs named becomes an alternative to the new cause.
   void keep(std::size_t place, const std::vector<std::size_t>& left, bool brought_in) {
     ChosenCause& chosen = selection_.chosen[place];
     const std::vector<Standing>& standing = places_[place];
@@ -338,8 +340,8 @@ class Weighing {
     }
   }
 
-  /// Adds alternatives if the sensor is nonlinear but no named cause describes this. Each named cause with a
-  /// nonlinearity in another component gets the sensor causes as alternatives.
+  /// Adds alternatives if the sensor is nonlinear but no named cause describes this nonlinearity. A named
+  /// cause with a nonlinearity in another component gets the sensor causes as alternatives.
   void add_sensor_alternatives() {
     for (ChosenCause& chosen : selection_.chosen) {
       if (!chosen.alternatives.empty() || chosen.cause.is_static_sensor()) continue;

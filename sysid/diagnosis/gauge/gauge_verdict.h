@@ -35,7 +35,8 @@ struct GaugeQuestion {
 /// Returns the noise and the range of the readings in the logs.
 [[nodiscard]] GaugeScales gauge_scales(const std::vector<Record>& records, double noise_mm);
 
-/// Tests the hypotheses of a selection with the gauge readings and changes the selection accordingly.
+/// Tests the hypotheses of a selection with the gauge readings. Removes or replaces the causes that the
+/// readings rule out.
 /// @param warnings  list to which warnings for the verdict are added.
 [[nodiscard]] GaugeEvidence weigh_gauge(const GaugeQuestion& question, const SearchData& data,
                                         const Division& division, Selection& selection,

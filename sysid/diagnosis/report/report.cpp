@@ -35,7 +35,8 @@ Tone tone_of(Verdict verdict) {
 /// Maximum number of parameters per cause that the first part of the report lists.
 constexpr std::size_t parameters_shown = 6;
 
-/// Returns the entries that state the data of the diagnosis. The hashes of the logs are in the appendix.
+/// Returns a list of terms that describes the data of the diagnosis. The hashes of the logs are in the
+/// appendix.
 Terms looked_at(const DiagnosisReport& report) {
   const Diagnosis& d = report.result;
   std::size_t samples = 0;

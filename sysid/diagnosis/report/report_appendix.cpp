@@ -18,7 +18,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Maximum number of logs for which the report contains figures, including the log in its first part.
+/// Maximum number of logs for which the report contains figures. It includes the log that the first part of
+/// the report shows.
 constexpr std::size_t logs_shown = 3;
 
 void add_other_logs(Page& page, const Diagnosis& d) {

@@ -31,9 +31,9 @@ std::string amount(double mm2, double whole_mm2, model::OutputUnit unit) {
   return square_text(mm2, unit) + ", " + fixed(100 * mm2 / whole_mm2, 1) + " %";
 }
 
-/// Draws the error of the given model as a bar. A second bar below it shows a marked part of the first bar
-/// enlarged. Returns the top of the second bar. The space above the second bar, between the connecting lines,
-/// is for its title.
+/// Draws the error of the given model as a bar. A second bar below it shows the error after the refit at a
+/// larger scale. Returns the vertical position of the top of the second bar. The title of the second bar is
+/// placed above the second bar, between the connecting lines.
 double given_bar(Canvas& canvas, const Budget& budget, model::OutputUnit unit, double top) {
   const double kept = std::clamp(budget.recalibrated / budget.as_given, 0.0, 1.0);
   const double split = right - kept * (right - left);

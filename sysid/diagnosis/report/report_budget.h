@@ -1,5 +1,5 @@
 #pragma once
-// Draws the error budget, which divides the error of the given model into its parts down to the noise.
+// Draws the error budget: the parts of the mean square error of the given model, including the noise.
 
 #include <string>
 #include <vector>

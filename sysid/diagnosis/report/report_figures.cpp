@@ -35,7 +35,8 @@ std::vector<Shown> shown(const Diagnosis& d) {
 const StructureFit& final_fit(const Diagnosis& d) {
   return is_extended(d) ? d.extended : d.recalibrated;
 }
-/// Returns the fit of the model with which the figures compare the final model.
+/// Returns the fit with which the figures compare the final model: the recalibrated model if the diagnosis
+/// extended the model, otherwise the given model.
 const StructureFit& first_fit(const Diagnosis& d) {
   return is_extended(d) ? d.recalibrated : d.as_given;
 }
@@ -80,8 +81,9 @@ std::vector<double> prediction(const StructureFit& fit, const Record& record, st
   return predict(fit.point.model, record, fit.point.starts[k]);
 }
 
-/// Returns a window around the sample at which the first and the final model differ most. The window covers a
-/// tenth of the pressure range. Its height is large enough to show the difference between the models.
+/// Returns a window around the sample at which the predictions `first` and `final` differ most. The window
+/// covers a tenth of the pressure range. Its height is large enough to show the difference between the
+/// predictions.
 Window window_of(const Record& record, const std::vector<double>& first, const std::vector<double>& final) {
   std::size_t at = 0;
   double most = 0;
@@ -280,7 +282,7 @@ Figure closed_loop_figure(const ClosedLoopCurves& curves) {
   values.series.push_back(curve("reference", Colour::measured, 2.4, curves.time_s, curves.reference_mm));
   std::string numbers;
   for (const ClosedLoopCurves::Scheme& scheme : curves.schemes) {
-    // A model has the same line style in all figures, including figures that do not show all models.
+    // A model has the same line style in all figures, even if a figure does not show all models.
     const bool extended = scheme.name.starts_with("extended");
     const bool recalibrated = scheme.name.starts_with("recalibrated");
     const Colour colour = extended ? Colour::good : recalibrated ? Colour::model : Colour::other;

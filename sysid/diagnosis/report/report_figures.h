@@ -12,17 +12,18 @@
 
 namespace softgrip::sysid {
 
-/// Returns the indices of the logs in the order of decreasing error reduction. The reduction is computed for
-/// the extended model or, if there is no extended model, for the recalibrated model.
+/// Returns the indices of the logs in the order of decreasing error reduction. This is the reduction by the
+/// extended model or, if there is no extended model, by the recalibrated model.
 [[nodiscard]] std::vector<std::size_t> logs_by_gain(const Diagnosis& diagnosis);
 /// Returns true if the pressure changes during at least 10 % of the time. Otherwise the log contains only
 /// pressure steps, and a plot over the pressure shows no loops.
 [[nodiscard]] bool has_loops(const Record& record);
-/// Returns the index of the first log in the order of logs_by_gain() for which has_loops() is true.
+/// Returns the index of the log that comes first in logs_by_gain() and has loops (has_loops()). Returns
+/// nullopt if no log has loops.
 [[nodiscard]] std::optional<std::size_t> first_with_loops(const Diagnosis& diagnosis);
 
-/// Returns the measured and the predicted displacement over time. A second chart with the same time axis
-/// shows the errors of two models, before and after the extension or refit.
+/// Returns two charts with the same time axis. The first chart shows the measured and the predicted
+/// displacement. The second one shows the errors of two models, before and after the extension or refit.
 [[nodiscard]] Figure error_figure(const Diagnosis& diagnosis, std::size_t record);
 /// Returns the error of each available model on each run. The models were fitted to the other runs.
 [[nodiscard]] Figure runs_figure(const Diagnosis& diagnosis);

@@ -26,7 +26,7 @@ constexpr double top_px = 34;
 struct Row {
   std::string name;
   bool alternative = false;
-  /// Error reduction; nullptr: no command separates this cause from the cause in the row above.
+  /// Error reduction by the cause; nullptr: no command separates this cause from the cause in the row above.
   const Spread* gain = nullptr;
   double inclusion = 0;
 };

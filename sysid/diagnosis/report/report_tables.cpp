@@ -39,9 +39,9 @@ std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double
          significant(chosen_rmse_mm, 3) + " " + std::string(model::name_of(unit));
 }
 
-/// Returns a table of the candidates with their errors and the reason why each was rejected.
-/// @param chosen  cause in whose place the candidates were tested; nullptr: they were tested as an additional
-/// cause.
+/// Returns a table of the candidates with their errors and the reason why each candidate was rejected.
+/// @param chosen  cause that the candidates were tested to replace; nullptr: they were tested as an
+/// additional cause.
 Table candidate_table(const std::vector<CandidateScore>& candidates, const NamedCause* chosen,
                       double chosen_rmse_mm, model::OutputUnit unit, std::string caption) {
   Table table;

@@ -18,13 +18,13 @@ namespace softgrip::sysid {
 /// Returns a table with one row per condition. For each available model, it states the share of the residual
 /// variance that the condition explains, and the p-value.
 [[nodiscard]] Table condition_table(const Evidence& evidence, bool extended);
-/// Returns one table per cause with the candidates that were tested in its place. The last table contains the
-/// candidates that were tested as an additional cause.
+/// Returns one table per cause with the candidates that were tested as its replacement. The last table
+/// contains the candidates that were tested as an additional cause.
 [[nodiscard]] std::vector<Table> candidate_tables(const Diagnosis& diagnosis);
 /// Returns the errors of the models on each run. The models were fitted to the other runs.
 [[nodiscard]] Table run_table(const Diagnosis& diagnosis);
-/// Returns the causes that the first part of the report shows: the named causes, and partial explanations
-/// whose error reduction has an interval that excludes zero.
+/// Returns the causes that the first part of the report shows. These are the named causes, and the partial
+/// explanations whose error reduction is significantly above zero.
 [[nodiscard]] std::vector<const NamedCause*> shown_causes(const Diagnosis& diagnosis);
 /// Returns the parameters of the shown causes with their intervals. If a cause has more than `most`
 /// parameters, the table lists only the first ones that have an interval.

@@ -33,16 +33,17 @@ double measured_noise_mm(const std::vector<Record>& records) {
   constexpr double inflation = 20.0;
   std::vector<double> sizes;
   for (const Record& record : records) {
-    // Third differences are computed from consecutive readings. If the sensor is slower than the log, four
-    // adjacent samples that all have a reading are rare.
+    // If the sensor is slower than the log, third differences are computed from consecutive readings, and
+    // gaps between readings are ignored. Four adjacent samples that all have a reading are rare in such a
+    // log.
     const std::vector<double> readings = readings_alone(record.reading_mm);
     const bool is_slow = 5 * readings.size() < 4 * record.reading_mm.size();
     add_third_differences(is_slow ? readings : record.reading_mm, sizes);
   }
   if (sizes.empty()) return 0;
-  // The median of quantised readings has a coarse resolution, so it is not the estimate. It only defines a
-  // limit that excludes wrong samples and corners of the motion. A limit of 4 standard deviations removes 0.1
-  // % of the variance of a normal distribution.
+  // The median of quantised readings has a coarse resolution, so the noise is not estimated from the median.
+  // The median only defines a limit that excludes wrong samples and corners of the motion. A limit of 4
+  // standard deviations removes 0.1 % of the variance of a normal distribution.
   std::vector<double> sorted = sizes;
   const double bound = 4 * median_of(std::span(sorted)) / 0.6745;
   double sum = 0;
@@ -81,10 +82,10 @@ UnexplainedError unexplained_error_of(const std::vector<std::vector<double>>& re
     if (pairs[lag] > 0) sum += product[lag] / pairs[lag] / mean_square;
   }
   structure.slow_correlation = sum / lags;
-  // The mean autocorrelation of white noise over 25 lags has a standard deviation of 1/sqrt(25 n). A
-  // correlation below 1 % of the variance is not reported, even if it is significant. A mean square above
-  // that of the noise also counts as unexplained error if their difference exceeds the uncertainty of the
-  // noise.
+  // The mean autocorrelation of white noise over 25 lags has a standard deviation of 1/sqrt(25 n) for n
+  // readings. A correlation below 1 % of the variance is not reported, even if it is significant. A residual
+  // without correlation also counts as unexplained error if its mean square exceeds the noise variance by
+  // more than the uncertainty of this variance.
   const double known_to = 4 * std::sqrt(6.0 / static_cast<double>(count));
   structure.present = structure.slow_correlation >
                           limits::negligible_share + 4 / std::sqrt(lags * static_cast<double>(count)) ||

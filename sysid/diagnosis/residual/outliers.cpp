@@ -24,20 +24,22 @@ double neighbours_median(const std::vector<double>& y, std::size_t i) {
   return 0.5 * (near[1] + near[2]);
 }
 
-/// Returns the change of the reading across its neighbours. With this change, a reading in a fast motion is
-/// not taken for an outlier.
+/// Returns the change of the reading from the two samples before sample `i` to the two samples after it. A
+/// reading in a fast motion deviates from its neighbours because of this change, so it does not count as an
+/// outlier.
 double motion(const std::vector<double>& y, std::size_t i) {
   return std::abs(0.5 * (y[i + 1] + y[i + 2]) - 0.5 * (y[i - 1] + y[i - 2]));
 }
 
-/// Largest distance between a reading and its neighbours in samples, and smallest number of neighbours on
-/// each side.
+/// `reach`: largest distance of a neighbour from its reading, in samples. `fewest_neighbours`: smallest
+/// number of neighbours on each side.
 constexpr std::size_t reach = 3;
 constexpr std::size_t fewest_neighbours = 2;
 /// A reading is isolated if its distance from the median of its neighbours exceeds this multiple of the
 /// spread of the neighbours.
 constexpr double alone = 4.0;
-/// Uncertainty of a time in samples, due to clocks, latencies and the corners of a motion.
+/// Uncertainty of the time of a reading, in samples. It is due to clocks, latencies and the corners of a
+/// motion.
 constexpr double timing_samples = 1.5;
 
 /// Median and spread of the neighbours of a reading or residual. The spread is the second largest distance
@@ -149,8 +151,9 @@ Readings readings_of(const Record& record) {
   return readings;
 }
 
-/// Tests the first and the last readings of a record, which have too few neighbours for the other test. A
-/// reading of 0 is never an outlier here, because a log may begin with the last readings before a step.
+/// Hides the first and the last readings of a record that are far from all other readings. They have too few
+/// neighbours for a comparison with neighbours. A reading of 0 is never hidden here, because a log may begin
+/// with the last readings before a step.
 void hide_far_ends(Record& record, OutlierEvidence& evidence) {
   constexpr std::size_t ends = 2;
   constexpr double far_outside = 3;

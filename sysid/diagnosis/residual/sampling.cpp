@@ -10,14 +10,15 @@
 namespace softgrip::sysid {
 namespace {
 
-/// If a sensor has a fine resolution, its smallest changes are below this share of its typical change.
+/// Share that identifies a sensor with a fine resolution: its smallest changes are below this share of its
+/// typical change.
 constexpr double fine_share = 0.25;
 /// The reading counts as frozen in an interval under two conditions. The interval is at least `frozen_ratio`
 /// times as long as the 95 % quantile of the intervals of equal readings. The drive changes in the interval
 /// by at least `moved_share` of its range.
 constexpr double frozen_ratio = 5, moved_share = 0.1;
 
-/// An interval of equal consecutive readings. `samples` contains the samples that its indices refer to.
+/// An interval of equal consecutive readings. Its indices refer to the vector `samples`.
 struct Stretch {
   std::size_t first = 0, length = 0;
 };

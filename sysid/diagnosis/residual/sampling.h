@@ -12,8 +12,8 @@ namespace softgrip::sysid {
 struct SamplingEvidence {
   double interval_s = 0;  ///< median time between new readings; 0: each sample is a new reading
   double frozen_s = 0;    ///< total time in which the reading is frozen while the drive moves
-  /// Root mean square, over all readings, of the distance between repeated readings and a line through the
-  /// new readings.
+  /// Root mean square of the deviation of repeated readings from a line through the new readings, averaged
+  /// over all readings.
   double excess_mm = 0;
   std::size_t hidden = 0, readings = 0;
   bool present = false;  ///< true: `excess_mm` exceeds a quarter of the noise

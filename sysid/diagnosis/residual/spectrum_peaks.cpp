@@ -43,9 +43,9 @@ std::vector<Complex> on_one_grid(const std::vector<Record>& records,
   return x;
 }
 
-/// Returns every local maximum of the spectrum as a pair: ratio to the median of its neighbourhood, and bin.
-/// The largest ratio comes first. Slow model errors have no large ratio, because their neighbourhood is high
-/// too.
+/// Returns two numbers for every local maximum of the spectrum: the ratio of its power to the median power in
+/// its neighbourhood, and its bin. The largest ratio comes first. Slow model errors have no large ratio,
+/// because the power in their neighbourhood is large too.
 std::vector<std::pair<double, std::size_t>> peaks_of(const std::vector<double>& power, std::size_t lowest) {
   std::vector<std::pair<double, std::size_t>> peaks;
   std::vector<double> near;

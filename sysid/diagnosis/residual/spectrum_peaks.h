@@ -1,5 +1,6 @@
 #pragma once
-// Finds start points of a fit for the search for a sustained oscillation.
+// Finds the strongest lines in the spectrum of a residual. The search for a sustained oscillation starts its
+// fits at these lines.
 
 #include <algorithm>
 #include <cstddef>

@@ -7,8 +7,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Largest permitted ratio of two unexplained mean squares: that of the model with the causes, and that of
-/// the refitted model.
+/// Largest permitted unexplained mean square of the model with the causes, as a share of the unexplained mean
+/// square of the refitted model without causes.
 constexpr double may_be_left = 0.15;
 /// A stricter limit for an error that is clearly above the noise. The data are then sufficient to fit the
 /// complete cause, so a large remaining error has another source. A smaller remaining error may be due to the

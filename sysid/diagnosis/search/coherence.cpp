@@ -34,7 +34,7 @@ double explained_share(const std::vector<Record>& records, const StructureFit& f
   return variance > 0 ? 1 - fit.mean_square_mm2 / variance : 0;
 }
 
-/// Returns the ratio of two motions of a log: the measured motion and the motion that a model predicts.
+/// Returns the ratio of the measured motion of a log to the motion that a model predicts.
 double relative_gain(const Record& record, const std::vector<double>& prediction_mm) {
   double count = 0, p = 0, y = 0, pp = 0, py = 0;
   for (std::size_t i = 0; i < record.size(); ++i) {

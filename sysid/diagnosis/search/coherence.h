@@ -1,5 +1,5 @@
 #pragma once
-// Tests whether a model fits the logs at all, and whether one model can fit all logs.
+// Tests whether a model can explain the logs, and whether one model can fit all logs together.
 
 #include <optional>
 #include <string>

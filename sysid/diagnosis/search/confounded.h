@@ -1,6 +1,6 @@
 #pragma once
 // Fits causes that can absorb part of the effect of a selected cause (Cause::confounded_with), and tests
-// whether the data require each of them.
+// whether the data require each of these causes.
 
 #include <vector>
 
@@ -9,15 +9,17 @@
 
 namespace softgrip::sysid {
 
-/// A structure with one additional cause. This cause is confounded with another cause of the structure.
+/// A structure to which one cause was added. The added cause is confounded with another cause of the
+/// structure.
 struct Confounded {
   Cause cause;
   StructureFit fit;
   BlockLosses losses;  ///< losses on held-out blocks
 };
 
-/// Fits the structure with one more cause, for each cause that is confounded with a cause of the structure
-/// but is not part of the structure. Each fit changes all parameters together.
+/// Adds each cause that is confounded with a cause of the structure, one at a time, and fits the resulting
+/// structure. Each fit changes all parameters together. Causes that are already part of the structure are not
+/// added.
 [[nodiscard]] std::vector<Confounded> fit_confounded(const SearchData& data, const StructureFit& structure,
                                                      const Division& division);
 

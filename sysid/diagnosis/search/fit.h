@@ -36,7 +36,7 @@ struct FitEffort {
 [[nodiscard]] std::vector<std::size_t> fitted_indices(const model::Model& model,
                                                       const std::vector<Cause>& causes);
 
-/// Returns the fit space of this structure. The forms of the causes define its ranges.
+/// Returns the fit space of this structure. The forms of the causes define the ranges of their parameters.
 [[nodiscard]] FitSpace structure_space(const std::vector<Record>& records, const model::Model& model,
                                        const std::vector<Cause>& causes);
 
@@ -49,7 +49,7 @@ struct FitEffort {
 [[nodiscard]] StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause> causes,
                                          const FitPoint& from, const FitEffort& effort = {});
 
-/// Evaluates the structure at this point, without a fit.
+/// Evaluates the structure at `point` without a fit.
 [[nodiscard]] StructureFit evaluate_structure(const std::vector<Record>& records, std::vector<Cause> causes,
                                               const FitPoint& point);
 
@@ -57,8 +57,8 @@ struct FitEffort {
 [[nodiscard]] StructureFit fit_starts(const std::vector<Record>& records, std::vector<Cause> causes,
                                       const FitPoint& point);
 
-/// Returns the records after the effects of these causes were subtracted from the readings. The effects are
-/// those in the model of `point`.
+/// Subtracts the effects of these causes from the readings and returns the resulting records. The effects are
+/// computed with the model of `point`.
 [[nodiscard]] std::vector<Record> without_effects(std::vector<Record> records, const FitPoint& point,
                                                   const std::vector<Cause>& causes);
 

@@ -30,7 +30,7 @@ BlockLosses held_out_losses(const std::vector<Record>& records, const Division& 
 BlockLosses left_out_losses(const std::vector<Record>& records, const Division& by_unit,
                             const StructureFit& fit) {
   return held_out_losses(records, by_unit, [&](const std::vector<Record>& rest) {
-    // If the other units contain no readings, no fit is possible.
+    // If only the unit that is left out contains readings, no fit is possible.
     const bool is_fitted =
         std::any_of(rest.begin(), rest.end(), [](const Record& r) { return r.readings > 0; });
     FitPoint point = is_fitted ? fit_structure(rest, fit.causes, fit.point, refit).point : fit.point;

@@ -14,17 +14,17 @@ namespace softgrip::sysid {
 /// rarely longer.
 inline constexpr double block_length_s = 8;
 
-/// Returns the loss of each block. The structure is refitted without the fold of this block. The initial
-/// states of the records are those in `fit`.
+/// Returns the loss of each block. For each block, the structure is refitted to all folds except the fold of
+/// this block. The initial states of the records are those in `fit`.
 [[nodiscard]] BlockLosses held_out_losses(const std::vector<Record>& records, const Division& division,
                                           const StructureFit& fit);
-/// Returns the loss of each unit (sysid/evidence/units.h). The structure is refitted without this unit. If a
-/// log is left out completely, its first readings determine its initial state
+/// Returns the loss of each unit (sysid/evidence/units.h). For each unit, the structure is refitted to the
+/// other units. If a log is left out completely, its first readings determine its initial state
 /// (sysid/fitting/start_estimate.h).
 /// @param by_unit  result of divide_by_unit(records).
 [[nodiscard]] BlockLosses left_out_losses(const std::vector<Record>& records, const Division& by_unit,
                                           const StructureFit& fit);
-/// Returns the losses of a fitted structure on the blocks without a refit.
+/// Returns the loss of a fitted structure on each block. The structure is not refitted.
 [[nodiscard]] BlockLosses losses_of(const StructureFit& fit, const Division& division);
 
 }  // namespace softgrip::sysid

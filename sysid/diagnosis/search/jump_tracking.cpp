@@ -20,7 +20,8 @@ constexpr std::size_t most_jump_targets = 24;
 /// A path is removed if its squared error exceeds that of the best path by more than this multiple of the
 /// squared resolution (converted to mm).
 constexpr double hopeless_resolutions = 4000;
-/// The paths are compared after each jump. If no jump occurs, they are compared after this number of samples.
+/// Number of samples without a jump after which the paths are compared. The paths are also compared after
+/// each jump.
 constexpr std::size_t look_again = 32;
 /// The time of a jump counts as well resolved if the command changes in its sample by less than this share of
 /// the band.
@@ -74,7 +75,8 @@ class Tracks {
 };
 
 /// Removes the whole samples from a transport delay and returns their number. The readings show a jump only
-/// after this number of samples. Until then, they do not distinguish the paths.
+/// after this number of samples. Until then, the readings do not distinguish a path with the jump from a path
+/// without it.
 std::size_t take_whole_samples(model::Model& model, const Record& record) {
   model::BlockSpec* delay = model::find_block<model::TransportDelay>(model);
   if (delay == nullptr || record.sample_time_s <= 0) return 0;
@@ -147,8 +149,8 @@ class JumpTracker {
     if (!std::isnan(error)) track.cost_mm2 += error * error;
   }
 
-  /// Returns the possible positions after a jump of the valve from the position `held`. The command changes
-  /// from `from` to `to` in this sample.
+  /// Returns the possible positions of the valve after a jump from the position `held`. During the sample of
+  /// the jump, the command changes from `from` to `to`.
   const std::vector<double>& jump_targets_of(double held, double from, double to) {
     jump_targets_.clear();
     if (from == to) {

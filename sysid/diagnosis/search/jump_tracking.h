@@ -17,17 +17,18 @@
 
 namespace softgrip::sysid {
 
-/// Smallest and largest difference between command and valve position at which a valve starts to move, as
-/// shares of the band. Below the first share, the valve stays at rest. At the second share, it always jumps.
-/// After a jump, the valve position equals the command.
+/// Range of the distance between command and valve position at which a valve starts to move, as shares of the
+/// band. Below the first share, the valve stays at rest. At the second share, the valve always jumps. After a
+/// jump, the valve position equals the command.
 inline constexpr double breaks_loose_from = 0.7;
 inline constexpr double breaks_loose_by = 1.4;
 
 /// A hypothesis about the positions of the valve in one record.
 struct ValvePath {
-  std::vector<double> held_kpa;  ///< valve position at the end of the step of each sample
-  /// Differences between the command and the valve position at the jumps [kPa]. A jump is included if the
-  /// command changed little in its sample, because the readings then resolve its time well.
+  std::vector<double> held_kpa;  ///< valve position at the end of each sample interval
+  /// Differences between the command and the valve position at the jumps [kPa]. A jump is included only if
+  /// the command changed little during its sample, because the readings then resolve the time of the jump
+  /// well.
   std::vector<double> distances_kpa;
   /// Sum of squared differences between the readings and the response of the model behind the valve.
   double sum_of_squares_mm2 = 0;

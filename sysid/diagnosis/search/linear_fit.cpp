@@ -13,8 +13,8 @@ namespace {
 
 constexpr int look_iterations = 15;
 
-/// Residuals that remain after the base structure has absorbed as much as possible. They are a function of
-/// the parameters of one cause.
+/// Residuals as a function of the parameters of one cause. The base structure has already absorbed as much of
+/// these residuals as its parameters can.
 class ResidualsBesideBase final : public Residuals {
  public:
   ResidualsBesideBase(const Scan& base, const std::vector<Record>& records, const FitSpace& of_the_cause)

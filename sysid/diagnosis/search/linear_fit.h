@@ -1,5 +1,6 @@
 #pragma once
-// Fits the parameters of one cause while the base structure responds linearly to the cause.
+// Fits the parameters of one cause. The base structure is not refitted; its parameters are assumed to respond
+// linearly to the cause.
 
 #include <limits>
 #include <vector>
@@ -13,12 +14,13 @@
 
 namespace softgrip::sysid {
 
-/// A cause that was fitted to thinned records. The base structure responds linearly to the cause.
+/// Result of a fit of one cause to thinned records. The parameters of the base structure respond linearly to
+/// the cause.
 struct LinearFit {
   /// Model with the fitted parameters of the cause; the parameters of the base structure are not changed.
   FitPoint beside;
   Eigen::VectorXd left;
-  /// Mean square after the linear response of the base structure.
+  /// Mean square of the residual after the base structure has responded to the cause.
   double mean_square_mm2 = std::numeric_limits<double>::infinity();
 };
 

@@ -15,7 +15,8 @@ namespace {
 /// Damping of the Gauss-Newton step, as a share of the diagonal elements of the normal matrix.
 constexpr double block_damping = 1e-3;
 
-/// Rows of the Jacobian for the readings in a block, and for the readings near the block that are not fitted.
+/// Rows of the Jacobian for the readings in a block, and for readings near the block that are also excluded
+/// from the fit.
 struct BlockRows {
   Eigen::Index first, last, hidden_first, hidden_last;
 };
@@ -63,7 +64,8 @@ BlockLosses linear_held_out_losses(const std::vector<Record>& records, const Div
   for (std::size_t fold = 0; fold < division.folds; ++fold) {
     Eigen::MatrixXd normal = whole;
     Eigen::VectorXd right = gradient;
-    Eigen::Index done = 0;  // end of the removed rows; the rows near two blocks may overlap
+    // end of the rows that were removed for earlier blocks; the rows of two blocks may overlap
+    Eigen::Index done = 0;
     for (std::size_t b = 0; b < rows.size(); ++b) {
       if (division.blocks[b].fold != fold) continue;
       const Eigen::Index from = std::max(rows[b].hidden_first, done), length = rows[b].hidden_last - from;

@@ -21,21 +21,23 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Largest ratio of the mean square of a candidate after the medium fit to the smallest one. The refit of a
-/// base structure can absorb half of the effect of a cause, but never nearly all of it.
+/// Limit for candidates after the medium fit, as a multiple of the smallest mean square of all candidates. A
+/// candidate with a larger mean square has no chance, because the refit of a base structure absorbs at most
+/// about half of the effect of a cause.
 constexpr double hopeless_ratio = 4;
 /// Number of rounds of alternating fits. Each round fits the base structure with the cause fixed, and then
 /// the cause with the base structure fixed.
 constexpr int turns = 2;
-/// Shares of the base structure's linear response to a cause that are tried. The fit starts at the best
-/// share. For a strongly nonlinear base structure, the full response is too large.
+/// Trial values for the share of the linear response that the parameters of the base structure make to a
+/// cause. The fit starts at the best share. For a strongly nonlinear base structure, the full response is too
+/// large.
 constexpr std::array answers{1.0, 0.5, 0.2, 0.0};
-/// The losses of most blocks count as reduced if the mean logarithm of the ratio of the block losses exceeds
-/// this value (see LeastTaken).
+/// Limit of the mean logarithm of the ratio of the block losses. Above this value, the losses count as
+/// reduced in most blocks (see LeastTaken).
 constexpr double in_most_blocks = 0.15;
 /// Play operators may compensate for a backlash if elastic_share() is at most this value.
 constexpr double little_elastic = 0.3;
-/// Largest number of alternatives that may fit nearly as well as the named cause.
+/// Largest number of alternatives to a named cause. If more candidates fit nearly as well, no cause is named.
 constexpr std::size_t most_undecided = 2;
 /// Smallest share of the remaining mean square above the noise that a further cause must remove. If the data
 /// contain a second effect, its true cause removes almost all of this mean square.
@@ -95,7 +97,7 @@ class SelectorUpon {
           unanswerable(cause, scales_).empty())
         causes.push_back(cause);
     }
-    // For each cause, the best physical law and the best free form.
+    // Fits of each cause: the best fit with a physical law, and the best fit with a free form.
     std::vector<std::array<LinearFit, 2>> best(causes.size());
     std::atomic<std::size_t> tried{0};
     parallel_for(causes.size(), data_.threads, [&](std::size_t i) {
@@ -121,8 +123,8 @@ class SelectorUpon {
   }
 
   /// Fits the base structure and the last cause of `causes` alternately. Each of the two is fitted to the
-  /// readings minus the effect of the other. This is necessary because a base structure that was fitted
-  /// without the cause has absorbed part of the cause's effect.
+  /// readings minus the effect of the other one. This is necessary because the base structure was fitted
+  /// without the cause and has therefore absorbed part of its effect.
   [[nodiscard]] FitPoint settled(Start best, const std::vector<Cause>& causes) const {
     if (!options_.base_again) return best.point;
     const Cause& cause = causes.back();
@@ -181,8 +183,8 @@ class SelectorUpon {
     return scored;
   }
 
-  /// Returns a fit with a backlash, which starts at reduced thresholds of the play operators. A fit that
-  /// starts at the current thresholds would not reach the optimum. Returns nullopt if the operators cannot
+  /// Returns a fit with a backlash that starts at reduced thresholds of the play operators. A fit that starts
+  /// at the current thresholds would not reach the optimum. Returns nullopt if the play operators cannot
   /// compensate for a backlash.
   [[nodiscard]] std::optional<ScoredCandidate> play_as_backlash() const {
     const FitPoint& point = result_.extended.point;
@@ -237,7 +239,8 @@ class SelectorUpon {
            (gain.lower > 0 || ratio.lower > 0);
   }
 
-  /// Adds the best candidate to the selection if its evidence is sufficient. Returns true if it was added.
+  /// Adds the best candidate to the selection if the candidate reduces the error sufficiently and few others
+  /// fit as well. Returns true if the candidate was added.
   bool take(const std::vector<ScoredCandidate>& scored) {
     const ScoredCandidate& best = scored.front();
     ChosenCause chosen =
@@ -251,10 +254,10 @@ class SelectorUpon {
     return true;
   }
 
-  /// Tests whether both causes are needed. When the first cause was selected and the base structure fitted,
-  /// the second cause was missing. Therefore each cause is now fitted alone, starting from the common fit,
-  /// and compared with the fit of both causes. If a cause does not reduce the error sufficiently, it is
-  /// removed.
+  /// Tests for each of two selected causes if it is needed. The first cause was selected and the base
+  /// structure was fitted before the second cause was added. Therefore each cause is now fitted alone,
+  /// starting from the common fit, and compared with the fit of both causes. If a cause does not reduce the
+  /// error sufficiently, it is removed.
   bool both_stay(const BlockLosses& beside_the_first) {
     const Cause first = result_.extended.causes.front(), second = result_.extended.causes.back();
     ScoredCandidate first_alone = alone(first, second);
@@ -271,7 +274,7 @@ class SelectorUpon {
     return false;
   }
 
-  /// Returns true if one of the two causes reduces the error sufficiently.
+  /// Returns true if one of the two causes reduces the error sufficiently in addition to the other cause.
   /// @param before  losses of the structure without this cause.
   [[nodiscard]] bool is_worth_its_place(const BlockLosses& before) const {
     return is_gain(before, result_.extended_losses, further_share_mm2(before));
@@ -309,14 +312,14 @@ class SelectorUpon {
     return std::pow(rmse_mm(losses), 2) - noise_mm_ * noise_mm_;
   }
 
-  /// Returns true if the remaining error is so large that a further cause can be accepted.
+  /// Returns true if the remaining error is large enough for a further cause to reach the required reduction.
   [[nodiscard]] bool more_can_be_worth() const {
     const double least_mm2 = options_.least_taken.in_most_blocks * noise_mm_ * noise_mm_;
     return beyond_noise_mm2(result_.extended_losses) > std::max(least_mm2, share_worth_mm2());
   }
 
-  /// Returns true if the candidate can be named, alone or with a few alternatives. Every other candidate that
-  /// the best one does not clearly beat is an alternative. If there are too many alternatives, no cause is
+  /// Returns true if the candidate can be named, alone or with a few alternatives. Every candidate that fits
+  /// about as well as the best candidate is an alternative. If there are too many alternatives, no cause is
   /// named.
   [[nodiscard]] bool stands(ChosenCause& chosen, const std::vector<ScoredCandidate>& scored) const {
     const ScoredCandidate& best = scored.front();

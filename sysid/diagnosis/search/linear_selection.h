@@ -1,6 +1,7 @@
 #pragma once
 // Selects causes if the base structure has many parameters (play operators, a Kelvin-Voigt chain). The search
-// varies only the few parameters of the cause. The parameters of the base structure respond linearly.
+// varies only the few parameters of the cause. The parameters of the base structure are assumed to respond
+// linearly to the cause.
 
 #include "sysid/diagnosis/search/selection.h"
 

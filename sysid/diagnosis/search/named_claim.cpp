@@ -19,7 +19,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Returns the range of the signal that has this unit. Returns infinity for any other unit.
+/// Returns the largest range, over all records, of the signal with the unit `unit`. Returns infinity for any
+/// other unit.
 double range_of(const std::vector<Record>& records, std::string_view unit) {
   double span_mm = 0, largest_kpa = 0, length_s = 0;
   for (const Record& record : records) {
@@ -57,8 +58,8 @@ void claim_size(Claim& claim, const std::vector<Record>& records, const Cause& c
     farthest = distance;
     claim.size =
         Interval{free.to_value(z[j] - half) - spec.neutral, free.to_value(z[j] + half) - spec.neutral};
-    // A limit has no effect if it is far above all signals. The distance of a limit from such a neutral value
-    // has no meaning.
+    // The neutral value of a limit, such as a saturation, is far above all signals. The distance of a fitted
+    // limit from this value has no meaning, so its size is not restricted.
     claim.largest_size = spec.neutral == 0 ? range_of(records, spec.unit) : infinity;
   }
 }
@@ -80,8 +81,8 @@ std::vector<bool> required_readings(const std::vector<Record>& records, Appears 
   return required_at(appears, conditions);
 }
 
-/// Returns for each block the sums of squared residuals with and without the cause. Only readings on which
-/// the cause must have an effect are included.
+/// Returns for each block two sums of squared residuals: with the cause and without it. Only readings on
+/// which the cause must have an effect are included.
 PairedLosses losses_there(const std::vector<Record>& records, const std::vector<bool>& required,
                           const StructureFit& with, const StructureFit& without) {
   PairedLosses losses;

@@ -13,7 +13,7 @@
 
 namespace softgrip::sysid {
 
-/// With fewer campaigns than this number, the p-value cannot be as small as 1 - limits::probability.
+/// Smallest number of campaigns with which the p-value can be as small as 1 - limits::probability.
 inline constexpr std::size_t enough_nulls = limits::fewest_events - 1;
 
 /// Result of the search on simulated campaigns without a cause. The refitted model generates these campaigns.
@@ -39,10 +39,10 @@ struct NullOptions {
   std::function<void(std::size_t done)> progress;
 };
 
-/// Simulates campaigns with the measured inputs and applies the search to them. The readings are the
-/// prediction of the refitted model plus noise from an autoregressive model of the refitted residual.
-/// Resampled innovations of the residual drive the autoregressive model (residual bootstrap, Freedman 1984).
-/// Therefore all remaining correlation of the residual counts as noise.
+/// Simulates campaigns with the measured inputs and applies the search to them. The simulated readings are
+/// the prediction of the refitted model plus noise. The noise comes from an autoregressive model of the
+/// residual, which is driven by resampled innovations (residual bootstrap, Freedman 1984). Therefore all
+/// remaining correlation of the residual counts as noise.
 /// @param gain_percent  held-out error reduction on the measured data.
 [[nodiscard]] NullCalibration calibrate_on_nulls(const SearchData& data, const StructureFit& recalibrated,
                                                  double gain_percent, const Division& division,

@@ -20,7 +20,7 @@ constexpr double damping = 1e-3;
 constexpr double least_size = 0.7;
 constexpr double largest_size = 1.4;
 
-/// A start point, with the mean square that one of the scans predicts for it.
+/// A start point, and the mean square that one of the scans predicts for this start point.
 struct Judged {
   double mean_square_mm2 = 0;
   const Scan* place = nullptr;

@@ -1,6 +1,6 @@
 #pragma once
-// Ranks many start points of a candidate without a fit of each start point. The effect of a start point is
-// added to the prediction, and the parameters of the base structure respond linearly.
+// Ranks many start points of a candidate without fitting the structure from each of them. The effect of a
+// start point is added to the prediction, and the parameters of the base structure respond linearly.
 
 #include <span>
 #include <vector>
@@ -32,11 +32,12 @@ class Scan {
   /// Returns the mean square that the structure would reach if this block were added [mm^2]. Returns infinity
   /// if the prediction with the block is not finite.
   [[nodiscard]] double mean_square_with(const model::BlockSpec& block) const;
-  /// Returns the columns without the part that the parameters of the structure can absorb. A column has one
-  /// row per reading.
+  /// Returns the columns after removal of the part that the parameters of the structure can absorb. A column
+  /// has one row per reading.
   [[nodiscard]] Eigen::MatrixXd left_of(const Eigen::MatrixXd& columns) const;
-  /// Returns the point after a step of the structure's parameters within their bounds. The full linear step
-  /// would remove as much of `residual` as possible; only `share` of this step is made.
+  /// Returns the point after a step of the parameters of the structure within their bounds. The full linear
+  /// step would remove as much of `residual` as possible. The returned point includes only `share` of this
+  /// step.
   [[nodiscard]] FitPoint answer_to(const Eigen::VectorXd& residual, double share) const;
 
  private:
@@ -52,11 +53,10 @@ class Scan {
   Eigen::VectorXd left_;      ///< part of `residual_` that the parameters of the structure cannot absorb
 };
 
-/// Returns the best start points of a cause in order. The start points of its free form come last. The best
-/// start point of every form is included, because a form with more parameters always reaches a smaller mean
-/// square in the scan. The best start point of every scan is included too. A base structure that has absorbed
-/// the effect of a cause may lead the fit to a different minimum than a base structure that has not. Further
-/// start points are added until the list has `fewest` elements.
+/// Returns the best start points of a cause, the best one first. Start points of its free form come last. The
+/// list contains the best start point of every form, because a form with more parameters always has a smaller
+/// mean square in the scan. It also contains the best start point of every scan, because fits from different
+/// scans may end at different minima. Further start points are added until the list has `fewest` elements.
 [[nodiscard]] std::vector<FitPoint> best_starts(std::span<const Scan> scans, const Cause& cause,
                                                 const Scales& scales, std::size_t fewest);
 

@@ -1,5 +1,6 @@
 #pragma once
-// Compares candidates for a cause on held-out blocks, and compares the chosen candidate with all others.
+// Compares candidates for a cause on held-out blocks, and compares the chosen candidate with all other
+// candidates.
 
 #include <cstdint>
 #include <vector>
@@ -15,8 +16,8 @@ struct ScoredCandidate {
   BlockLosses losses;  ///< losses on held-out blocks; empty: the fit was much worse than the best fit
 };
 
-/// Returns true if the candidate was fitted in a form that can follow any slow signal. Such a form is named
-/// only if no physical law explains nearly as much. It is never an alternative to a physical law.
+/// Returns true if the candidate was fitted in a form that can follow any slow signal. A form of this type is
+/// named only if no physical law explains nearly as much. It is never an alternative to a physical law.
 [[nodiscard]] bool is_free_form(const ScoredCandidate& scored);
 /// Returns true if the block of the cause in the model has a free form.
 [[nodiscard]] bool has_free_form(const model::Model& model, const Cause& cause);
@@ -35,7 +36,7 @@ struct ChosenBetween {
 };
 
 /// Computes the error reductions, the inclusion frequency and the alternatives of a cause.
-/// @param scored  candidates that were tested in the place of the cause.
+/// @param scored  candidates that were tested as a replacement of the cause.
 [[nodiscard]] ChosenCause weigh(const Cause& cause, const ChosenBetween& between,
                                 const std::vector<ScoredCandidate>& scored);
 

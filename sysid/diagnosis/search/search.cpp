@@ -15,19 +15,21 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Effort of the coarse fits, which start at every start point. A medium fit continues a coarse fit that may
-/// become the best candidate or an alternative.
+/// `coarse_fit`: effort of the fits that start at every start point. `look`: effort of a medium fit, which
+/// continues a coarse fit that may become the best candidate or an alternative.
 constexpr FitEffort coarse_fit{.most_iterations = 8, .tolerance = 1e-5};
 constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
 /// Number of causes that always get a medium fit. Each further cause gets a medium fit if the mean square of
-/// its coarse fit is below worth_a_look times the smallest one.
+/// its coarse fit is below worth_a_look times the smallest mean square of all coarse fits.
 constexpr std::size_t always_looked_at = 7;
 constexpr double worth_a_look = 1.5;
 constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
 /// A form with more parameters is preferred if it reduces the mean square by at least this share.
 constexpr double more_numbers_gain = 0.02;
-/// Number of candidates that always get a full fit on all samples. Each further candidate gets a full fit if
-/// its mean square is below near_enough or next_to_best times the smallest one.
+/// The best limits::finalists candidates get a full fit to thinned records. Each further candidate gets this
+/// fit if its mean square is below near_enough times the smallest mean square. The best `always_finished`
+/// candidates, and each candidate below next_to_best times the smallest mean square, get a full fit to all
+/// samples.
 constexpr double near_enough = 1.4;
 constexpr std::size_t always_finished = 4;
 constexpr double next_to_best = 1.05;
@@ -149,8 +151,8 @@ class CandidateFitter {
     });
   }
 
-  /// Fits the best candidate completely before all other candidates. Returns true if the other candidates
-  /// need no full fit. The comparison with another explanation needs the full fit of the best candidate.
+  /// Fits the best candidate completely before all other candidates, because the comparison with another
+  /// explanation needs its full fit. Returns true if the other candidates need no full fit.
   bool is_hopeless() {
     if (!search_.is_hopeless) return false;
     leader_ = ranking().front();

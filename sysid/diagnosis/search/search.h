@@ -11,7 +11,7 @@
 
 namespace softgrip::sysid {
 
-/// The records of a campaign in the forms that the search needs.
+/// The records of a campaign, complete and thinned, and their scales.
 struct SearchData {
   std::vector<Record> records;
   std::vector<Record> thinned;  ///< thinned records for all fits of a candidate except the final fit
@@ -19,7 +19,7 @@ struct SearchData {
   std::vector<Record> glimpsed;
   Scales scales;
   unsigned threads = 0;  ///< number of threads; 0: one per core
-  FitPoint given;        ///< the given model, which is a second start point of the search
+  FitPoint given;        ///< given model, at which the search starts in addition to the refitted model
 };
 
 /// Prepares the records of a campaign for the search: computes thinned copies and the scales.
@@ -34,8 +34,8 @@ struct Candidate {
 
 struct CandidateSearch {
   std::vector<Cause> only = {};  ///< causes that are tested; empty: all causes
-  /// Called with the smallest mean square of all candidates. A result of true means that the other candidates
-  /// need no full fit.
+  /// Called with the smallest mean square of all candidates. Returns true if the other candidates need no
+  /// full fit.
   std::function<bool(double best_mm2)> is_hopeless = {};
   /// Called from any thread with the number of tested causes.
   std::function<void(std::size_t tried, std::size_t of)> progress = {};

@@ -89,8 +89,9 @@ class Selector {
     return scored;
   }
 
-  /// Returns true if another explanation leaves a much smaller mean square than the best further cause. If
-  /// the best further cause reduces the error nearly to the noise, returns false without this comparison.
+  /// Returns true if another explanation leaves a much smaller mean square than the best further cause
+  /// leaves. If the best further cause reduces the error nearly to the noise, returns false without this
+  /// comparison.
   bool is_far_behind(double best_mm2) {
     if (best_mm2 <= near_the_noise * square(noise_)) return false;
     if (!to_beat_mm2_) to_beat_mm2_ = options_.to_beat_mm2();
@@ -98,8 +99,8 @@ class Selector {
   }
 
   /// Returns true if the reduction of the losses from `before` to `after` is significant and large enough. A
-  /// further cause with a small effect must leave little of the unexplained mean square before it. A cause
-  /// that only compensates for the inexact form of another cause leaves more.
+  /// further cause with a small effect must remove most of the mean square that was unexplained without it. A
+  /// cause that only compensates for the inexact equation of another cause removes less.
   /// @param without, with  structures to which `before` and `after` belong.
   [[nodiscard]] bool is_gain(const BlockLosses& before, const BlockLosses& after, const StructureFit& without,
                              const StructureFit& with) const {
@@ -170,8 +171,8 @@ class Selector {
     return *losses;
   }
 
-  /// After a further cause was added, tests whether another cause would now be better in the place of an
-  /// earlier cause.
+  /// Compares each earlier cause with all other causes after a further cause was added. Replaces an earlier
+  /// cause if another cause is better.
   void swap_others() {
     for (std::size_t i = 0; i + 1 < result_.extended.causes.size(); ++i) {
       const Cause old = result_.extended.causes[i];
@@ -196,8 +197,8 @@ class Selector {
     }
   }
 
-  /// Removes the least effective cause if it has no significant effect after another cause was replaced.
-  /// Returns true if a cause was removed.
+  /// Removes the cause with the smallest effect if this effect is not significant, for example after another
+  /// cause was replaced. Returns true if a cause was removed.
   bool drop_idle_one() {
     std::size_t least = 0;
     for (std::size_t i = 1; i < result_.extended.causes.size(); ++i) {
@@ -244,14 +245,16 @@ class Selector {
   const SelectionOptions& options_;
   Division by_unit_;
   Selection result_;
-  std::optional<double> to_beat_mm2_;  ///< mean square that another explanation leaves, if it was computed
-  /// The structure after removal of one of its causes: its fit and its held-out losses, if they were
-  /// computed.
+  /// mean square that options_.to_beat_mm2 returned; not set: the function was not called
+  std::optional<double> to_beat_mm2_;
+  /// The structure after removal of one of its causes. Its fit and its held-out losses are set after they
+  /// were computed.
   struct Without {
     std::optional<StructureFit> fit;
     std::optional<BlockLosses> losses;
   };
-  /// For each cause, by its index, candidates whose results are still valid.
+  /// Results of the candidates that were tested as a replacement, by the index of the replaced cause.
+  /// Outdated results are removed.
   std::map<std::size_t, std::vector<Scored>> fresh_;
   /// For each index of a cause, the structure without this cause.
   std::map<std::size_t, Without> without_;

@@ -1,6 +1,6 @@
 #pragma once
-// Selects causes step by step according to their losses on held-out blocks, and replaces earlier causes if
-// others are better. The result lists every alternative that explains the data equally well.
+// Selects causes step by step according to their losses on held-out blocks, and replaces an earlier cause if
+// another cause is better. The result lists every alternative that explains the data equally well.
 
 #include <cstdint>
 #include <functional>
@@ -28,8 +28,9 @@ struct ChosenCause {
   Cause cause;
   /// Causes that explain the data equally well, or that no command separates from this cause.
   std::vector<Cause> alternatives;
-  Spread gain_percent;  ///< held-out error reduction when this cause is added to all other selected causes
-  /// Candidates that were tested in the place of this cause; the best one comes first.
+  /// held-out error reduction by this cause in a structure with all other selected causes
+  Spread gain_percent;
+  /// Candidates that were tested as a replacement of this cause; the best one comes first.
   std::vector<CandidateScore> candidates;
   Spread gain_mm2;  ///< reduction of the held-out mean square by this cause
   /// Bootstrap inclusion frequency. This is the share of the bootstrap samples of blocks in which a structure
@@ -43,12 +44,13 @@ struct Selection {
   StructureFit base;
   StructureFit extended;  ///< fit of the selected structure; equal to `base` if no cause was selected
   std::vector<ChosenCause> chosen;
-  std::vector<CandidateScore> last_candidates;  ///< candidates for a further cause; none of them was selected
+  std::vector<CandidateScore> last_candidates;  ///< candidates for a further cause that were rejected
   BlockLosses base_losses;
   BlockLosses extended_losses;
   UnexplainedError base_unexplained;
   UnexplainedError left;  ///< unexplained error of the extended structure
-  /// Structures with an additional confounded cause that does not reduce the error significantly.
+  /// Structures with one additional cause that is confounded with a selected cause and does not reduce the
+  /// error significantly.
   std::vector<Confounded> undecided;
 };
 
@@ -56,20 +58,21 @@ struct Selection {
 [[nodiscard]] Selection selection_from(StructureFit base, BlockLosses losses, double noise_mm);
 
 /// Smallest reduction of the mean square by a cause that is added to another base structure, as a multiple of
-/// the squared noise. No base structure matches the hysteresis loop of a finger exactly. A cause that is not
-/// present can absorb part of the resulting error.
+/// the squared noise. No base structure matches the hysteresis loop of a finger exactly. A cause whose effect
+/// is not in the data can absorb part of the resulting error.
 struct LeastTaken {
-  double anyhow;          ///< limit for a reduction that may come from a few blocks only
-  double in_most_blocks;  ///< limit for a reduction in most blocks, each by at least about 10 %
+  double anyhow;          ///< limit for a reduction that may be restricted to a few blocks
+  double in_most_blocks;  ///< limit for a reduction by at least about 10 % in most blocks
 };
 /// Limits for a model whose input is the command. The remaining error then includes the error of the valve
-/// model. Causes that are not present absorb 0.1 to 1.4 squares of the noise. Causes that are present with an
-/// effect of twice the noise absorb 1.9 to 12. The values come from textbook test cases and from test cases
-/// whose lag differs between filling and venting.
+/// model. Causes without an effect in the data reduce the mean square by 0.1 to 1.4 times the squared noise.
+/// Causes with an effect of twice the noise reduce it by 1.9 to 12 times the squared noise. The values come
+/// from textbook test cases and from test cases whose lag differs between filling and venting.
 inline constexpr LeastTaken from_the_command{.anyhow = 1.5, .in_most_blocks = 1.5};
 /// Limits for a model whose input is the measured pressure. In 20 textbook test cases without an effect,
-/// causes absorb up to 0.54 squares of the noise, and up to 0.36 if most blocks improve. A backlash, an
-/// asymmetric loop or a rate-dependent loop with an effect of twice the noise absorbs 0.2 to 1.5.
+/// causes reduce the mean square by up to 0.54 times the squared noise, and by up to 0.36 times if most
+/// blocks improve. A backlash, an asymmetric loop or a rate-dependent loop with an effect of twice the noise
+/// reduces it by 0.2 to 1.5 times the squared noise.
 inline constexpr LeastTaken from_the_measured_pressure{.anyhow = 1.0, .in_most_blocks = 0.4};
 
 struct SelectionOptions {
@@ -80,10 +83,10 @@ struct SelectionOptions {
   std::function<void(const std::string&)> progress;
   /// Called with the selection after its first cause was accepted, if an unexplained error remains.
   std::function<void(const Selection&)> one_cause_stands;
-  /// Returns the mean square that another explanation leaves; infinity if there is no other explanation. A
-  /// second cause is fitted completely only if the mean square with this cause is at most slightly larger.
-  /// The function is called at most once, after one_cause_stands. It is not called if a second cause reduces
-  /// the error nearly to the noise.
+  /// Returns the mean square that another explanation of the data leaves. Returns infinity if there is no
+  /// other explanation. A second cause is fitted completely only if it leaves at most a slightly larger mean
+  /// square. The function is called at most once, after one_cause_stands. It is not called if a second cause
+  /// reduces the error nearly to the noise.
   std::function<double()> to_beat_mm2;
   /// Fits the base structure to modified readings of the same records. If the function is empty, the base
   /// structure is not refitted and only responds linearly.

@@ -1,7 +1,7 @@
 #pragma once
-// Converts part of the play operators of a model into a backlash. If no play operator responds to a reversal
-// at once, the operators behave like other operators followed by a backlash. Operators and backlash can
-// therefore compensate for each other.
+// Converts part of the play operators of a model into a backlash. Play operators without an immediate
+// response to a reversal behave like different play operators in series with a backlash. In a fit, operators
+// and backlash can therefore compensate for each other.
 
 #include <optional>
 

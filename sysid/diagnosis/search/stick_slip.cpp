@@ -17,8 +17,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Ratio of neighbouring trial values of the band. The tracker works with a larger error of the band than
-/// this ratio causes.
+/// Ratio of neighbouring trial values of the band. The tracker tolerates a band error that is larger than the
+/// distance between neighbouring trial values.
 constexpr double next_band = 1.3;
 /// Smallest and largest trial value of the band, as shares of the largest pressure.
 constexpr double narrowest = 0.004, widest = 0.25;
@@ -26,9 +26,10 @@ constexpr double narrowest = 0.004, widest = 0.25;
 /// if the relative changes of the band and of the remaining mean square are below band_stays and rest_stays.
 constexpr int most_rounds = 20;
 constexpr double band_stays = 5e-4, rest_stays = 0.01;
-/// After this number of rounds, the jump distances of a real band must scatter less than random distances.
+/// Number of rounds after which the jump distances must scatter less than random distances. Otherwise the
+/// band is not real.
 constexpr int rounds_of_chance = 6;
-/// Two sums of squares differ by more than rounding errors if their ratio exceeds this value.
+/// Ratio of two sums of squares above which their difference is not only due to rounding errors.
 constexpr double clearly_more = 1 + 1e-9;
 
 struct ValvePaths {
@@ -48,7 +49,8 @@ ValvePaths track_all(const std::vector<Record>& records, const FitPoint& point, 
 }
 
 /// Returns the band whose paths leave the smallest error. If several bands leave equal errors, returns the
-/// first one. A band is given up as soon as its error exceeds the total error of another band.
+/// first of these bands. The computation for a band ends as soon as its error exceeds the total error of
+/// another band.
 double best_band(const std::vector<Record>& records, const FitPoint& point, const std::vector<double>& bands,
                  double resolution_kpa, unsigned threads) {
   std::vector<double> left(bands.size(), std::numeric_limits<double>::infinity());
@@ -89,8 +91,8 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Computes mean and scatter of the sorted jump distances without the smallest 5 % and the largest 5 %. A
-/// jump that is detected one sample late has a wrong distance.
+/// Computes mean and scatter of the sorted jump distances. The smallest 5 % and the largest 5 % are excluded,
+/// because a jump that is detected one sample late has a wrong distance.
 void measure_band(std::span<const double> distances, StickSlip& found) {
   found.jumps = distances.size();
   if (distances.size() < limits::fewest_events) return;
@@ -170,7 +172,7 @@ std::optional<StickSlip> find_stick_slip(const std::vector<Record>& records, con
   const double band_kpa = best_band(records, behind.point, bands, resolution_kpa, threads);
   // If the start value is below the true band, a path can reach nearly every position with short jumps. As
   // long as the model behind the valve is inaccurate, this path has a smaller error than the true path.
-  // Therefore twice the band is tried too.
+  // Therefore the search also starts at twice the band.
   for (const double start_kpa : {band_kpa, 2 * band_kpa}) {
     auto found = stick_slip_from(records, behind, start_kpa, resolution_kpa, threads);
     if (found && is_a_band(*found, resolution_kpa) && found->fit.mean_square_mm2 < behind.mean_square_mm2)

@@ -28,8 +28,8 @@ struct StickSlip {
   StructureFit fit;             ///< model behind the valve, fitted to `records`
 };
 
-/// Largest scatter of the jump distances of a real band: the part that the resolution of the readings does
-/// not explain, and the total scatter.
+/// Two limits for the scatter of the jump distances of a real band. The first one applies to the scatter that
+/// the resolution of the readings does not explain, and the second one to the total scatter.
 inline constexpr double most_scatter = 0.1, most_scatter_in_all = 0.13;
 /// Scatter of jump distances that are uniformly distributed between the limits of the tracker.
 inline constexpr double scatter_of_chance = 0.19;
@@ -40,10 +40,10 @@ struct Band {
   Interval ci95_kpa;
 };
 
-/// Returns the dead band of a valve from sorted jump distances, at least fewest_events. Wrongly detected
-/// jumps are more often too short than too long, so the band is the mean of the middle half of the distances.
-/// The interval is that of a trimmed mean, from the Winsorised variance (Tukey and McLaughlin, Sankhya A 25,
-/// 1963).
+/// Returns the dead band of a valve from sorted jump distances. At least limits::fewest_events distances are
+/// required. Wrongly detected jumps are more often too short than too long, so the band is the mean of the
+/// middle half of the distances. The interval is that of a trimmed mean, from the Winsorised variance (Tukey
+/// and McLaughlin, Sankhya A 25, 1963).
 [[nodiscard]] Band band_of_jumps(std::span<const double> distances_kpa);
 
 /// Searches for a stick-slip motion of the valve in front of a fitted structure. Returns nullopt if there is

@@ -63,6 +63,8 @@ class BestStickSlip {
   BestStickSlip(const SearchData& data, const Cause& dead_band, double noise_mm)
       : data_(data), dead_band_(dead_band), noise_mm_(noise_mm) {}
 
+  /// Searches for a stick-slip motion in front of `beside` and keeps it if it leaves the smallest error so
+  /// far.
   /// @param beside  structure that contains the dead band in its smooth form.
   void look(const std::optional<StructureFit>& beside) {
     if (!beside) return;
@@ -71,7 +73,7 @@ class BestStickSlip {
     if (!found || (best_ && found->fit.mean_square_mm2 > best_->fit.mean_square_mm2)) return;
     best_ = std::move(found);
   }
-  /// Returns true if the remaining error is so small that at most a few jumps in the path can be wrong.
+  /// Returns true if the remaining error is so small that at most a few jumps in the valve path can be wrong.
   [[nodiscard]] bool meets_all() const {
     return best_ && unexplained_error_of(best_->fit.residual_mm, noise_mm_).excess_mm <
                         limits::tolerated_noise * noise_mm_;
@@ -147,7 +149,8 @@ std::optional<StickSlipSelection> select_behind_stick_slip(const SearchData& dat
   driven.threads = data.threads;
   StructureFit base = base_behind(*found);
   driven.scales.residual_lines = spectrum_peaks(driven.records, base.residual_mm);
-  // A few wrong jumps in a path leave an error that must not be taken for a second cause.
+  // A few wrong jumps in a valve path leave an error. If this error is small, no second cause is searched,
+  // because the second cause would only represent the wrong jumps.
   SelectionOptions behind = options;
   if (!leaves_too_much(unexplained_error_of(base.residual_mm, noise_mm), plain.base_unexplained, noise_mm))
     behind.most_causes = 0;

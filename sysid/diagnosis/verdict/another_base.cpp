@@ -16,9 +16,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Largest share of the mean square above the noise that the true cause may leave because its form is
-/// inexact. Softening leaves 0.009 in the test cases of tests/blind. A cause that only imitates a hysteresis
-/// loop of another shape leaves 0.1 (textbook test cases).
+/// Largest share of the mean square above the noise that may remain with the true cause, because the equation
+/// of its block is inexact. With softening, a share of 0.009 remains in the test cases of tests/blind. With a
+/// cause that only imitates a hysteresis loop of a different shape, a share of 0.1 remains in the textbook
+/// test cases.
 constexpr double left_by_its_own_cause = 0.03;
 
 }  // namespace

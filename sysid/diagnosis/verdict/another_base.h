@@ -10,10 +10,10 @@
 
 namespace softgrip::sysid {
 
-/// An unexplained error below this multiple of the noise is negligible.
+/// Limit below which an unexplained error is negligible, as a multiple of the noise.
 inline constexpr double worth_a_look = 0.2;
-/// Largest ratio of two unexplained mean squares: after a missing component was added to the model, and
-/// before.
+/// Largest ratio of two unexplained mean squares, after and before an addition to the model. If the ratio is
+/// larger, the addition is not accepted as the missing component.
 inline constexpr double left_by_what_was_missing = 0.25;
 
 /// Returns true if the base structure may be incomplete. In this case, the best single cause leaves a larger
@@ -21,9 +21,9 @@ inline constexpr double left_by_what_was_missing = 0.25;
 /// @param one_cause  best selection of one cause on the given base structure.
 [[nodiscard]] bool may_lack_a_base(const Selection& one_cause, double noise_mm);
 
-/// Returns true if the rejected base structure supports hysteresis of another shape as an alternative. It
-/// must contain such hysteresis but no asymmetric loop. Its loss must be at most slightly larger than that of
-/// the selection on the given base structure.
+/// Returns true if the rejected base structure supports the alternative that the hysteresis has a different
+/// shape. The rejected base structure must contain hysteresis of a different shape but no asymmetric loop.
+/// Its loss must be at most slightly larger than that of the selection on the given base structure.
 /// @param selected  held-out losses of this selection.
 [[nodiscard]] bool another_shape_will_do(const BaseFindings& base, const BlockLosses& selected);
 /// Adds the cause "hysteresis of another shape" as an alternative to each named asymmetric loop.
@@ -36,7 +36,7 @@ class AnotherBase {
   AnotherBase(const SearchData& data, BaseQuestion question);
 
   /// Searches for another base structure and stores the result if there is one. If the logs seem to come from
-  /// different fingers, does not search and returns a sentence that states this.
+  /// different fingers, returns a sentence with this reason instead of searching.
   [[nodiscard]] std::optional<std::string> ask(const Selection& selection, const StructureFit& recalibrated);
   /// Continues the search for causes on the base structure that was found. Keeps this base structure only if
   /// has_lower_loss() is true.
@@ -52,8 +52,8 @@ class AnotherBase {
   /// Returns the mean square of the residual of the base structure that was found [mm^2]. Returns infinity if
   /// none was found.
   [[nodiscard]] double mean_square_mm2() const;
-  /// Returns true if a base structure was found that explains the data. It must leave at most 25 % of the
-  /// unexplained mean square of the selection.
+  /// Returns true if a base structure was found whose unexplained mean square is at most 25 % of that of the
+  /// selection.
   [[nodiscard]] bool settles(const Selection& selection) const;
 
  private:

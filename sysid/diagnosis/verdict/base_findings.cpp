@@ -46,9 +46,11 @@ double slowest_branch_s(const model::Model& model) {
   return slowest_s;
 }
 
-/// Returns the time constant [s] above which creep counts as slow. It depends on the creep branches of the
-/// given base structure. The fit may have made these branches too fast, in order to compensate for a missing
-/// component. A refit may have given a branch the time constant of a slower branch that is missing.
+/// Returns the time constant [s] above which a creep branch counts as slow. The result is the smaller of two
+/// values: twice the slowest time constant of the given model, and twice that of the refitted model. It is
+/// limited to 10 % to 100 % of the longest record. The given model may have branches that are too fast, in
+/// order to compensate for a missing component. The refit may have moved a branch to the time constant of a
+/// missing slow branch.
 double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
   double longest_s = 0;
   for (const Record& record : data.records) longest_s = std::max(longest_s, record.length_s());
@@ -56,8 +58,8 @@ double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
   return std::max(longest_s / 10, std::min(2 * slowest_s, longest_s));
 }
 
-/// A structure that predicts better than the given structure. Also contains the fits of this structure after
-/// removal of each component.
+/// A structure that predicts better than the given structure, and fits of this structure with one component
+/// removed at a time.
 struct BetterStructure {
   StructureTrial chosen;
   std::vector<WithoutIngredient> ablation;
@@ -67,15 +69,16 @@ std::optional<BetterStructure> better_structure(const std::vector<Record>& recor
                                                 const StructureChoiceOptions& options) {
   const StructureChoice choice = choose_structure(records, options);
   const StructureTrial& chosen = choice.trials[choice.chosen];
-  // A published element with delay and lag equals the given base structure with two causes. The search for
-  // causes already covers this combination.
+  // The published element (Bouc-Wen with two Kelvin-Voigt branches) with delay and lag is not adopted as a
+  // richer structure. It equals the given base structure with two causes, which the search for causes already
+  // covers.
   if (chosen.structure.published || !foretells_better(records, chosen, given, options.drive))
     return std::nullopt;
   return BetterStructure{chosen, ablation_of(records, choice, options, named_ingredients())};
 }
 
-/// Returns true if one of the causes is confounded with the finding, so that the base structure may have
-/// absorbed the effect of this cause.
+/// Returns true if one of the causes is confounded with the cause of `finding`. The base structure may then
+/// have absorbed the effect of this cause.
 bool is_confounded(const NamedCause& finding, const std::vector<Cause>& causes) {
   return std::any_of(causes.begin(), causes.end(),
                      [&](const Cause& cause) { return cause.is_confounded_with(finding.cause); });
@@ -106,23 +109,23 @@ void renumber(BaseFindings& found, const SearchData& data) {
   }
 }
 
-/// Fits the structure to the original readings with free time constants. The choice of the structure used a
-/// fixed grid of time constants, and a cause would absorb the error of this grid.
+/// Fits the structure to the original readings with free time constants. The choice of the structure used
+/// fixed trial values of the time constants, and a cause would absorb the error of these values.
 StructureFit fit_off_grid(const StructureTrial& trial, const SearchData& data, Drive drive) {
   return fit_structure(data.records, {}, fit_again(trial, data.records, drive), finishing_effort);
 }
 
-/// Tests a nonlinearity in the same way as the other components. The choice of the structure had left it out,
-/// because a simpler structure was equally good.
-/// @param straight  base structure without the nonlinearity.
+/// Tests the nonlinear characteristic in the same way as the other components. The choice of the structure
+/// had omitted it, because the simpler structure without it was equally good.
+/// @param straight  base structure without the nonlinear characteristic.
 void name_the_bend(BaseFindings& found, StructureTrial straight, const BaseSearch& search) {
   const StructureFit fit = fit_off_grid(straight, search.data, search.question.drive);
   straight.block_losses_mm2 = linear_held_out_losses(search.data.records, search.question.division, fit);
   name_ingredients(found, {{Ingredient::characteristic, std::move(straight)}}, search);
 }
 
-/// Refits the base structure without causes. Its free parameters are the same as in the fit with a cause.
-/// Otherwise the error reduction by additional free parameters would be attributed to the cause.
+/// Refits the base structure without causes, with the same free parameters as in the fit with a cause.
+/// Otherwise the error reduction by the additional free parameters would be attributed to the cause.
 void free_the_base(BaseFindings& found, const StructureTrial& as_beside_causes, const BaseSearch& search) {
   const auto& [data, plain, question] = search;
   const bool is_free = found.chosen.structure == as_beside_causes.structure &&
@@ -166,7 +169,7 @@ void drop_what_is_not_missed(StructureFit& with, BlockLosses& losses, std::vecto
   std::erase_if(chosen, [&](const ChosenCause& one) {
     StructureFit rest = fit_without_cause(data.records, with, one.cause);
     BlockLosses without = linear_held_out_losses(data.records, question.division, rest);
-    // A cause is present if its removal increases the held-out mean square by more than the noise variance.
+    // A cause is kept if its removal increases the held-out mean square by more than the noise variance.
     if (is_missed(without, losses, square(question.noise_mm), question.seed)) return false;
     with = std::move(rest);
     losses = std::move(without);
@@ -174,8 +177,8 @@ void drop_what_is_not_missed(StructureFit& with, BlockLosses& losses, std::vecto
   });
 }
 
-/// Returns true if the causes on the richer base structure are some, but not all, of the causes on the given
-/// base structure, and no others.
+/// Returns true if the causes on the richer base structure are fewer than those on the given base structure
+/// and all of them were found there too. Returns false if there is no cause on the richer base structure.
 bool has_some_of(const BaseFindings& found, const Selection& plain) {
   const std::vector<Cause>&some = found.fit.causes, &all = plain.extended.causes;
   const auto is_in_all = [&](const Cause& cause) {
@@ -211,7 +214,7 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
   options.published_yields_below = 1 - limits::equal_error_share;
   options.starts = limits::repeated_starts;
   // An effect that no structure contains may increase the errors of all structures. Therefore the search is
-  // repeated with modified readings: the causes found so far, or a drift, are subtracted.
+  // repeated with readings from which the causes found so far, or a drift, are subtracted.
   using Readings = std::vector<Record>;
   std::vector<std::function<Readings(const Readings&)>> views{std::identity{}};
   if (!plain.extended.causes.empty()) {
@@ -243,8 +246,8 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
 }
 
 bool has_lower_loss(const BaseFindings& found, const Selection& plain, double noise_mm, bool plain_explains) {
-  // If the selection leaves too much error, none of its causes is named. Then a base structure whose loss is
-  // only slightly lower gives more information, because its components are named.
+  // If the selection leaves too much error, none of its causes is named. A base structure with an only
+  // slightly lower loss then gives more information, because its components are named.
   const bool says_more = !plain_explains && !plain.extended.causes.empty() && !found.named.empty();
   const bool needs_fewer = plain.left.excess_mm > noise_mm && has_some_of(found, plain);
   const double at_most = needs_fewer ? limits::comparable_ratio

@@ -1,6 +1,6 @@
 #pragma once
 // Searches for a richer base structure (sysid/structure) if no cause explains the data on the given base
-// structure. Names each component of the richer structure that reduces the held-out error.
+// structure. Names each component of the richer base structure that reduces the held-out error.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace softgrip::sysid {
 struct BaseFindings {
   StructureFit fit;  ///< fit of the richer base structure with the causes that were found on it
   StructureTrial
-      chosen;  ///< richer base structure as it was chosen, or as it was refitted together with causes
+      chosen;  ///< richer base structure as it was chosen, or as it was later refitted together with causes
   bool off_grid = false;  ///< true: `fit` was fitted to the original readings with free time constants
   std::string description;
   BlockLosses losses;                ///< losses of `fit` on the held-out blocks of the diagnosis
@@ -44,7 +44,8 @@ struct BaseSearch {
 };
 
 /// Searches for a richer base structure. It is fitted to the first half of each log. Returns nullopt if the
-/// given base structure predicts the second halves about as well and has no inverse response.
+/// given base structure predicts the second halves about as well as the richer one and has no inverse
+/// response.
 [[nodiscard]] std::optional<BaseFindings> find_base(const BaseSearch& search);
 
 /// Limits for causes that are added to a richer base structure. No base structure matches a finger exactly,
@@ -56,9 +57,9 @@ struct CausesUpon {
   bool parts;  ///< true: causes that remove less than `least_share` are reported as partial explanations
 };
 inline constexpr CausesUpon upon_much_left{2, 0.3, true};
-/// Limits for a base structure that leaves a small error. Most of this error is due to the inexact form of
-/// the structure. If the input is the command, the form of the valve model adds to the error, so that limit
-/// is stricter.
+/// Limits for causes on a base structure that leaves a small error. Most of this error is due to the inexact
+/// equations of the structure. If the input is the command, the inexact valve model adds to the error, so the
+/// causes must remove 65 % of it. If the input is the measured pressure, they must remove 35 %.
 inline constexpr CausesUpon upon_little_left{1, 0.65, false};
 inline constexpr CausesUpon upon_little_left_measured{1, 0.35, false};
 

@@ -37,9 +37,9 @@ namespace {
 /// A held-out fold counts as diverged if its RMSE exceeds this multiple of the RMSE of the fit.
 constexpr double ran_off_above = 3;
 
-/// Play operators act like a backlash if less than this share of them follows a reversal at once. The share
-/// is 0.09 to 0.81 in 20 textbook fingers. It is 0.01 to 0.15 if a hidden backlash has an effect of 8 times
-/// the noise.
+/// Smallest elastic share of play operators that do not act like a backlash. The elastic share is the part of
+/// the motion that follows a reversal of the pressure at once. It is 0.09 to 0.81 in 20 textbook fingers. It
+/// is 0.01 to 0.15 if a hidden backlash has an effect of 8 times the noise.
 constexpr double stands_still_below = 0.07;
 
 /// Assigns a component to the cause as which it is reported, and to the type of its block in the model.
@@ -71,8 +71,8 @@ constexpr std::array names{
     FindingName{Ingredient::characteristic, causes::Stiffening::id, causes::SensorNonlinearity::id,
                 [](const BaseStructure&, Drive) { return model::block_type<model::Characteristic>(); }}};
 
-/// Returns the held-out mean square of the refitted given model minus that of the noise [mm^2]. The result
-/// has an upper limit, because a diverged fold does not show how large the unexplained error is.
+/// Returns the held-out mean square of the refitted given model minus the noise variance [mm^2]. The result
+/// is limited, because the error of a diverged fold does not show how large the unexplained error is.
 double left_by_the_given_mm2(const BaseSearch& search) {
   const double noise_mm = search.question.noise_mm;
   const double held_out_mm2 = std::pow(rmse_mm(search.plain.base_losses), 2) - noise_mm * noise_mm;
@@ -107,7 +107,7 @@ class Labeller {
     // The data do not show whether the lag is in the valve or in the sensor.
     if (finding.ingredient == Ingredient::lag)
       named.alternatives.push_back(*find_cause(causes::SensorLag::id));
-    // A second lag in series has nearly the same effect as a delay.
+    // If the structure contains a lag, a second lag in series would have nearly the same effect as the delay.
     if (finding.ingredient == Ingredient::delay && chosen_.structure.lag)
       named.alternatives.push_back(*find_cause(causes::ValveLag::id));
     named.heldout_gain_percent =
@@ -127,10 +127,10 @@ class Labeller {
   UncertainPoint at_;
 };
 
-/// Returns the latency of the finger (delay or lag) as a finding. A delay can largely replace a lag, and a
-/// lag a delay. The data may then require neither of the two, although the finger responds late. The
-/// component whose removal increases the loss more is reported, in place of both components. Returns nullopt
-/// if a delay or lag is already named.
+/// Returns the latency of the finger (delay or lag) as a finding. Delay and lag can largely replace each
+/// other. The data may therefore require neither of the two alone, although the finger responds late. The
+/// finding is the component whose removal increases the loss more, and it represents both. Returns nullopt if
+/// a delay or lag is already named.
 std::optional<NamedCause> latency_of(const std::vector<WithoutIngredient>& ablation, const Labeller& labeller,
                                      const BaseFindings& found) {
   const StructureTrial* const neither = trial_without(ablation, Ingredient::latency);

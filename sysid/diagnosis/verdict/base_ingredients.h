@@ -11,7 +11,8 @@
 
 namespace softgrip::sysid {
 
-/// Returns the components that name_ingredients() can name. It needs a fit without each of them.
+/// Returns the components that name_ingredients() can name. For each of them, name_ingredients() needs a fit
+/// without this component.
 [[nodiscard]] std::vector<Ingredient> named_ingredients();
 
 /// Tests the components of `found.chosen`. A component that reduces the error sufficiently becomes a named

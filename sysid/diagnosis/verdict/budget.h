@@ -1,6 +1,6 @@
 #pragma once
-// Computes the error budget, which consists of mean squares of held-out readings: from the error of the given
-// model down to the noise.
+// Computes the error budget of a diagnosis: the mean square errors of the given, the refitted and the
+// extended model on held-out readings, and the noise variance.
 
 #include <algorithm>
 
@@ -19,8 +19,8 @@ struct Budget {
   [[nodiscard]] double excess() const { return std::max(recalibrated - noise, 0.0); }
   /// Returns the mean square error of the extended model minus the noise variance.
   [[nodiscard]] double left() const { return std::max(extended - noise, 0.0); }
-  /// Returns the share of excess() that one cause explains, from 0 to 100 %. It is measured by the removal of
-  /// this cause.
+  /// Returns the share of excess() that one cause explains, from 0 to 100 %. This share is the increase of
+  /// the mean square error when the cause is removed, divided by excess().
   [[nodiscard]] double share_percent(const NamedCause& named) const {
     return excess() > 0 ? std::clamp(100 * named.gain_mm2.value / excess(), 0.0, 100.0) : 0.0;
   }

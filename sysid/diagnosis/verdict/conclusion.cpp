@@ -135,8 +135,8 @@ void Conclusion::name(const Selection& selection) {
   }
   for (NamedCause& named : chosen) {
     if (d_.stick_slip && named.cause.id == causes::ValveDeadband::id) {
-      // The reported band is that of the stick-slip motion, because the extended model may contain the band
-      // of the mean motion.
+      // The reported band is that of the stick-slip motion. The band in the extended model may have been
+      // fitted to the mean of all possible stick-slip motions.
       named.parameters.front() = {"band_kpa", "kPa", d_.stick_slip->band_kpa, d_.stick_slip->band_ci95, true};
     }
     causes_.push_back(std::move(named));

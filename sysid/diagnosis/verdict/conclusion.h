@@ -19,41 +19,45 @@ class Conclusion {
              const SearchData& data, Diagnosis& diagnosis)
       : logs_(logs), given_(given), options_(options), data_(data), d_(diagnosis) {}
 
-  /// Errors of the models with the original drive, and held-out losses with the shifted drive.
+  /// Errors of the models with the original drive, and held-out losses with the shifted drive. They are
+  /// needed if the drive was shifted in time.
   struct Unshifted {
     double as_given_rmse_mm = 0;
     BlockLosses recalibrated, shifted;
   };
-  /// States that the drive of the records was shifted. The lead is then one of the causes.
+  /// Notes that the drive of the records was shifted in time. The lead of the readings is then one of the
+  /// causes.
   void drive_is_shifted(Unshifted unshifted) { unshifted_ = std::move(unshifted); }
 
-  /// Returns true if the selection leaves too large an error. The limit is the error that its causes may
-  /// leave. If the selection contains no causes, the limit is the noise.
+  /// Returns true if the error that remains with the selection exceeds a limit. For a selection with causes,
+  /// the limit is the error that inexact equations of the causes may leave. For a selection without causes,
+  /// the limit is a share of the noise, and wrong readings do not count as an error.
   [[nodiscard]] bool leaves_too_much(const Selection& selection) const;
   /// Returns true if the remaining error is due to wrong readings that were not found. Wrong readings are
   /// isolated. The effect of a cause, in contrast, is correlated from sample to sample.
   [[nodiscard]] bool left_by_outliers(const UnexplainedError& structure) const;
 
-  /// Writes the refitted model and its errors.
+  /// Writes the refitted model and its errors into the diagnosis.
   void measure_recalibrated(const Selection& selection);
-  /// Writes the errors of all models and the extended model.
+  /// Writes the errors of all models and the extended model into the diagnosis.
   void measure(const Selection& selection, const Division& division);
   /// Describes the causes of the selection and the causes that were found in the readings.
   void name(const Selection& selection);
   /// Returns the causes that name() has described.
   [[nodiscard]] std::vector<NamedCause>& causes() { return causes_; }
-  /// Writes the verdict. measure() and name() must have been called before.
+  /// Writes the verdict into the diagnosis. measure() and name() must have been called before.
   void conclude(const Selection& selection);
-  /// Writes a richer base structure with its errors, causes and verdict instead of the extended model.
+  /// Writes a richer base structure with its errors, causes and verdict into the diagnosis, instead of the
+  /// extended model.
   /// @param selection  selection on the given base structure.
   void adopt(BaseFindings& base, const Selection& selection);
 
  private:
-  /// Corrects the error reduction if the drive was shifted, so that the reduction includes the shift. The
-  /// errors of the given and the refitted model are then those with the original drive.
+  /// Corrects the error reduction if the drive was shifted in time, so that it includes the effect of the
+  /// shift. The errors of the given and the refitted model are set to the errors with the original drive.
   void count_shift(const BlockLosses& extended);
-  /// Returns the model with a different name. If two models had the same name, files and figures would be
-  /// ambiguous.
+  /// Returns the model with a new name, because two models with the same name would be ambiguous in files and
+  /// figures.
   [[nodiscard]] model::Model named_model(model::Model model, const std::string& how) const;
   [[nodiscard]] std::vector<NamedCause> found_in_readings() const;
 

@@ -17,8 +17,8 @@ void warn_unphysical(const model::Model& model, std::vector<std::string>& warnin
 /// Adds warnings about limits of the data that restrict the diagnosis.
 void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vector<std::string>& warnings);
 
-/// Adds a warning if the readings differ from the predictions of the given model by a factor that is the
-/// ratio of two units.
+/// Adds a warning if the readings are larger or smaller than the predictions of the given model by a factor
+/// that corresponds to a wrong unit.
 /// @param residual_mm  reading minus prediction, one vector per record
 void warn_of_scale(const std::vector<Record>& records, const std::vector<std::vector<double>>& residual_mm,
                    std::vector<std::string>& warnings);

@@ -1,7 +1,7 @@
 #pragma once
-// Averages logs that have far more samples than a diagnosis needs. The computing time of a diagnosis grows
-// with the number of readings. Additional readings within the response time of a finger contain no additional
-// information.
+// Averages logs that have far more samples than a diagnosis needs, because the computing time grows with the
+// number of readings. Several readings within the response time of a finger contain no more information than
+// their average.
 
 #include <string>
 #include <vector>

@@ -27,8 +27,8 @@ namespace {
 using Failure = tl::unexpected<std::string>;
 
 constexpr std::size_t fewest_samples = 200;
-/// Refits the base structure. The given model may be far from the data, so the fits start at the given model
-/// and at points at the scale of the data.
+/// Refits the base structure. The given model may be far from the data, so fits also start at points that are
+/// scaled to the data.
 tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, const DiagnosisOptions& options) {
   StructureFit best = fit_structure(data.records, {}, data.given);
   IdentifyOptions wide;
@@ -131,7 +131,7 @@ class Diagnostician {
     return {};
   }
 
-  /// Removes the valve causes that were already found in the displacement.
+  /// Removes valve causes that the diagnosis has already found in the displacement.
   void take_out_named(ValveFindings& in_valve) {
     std::erase_if(in_valve.named, [&](const NamedCause& one) { return is_among(d_.causes, one.cause); });
   }
@@ -170,8 +170,9 @@ class Diagnostician {
     d_.as_given_rmse_mm = std::sqrt(d_.as_given.mean_square_mm2);
   }
 
-  /// Hides outliers in a motion, which can be found only from the residual of the refitted model. The fit
-  /// without these outliers is more accurate and may show other outliers, so the search is repeated.
+  /// Hides outliers that occur during a motion. They can be found only from the residual of the refitted
+  /// model. A new fit without these outliers is more accurate and may reveal further outliers, so the search
+  /// is repeated.
   void hide_more_outliers(StructureFit& base) {
     constexpr int most_rounds = 3;
     for (int round = 0; round < most_rounds; ++round) {
@@ -183,8 +184,8 @@ class Diagnostician {
   }
 
   /// Handles logs that begin without pressure before the finger has settled. The given structure is fitted
-  /// with estimated initial states. If this fit explains the logs better than all causes found, it replaces
-  /// the recalibrated model, and the result is true.
+  /// with estimated initial states. If this fit explains the logs better than all causes found, the fit
+  /// replaces the recalibrated model. Returns true in this case.
   bool open_starts(const Selection& selection, const Division& division) {
     const auto is_given = [](const Record& r) { return r.start != Start::automatic || r.start_unknown; };
     if (!selection.left.present || std::all_of(data_.records.begin(), data_.records.end(), is_given))
@@ -210,8 +211,8 @@ class Diagnostician {
     return true;
   }
 
-  /// Shifts the drive if the readings react before the command changes. Returns true if the search must be
-  /// repeated.
+  /// Shifts the drive of the records in time if the readings react before the command changes. Returns true
+  /// if the search must be repeated.
   bool shift_drive(const Selection& selection, const Division& division) {
     std::optional<LeadFit> shifted = fit_lead(data_, selection, d_.noise_mm);
     if (!shifted) return false;
@@ -226,9 +227,9 @@ class Diagnostician {
     return true;
   }
 
-  /// Searches for stick-slip of the valve. No simulation from the command alone can predict its effect.
-  /// Returns true if stick-slip was the missing effect. `selection` then contains the causes that were found
-  /// with the positions of the valve as input.
+  /// Searches for stick-slip of the valve. The jumps of a sticking valve cannot be predicted by a simulation
+  /// from the command alone. Returns true if stick-slip explains the remaining error. `selection` then
+  /// contains the causes that were found with the valve position as input.
   bool look_for_stick_slip(Selection& selection, const Division& division) {
     if (options_.record.drive != Drive::command) return false;
     if (options_.progress) options_.progress("search for stick-slip");
@@ -247,8 +248,8 @@ class Diagnostician {
     return true;
   }
 
-  /// Returns true if the search for another base structure may begin at once. If there are gauge readings or
-  /// null campaigns, they must test the selection before.
+  /// Returns true if the search for another base structure may begin at once. Gauge readings or null
+  /// campaigns, if there are any, must first test the selection.
   [[nodiscard]] bool may_ask_at_once() const { return !options_.gauge && options_.null_campaigns == 0; }
 
   void look_for_base(AnotherBase& another, const Selection& selection) {

@@ -36,52 +36,55 @@ struct DiagnosisOptions {
   RecordOptions record;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  /// Number of simulated data sets without a cause. They calibrate the search if the search names a cause; 0:
-  /// no calibration.
+  /// Number of simulated data sets without a cause. If the search names a cause, these data sets show how
+  /// often the search names one by chance; 0: no simulation.
   std::size_t null_campaigns = 0;
   /// Readings of the sensor at known positions. Not set: the operator has made no gauge check.
   std::optional<GaugeFile> gauge;
   std::function<void(const std::string&)> progress;
 };
 
-/// RMSE of one run for each model that a diagnosis compares [mm]. If there is a single run, RMSE of one half
-/// of the run.
+/// RMSE of the models that a diagnosis compares, for one run [mm]. If there is a single run, each half of the
+/// run has its own element.
 struct RunError {
   std::string run;
   double given = 0;
   double recalibrated = 0;  ///< RMSE of the refitted model, which was fitted to the other runs
-  /// RMSE of the extended model, which was fitted to the other runs. If there is no extended model, the value
-  /// of the member `recalibrated`.
+  /// RMSE of the extended model, which was fitted to the other runs; equal to `recalibrated` if there is no
+  /// extended model.
   double extended = 0;
 };
 
 struct Diagnosis {
   /// Verdict from the displacement only; whole_verdict() also uses the measured pressure.
   Verdict verdict = Verdict::unexplained;
-  /// Named causes; present for the verdicts cause_found, ambiguous and partly_explained.
+  /// Named causes; empty unless the verdict is cause_found, ambiguous or partly_explained.
   std::vector<NamedCause> causes;
   /// Causes that explain only part of the error, for the verdict unexplained.
   std::vector<NamedCause> partial;
   std::vector<CandidateScore> rejected;
   double noise_mm = 0;
   Spread gain;  ///< held-out error reduction by the extended model, relative to the refitted model [%]
-  /// RMSE of the given model over all readings; initial states by sysid/fitting/start_estimate.h.
+  /// RMSE of the given model over all readings. The initial states are estimated from the first readings
+  /// (sysid/fitting/start_estimate.h).
   double as_given_rmse_mm = 0;
   double recalibrated_rmse_mm = 0;  ///< RMSE of the refitted model on held-out blocks
   double extended_rmse_mm = 0;      ///< RMSE of the extended model on held-out blocks
-  /// RMSE on logs that were completely held out; not set if there is a single log.
+  /// RMSE of the refitted and of the extended model on logs that were completely held out; not set if there
+  /// is a single log.
   std::optional<double> recalibrated_other_logs_rmse_mm;
   std::optional<double> extended_other_logs_rmse_mm;
   std::vector<RunError> runs;
   double unexplained_percent = 0;
-  /// Present if the calibration was requested and a cause was found.
+  /// Result of the search on data without a cause; set if this test was requested and a cause was found.
   std::optional<NullCalibration> null_calibration;
   OutlierEvidence outliers;
   SamplingEvidence sampling;
-  std::optional<ReadingLead> lead;              ///< present if the drive of the records was shifted in time
-  std::optional<StickSlipEvidence> stick_slip;  ///< present if the named dead band shows stick-slip
-  std::optional<GaugeEvidence> gauge;           ///< present if gauge readings were given
-  /// Present if the pressure was measured; does not repeat causes in `causes`.
+  std::optional<ReadingLead> lead;  ///< lead of the readings; set if the drive of the records was shifted
+  std::optional<StickSlipEvidence> stick_slip;  ///< set if the named dead band shows stick-slip
+  std::optional<GaugeEvidence> gauge;  ///< result of the gauge check; set if there are gauge readings
+  /// Causes between the command and the measured pressure, except those in `causes`; set if the pressure was
+  /// measured.
   std::optional<ValveFindings> in_valve;
   /// Description of a richer base structure; empty: the given base structure is sufficient.
   std::string base;
@@ -130,7 +133,7 @@ class StageClock {
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
-/// Returns an error sentence if the logs cannot be diagnosed.
+/// Diagnoses the given model from the logs. Returns an error sentence if the logs cannot be diagnosed.
 [[nodiscard]] tl::expected<Diagnosis, std::string> diagnose(const std::vector<Log>& logs,
                                                             const model::Model& given,
                                                             const DiagnosisOptions& options = {});

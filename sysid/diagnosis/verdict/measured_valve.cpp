@@ -41,7 +41,7 @@ BlockLosses MeasuredValve::held_out_losses(ValveParts parts, const ValveStage& w
                                            PressureSensorFit sensor) const {
   BlockLosses losses(blocks_end_.back(), 0);
   std::vector<double> counts(losses.size(), 0);
-  // There are two folds. Each fold contains every second block.
+  // Two folds are used. Each fold contains every second block.
   parallel_for_idle(2, [&](std::size_t fold) {
     ValveFit fit = fit_of(parts, {whole}, sensor);
     fit.is_fitted = [&](std::size_t log, std::size_t sample) { return block(log, sample) % 2 != fold; };
@@ -120,7 +120,8 @@ Eigen::VectorXd MeasuredValve::derivative(const ValveStage& at, double ValveStag
   ValveStage above = at, below = at;
   above.*number += step;
   below.*number -= step;
-  // In this case, the model has one time constant for filling and venting.
+  // If both time constants are equal, the model has a single one for filling and venting, so both are
+  // changed.
   if (number == &ValveStage::filling_s && at.filling_s == at.venting_s) {
     above.venting_s = above.filling_s;
     below.venting_s = below.filling_s;

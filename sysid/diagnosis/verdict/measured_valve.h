@@ -20,19 +20,19 @@ class MeasuredValve {
   /// @param held  true: the command is constant between two samples.
   MeasuredValve(const std::vector<Log>& logs, bool held);
 
-  /// Fits the given parts of the valve model, and the gain and the zero offset of the pressure sensor, to all
-  /// data. The fits start at the points `from`.
+  /// Fits the valve model to all data: the parameters of `parts`, and the gain and the zero offset of the
+  /// pressure sensor. The fits start at the points `from`.
   /// @param tolerance  tolerance of the fit; it must be small if the result of the fit is reported.
   [[nodiscard]] ValveStage fit(ValveParts parts, const std::vector<ValveStage>& from, double tolerance = 1e-6,
                                PressureSensorFit sensor = PressureSensorFit::gain_and_zero) const;
 
-  /// Returns the better one of two fits of `parts`: `one`, and a fit that starts at `other`. `other` contains
-  /// only some of the parts. The second fit is computed only if the error of `other` is at most slightly
-  /// larger than the error of `one`.
+  /// Returns the better of two fits of `parts`. The first fit is `one`. The second fit starts at `other`,
+  /// which was fitted with only some of the parts. The second fit is computed only if the error of `other` is
+  /// at most slightly larger than the error of `one`.
   [[nodiscard]] ValveStage better_fit(ValveParts parts, const ValveStage& one, const ValveStage& other) const;
 
-  /// Returns the mean square of each block [kPa^2]. The model is fitted to the other fold, without this
-  /// block.
+  /// Returns the mean square error of the predicted pressure in each block [kPa^2]. For each block, the model
+  /// is fitted to the fold that does not contain this block.
   [[nodiscard]] BlockLosses held_out_losses(
       ValveParts parts, const ValveStage& whole,
       PressureSensorFit sensor = PressureSensorFit::gain_and_zero) const;

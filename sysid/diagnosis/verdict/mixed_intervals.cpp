@@ -9,7 +9,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Widens the intervals of a cause where necessary. Returns true if an interval became wider.
+/// Widens the interval of each parameter of `named` so that it covers the interval of the same parameter in
+/// `with`. Returns true if an interval became wider.
 bool widen(NamedCause& named, const std::vector<CauseParameter>& with) {
   bool wider = false;
   for (CauseParameter& number : named.parameters) {

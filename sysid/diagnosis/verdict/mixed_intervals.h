@@ -12,9 +12,9 @@
 
 namespace softgrip::sysid {
 
-/// Widens the intervals of `named`, the chosen causes of `selection`. Each interval then covers the values in
-/// all undecided structures that the held-out blocks do not exclude. Returns a sentence for each widened
-/// interval.
+/// Widens the intervals of `named`, the chosen causes of `selection`. Each interval then also covers the
+/// values of the parameter in other plausible structures: the undecided structures that the held-out blocks
+/// do not exclude. Returns a sentence for each widened interval.
 [[nodiscard]] std::vector<std::string> mix_intervals(std::vector<NamedCause>& named,
                                                      const std::vector<Record>& records,
                                                      const Selection& selection, std::uint64_t seed);

@@ -24,8 +24,8 @@ struct UncertainPoint {
 [[nodiscard]] UncertainPoint uncertain_point(const std::vector<Record>& records, const FitPoint& point,
                                              const FitSpace& space);
 
-/// Returns the parameters of the model's block of this type, in the order of the block. A parameter has a 95
-/// % interval if it was fitted and is not at a bound.
+/// Returns the parameters of the model's block with the type `block_type`, in the order of the block. A
+/// parameter has a 95 % interval if it was fitted and is not at a bound.
 [[nodiscard]] std::vector<CauseParameter> block_numbers(const UncertainPoint& at, std::size_t block_type);
 
 /// Returns the causes of a selection with their parameters in the extended model.
@@ -41,8 +41,8 @@ struct UncertainPoint {
 
 /// Returns the title of a cause with a lower-case first letter, for use in a sentence: "valve lag".
 [[nodiscard]] std::string title_within(const Cause& cause);
-/// Returns the title of an alternative. If the same cause is already named, the title is, for example, "a
-/// further valve lag".
+/// Returns the title of an alternative, such as "valve lag". If the same cause is already named, returns a
+/// title such as "a further valve lag".
 [[nodiscard]] std::string alternative_title(const Cause& alternative, const std::vector<NamedCause>& named);
 
 /// Returns true if the list of named causes contains the cause.

@@ -11,8 +11,8 @@ namespace softgrip::sysid {
 
 struct ReadingLead {
   double lead_s = 0;
-  /// 95 % interval from the profile of the mean square. For each lead, all parameters of the structure are
-  /// fitted.
+  /// 95 % interval of the lead. It follows from the mean square error as a function of the lead, with all
+  /// parameters of the structure refitted for each lead.
   Interval ci95;
 };
 
@@ -22,9 +22,9 @@ struct LeadFit {
   std::vector<Record> records;  ///< records whose drive is shifted by the lead
 };
 
-/// Returns the records after their drive was shifted to an earlier time by `lead_s`. The first sample keeps
-/// its drive, because this drive defines the initial state of the record. A reading becomes NaN if it would
-/// need a drive after the end of the record.
+/// Shifts the drive of the records to an earlier time by `lead_s` and returns the records. The first sample
+/// keeps its drive, because this drive defines the initial state of the record. A reading becomes NaN if its
+/// shifted drive would lie after the end of the record.
 [[nodiscard]] std::vector<Record> with_drive_ahead(std::vector<Record> records, double lead_s);
 
 /// Determines the lead precisely if a selection contains the cause clock_offset. The block of this cause

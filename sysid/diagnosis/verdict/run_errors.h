@@ -9,7 +9,8 @@
 namespace softgrip::sysid {
 
 /// Returns the RMSE of each run. If there is a single run, returns the RMSE of each half.
-/// @param by_unit  result of divide_by_unit() for the records; its blocks are those of the losses.
+/// @param by_unit  result of divide_by_unit() for the records. The losses must have been computed for its
+/// blocks.
 [[nodiscard]] std::vector<RunError> run_errors(const std::vector<Record>& records, const Division& by_unit,
                                                const BlockLosses& given, const BlockLosses& recalibrated,
                                                const BlockLosses& extended);

@@ -1,6 +1,6 @@
 #pragma once
-// Handles causes that a simulation of the logs cannot detect. The condition of such a cause does not occur in
-// the logs, or the logs were recorded in a closed loop.
+// Handles causes that a simulation of the logs cannot detect. Either the logs do not contain the condition in
+// which the cause has an effect, or the logs were recorded in a closed loop.
 
 #include "sysid/diagnosis/verdict/diagnosis.h"
 

@@ -34,8 +34,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest share of the remaining mean square that a second time constant must explain. It is a detail of a
-/// lag and is not reported as a cause.
+/// Smallest share of the remaining mean square that a second time constant must explain. A second time
+/// constant refines a lag and is not reported as a cause.
 constexpr double least_detail = 0.02;
 /// Largest number of samples of all logs together. If there are more samples, the logs are thinned to every
 /// second, third, ... sample, because a valve model has few parameters.
@@ -115,7 +115,7 @@ ValveParts without(ValveParts parts, ValvePart part) {
   return parts;
 }
 
-/// A fit of some parts of the valve model, and its losses.
+/// A fit of a valve model with some of the possible parts, and the held-out losses of this fit.
 struct Trial {
   ValveParts parts;
   ValveStage stage;
@@ -160,8 +160,7 @@ class Search {
     parallel_for(valve_part_count, question.threads, [&](std::size_t i) {
       if (!ablation_[i]) return;
       Trial& trial = *ablation_[i];
-      // A part is not tested on held-out blocks if it explains only a negligible share of the error of the
-      // fit.
+      // A part that reduces the error of the fit by only a negligible share is not tested on held-out blocks.
       const double fitted_share = 1 - std::pow(whole_.stage.rmse_kpa / trial.stage.rmse_kpa, 2);
       if (fitted_share > 0.5 * least_share_of(static_cast<ValvePart>(i))) {
         trial.losses_kpa2 = valve_.held_out_losses(trial.parts, trial.stage);
@@ -227,8 +226,8 @@ class Search {
   }
 
   void add_lost_pressure(ValveFindings& found, ValveParts kept) const {
-    // A falling supply or a pressure limit reduces the pressure too. Therefore the fit that includes supply
-    // and pressure limit comes first.
+    // A falling supply or a pressure limit also reduces the pressure. Therefore the fit with supply and
+    // pressure limit comes before the search for a leak.
     if (!(whole_.stage.gauge_gain < 1 - scales_agree_within)) return;
     const auto lost = find_lost_pressure(logs_, valve_, kept, found.stage);
     if (!lost) return;

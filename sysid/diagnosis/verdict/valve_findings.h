@@ -15,14 +15,15 @@
 namespace softgrip::sysid {
 
 struct ValveFindings {
-  /// Causes with full inclusion and without alternatives. A leak is the exception, because it may be a scale
-  /// error. The list is empty if the fit is bad. Causes that the given model contains are left out. The error
-  /// reductions refer to the measured pressure (gain_kpa2, heldout_gain_percent), and gain_mm2 is 0.
+  /// Causes between the command and the measured pressure. The list is empty if the fit of the valve model is
+  /// bad. Causes that the given model contains are omitted. Every cause has an inclusion of 1 and no
+  /// alternatives, except a leak, which may be a scale error. The error reductions refer to the measured
+  /// pressure (gain_kpa2, heldout_gain_percent), and gain_mm2 is 0.
   std::vector<NamedCause> named;
   std::string advice;  ///< advice that separates a named leak from a scale error; empty if no leak is named
   ValveStage stage;    ///< fitted valve model: dead time, lag and the named causes
   double heldout_rmse_kpa = 0;
-  double noise_kpa = 0;  ///< noise between consecutive samples of the measured pressure
+  double noise_kpa = 0;  ///< noise of the measured pressure, estimated from consecutive samples
 };
 
 struct ValveQuestion {

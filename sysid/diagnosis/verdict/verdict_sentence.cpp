@@ -90,8 +90,8 @@ bool valve_lacks(const Diagnosis& d) {
   return d.in_valve && !d.in_valve->named.empty();
 }
 
-/// Returns the sentence about the valve: " Between the command and the measured pressure it lacks valve dead
-/// band (band_kpa 1.34)."
+/// Returns the sentence about the valve: " Between the command and the measured pressure, the model lacks
+/// valve dead band (band_kpa 1.34)."
 std::string sentence_of_valve(const Diagnosis& d) {
   std::string numbers;
   for (const NamedCause& named : d.in_valve->named) {

@@ -1,5 +1,5 @@
 #pragma once
-// Decides which requests are accepted, and which role the sender of a request has.
+// Decides which requests are accepted, and determines the role of the sender of a request.
 
 #include <string>
 #include <string_view>
@@ -20,7 +20,7 @@ struct Credentials {
   std::string host;
   std::string origin;      ///< the Origin header; empty if the client sent none
   std::string fetch_site;  ///< the Sec-Fetch-Site header of the request; may be empty
-  std::string cookie;      ///< the Cookie header of the request
+  std::string cookie;      ///< the Cookie header of the request; may be empty
   std::string authorization;
 };
 
@@ -35,13 +35,14 @@ class Gate {
   /// Creates a gate for the roles of `tokens`. `settings` must outlive the gate.
   Gate(const Settings& settings, Tokens tokens);
 
-  /// Returns the role of the sender, or a refusal if the request comes from the page of another site.
-  /// `changes` states that the request changes something. It must then come from the page of this server or
-  /// have a token in its Authorization header, which no other page can make a browser send.
+  /// Returns the role of the sender. Returns a refusal if the request comes from the page of another site. If
+  /// `changes` is true, the request changes the state of the rig or of a session. Such a request must come
+  /// from the page of this server, or have a token in its Authorization header: no other page can make a
+  /// browser send this header.
   [[nodiscard]] tl::expected<Role, Refusal> admit(const Credentials& credentials, bool changes,
                                                   Nanoseconds now);
-  /// Opens a session for the sender of a token and returns the id of the session. Refuses a token that is not
-  /// in the token file.
+  /// Opens a session for the sender of a token and returns the id of the session. If the token is not in the
+  /// token file, returns a refusal.
   [[nodiscard]] tl::expected<std::string, Refusal> open(std::string_view token, Nanoseconds now);
   void close(std::string_view cookie_header);
   [[nodiscard]] bool has_tokens() const noexcept { return !tokens_.empty(); }

@@ -13,7 +13,7 @@ namespace {
 
 std::string random_id() {
   std::array<unsigned char, 32> bytes{};
-  // For at most 256 bytes, getrandom() returns all requested bytes or fails.
+  // For a request of up to 256 bytes, getrandom() either returns all bytes or fails.
   if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
     throw std::system_error(errno, std::generic_category(), "getrandom");
   constexpr std::string_view digits = "0123456789abcdef";

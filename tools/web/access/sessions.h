@@ -12,13 +12,13 @@
 
 namespace softgrip::web {
 
-/// Keeps sessions in memory, not on the disk. A session ends if it is idle for too long, if it is too old, or
-/// if its browser closes it. It also ends if more than `most_per_token` newer sessions are opened with the
-/// same token. A client with another token cannot end the session.
+/// Keeps sessions in memory, not on the disk. A session ends in four cases: it is idle for too long, it is
+/// too old, its browser closes it, or `most_per_token` newer sessions were opened with the same token. A
+/// client with a different token cannot end the session.
 class Sessions {
  public:
-  /// Largest number of sessions per token. It exceeds 1, because the browsers of one team share a token. The
-  /// size of the token file limits the number of tokens.
+  /// Largest number of sessions per token. It is larger than 1, because the browsers of one team share a
+  /// token. The number of tokens is limited by the size of the token file.
   static constexpr std::size_t most_per_token = 32;
 
   Sessions(Nanoseconds longest_idle, Nanoseconds longest) : longest_idle_(longest_idle), longest_(longest) {}
@@ -26,8 +26,8 @@ class Sessions {
   /// Opens a session and returns its id: 256 random bits as text. If the token has too many sessions, the
   /// session that has been idle for the longest time ends.
   [[nodiscard]] std::string open(Grant grant, Nanoseconds now);
-  /// Returns the role of the session, or none if the session does not exist. The call restarts the idle time
-  /// of the session.
+  /// Returns the role of the session; none if the session does not exist. The call restarts the idle time of
+  /// the session.
   [[nodiscard]] Role role_of(std::string_view id, Nanoseconds now);
   void close(std::string_view id);
   [[nodiscard]] std::size_t size() const noexcept { return sessions_.size(); }

@@ -22,7 +22,7 @@ bool is_token_character(char character) {
   return within('a', 'z') || within('A', 'Z') || within('0', '9') || character == '-' || character == '_';
 }
 
-/// Removes the next word from the line and returns it.
+/// Removes the first word from the line and returns this word.
 std::string_view word_of(std::string_view& line) {
   const auto blank = [](char character) {
     return character == ' ' || character == '\t' || character == '\r';
@@ -37,7 +37,8 @@ std::string_view word_of(std::string_view& line) {
 }  // namespace
 
 bool equal_in_constant_time(std::string_view one, std::string_view other) noexcept {
-  // The duration of the comparison may reveal that the lengths differ, but no other property of the texts.
+  // The duration of the comparison may show that the lengths are different, but it must not depend on the
+  // content of the texts.
   if (one.size() != other.size()) return false;
   unsigned difference = 0;
   for (std::size_t i = 0; i < one.size(); ++i)
@@ -87,7 +88,7 @@ tl::expected<Tokens, std::string> Tokens::load(const std::string& path) {
 
 Grant Tokens::grant_of(std::string_view token) const noexcept {
   Grant grant;
-  // Continue the search after a match, because the duration of the search must not depend on the token.
+  // The search continues after a match, because its duration must not depend on the token.
   for (std::size_t number = 0; number < tokens_.size(); ++number) {
     if (equal_in_constant_time(tokens_[number].text, token)) grant = {tokens_[number].role, number};
   }

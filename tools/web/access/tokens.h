@@ -1,5 +1,5 @@
 #pragma once
-// Reads secret tokens, each of which gives a browser or a metrics collector a role.
+// Reads secret tokens. Each token gives a browser or a metrics collector a role.
 
 #include <cstddef>
 #include <string>
@@ -12,11 +12,11 @@
 
 namespace softgrip::web {
 
-/// Returns true if two texts are equal. If the lengths are equal, the duration of the comparison does not
+/// Returns true if two texts are equal. For texts of equal length, the duration of the comparison does not
 /// depend on the content.
 [[nodiscard]] bool equal_in_constant_time(std::string_view one, std::string_view other) noexcept;
 
-/// The role of a token, and its position in the file.
+/// The role of a token, and the position of the token in the token file.
 struct Grant {
   Role role = Role::none;  ///< role that the token gives; none: the token is not in the file
   std::size_t token = 0;   ///< index of the token in the file, from 0
@@ -30,13 +30,13 @@ class Tokens {
   /// Parses lines of the form `look TOKEN` or `operate TOKEN`. Skips empty lines and lines that begin with #.
   /// The error is a sentence that names the line and never contains the token.
   [[nodiscard]] static tl::expected<Tokens, std::string> parse(std::string_view text);
-  /// Reads a token file. Refuses a file that others than its owner and its group may read. The error is a
-  /// sentence.
+  /// Reads a token file. Refuses a file that users other than its owner and its group may read. The error is
+  /// a sentence.
   [[nodiscard]] static tl::expected<Tokens, std::string> load(const std::string& path);
 
-  /// Returns the role of a token and its index in the file.
+  /// Returns the role of a token and the index of the token in the file.
   [[nodiscard]] Grant grant_of(std::string_view token) const noexcept;
-  /// Returns the role of a token, or none if the token is not in the file.
+  /// Returns the role of a token; none if the token is not in the file.
   [[nodiscard]] Role role_of(std::string_view token) const noexcept { return grant_of(token).role; }
   [[nodiscard]] bool empty() const noexcept { return tokens_.empty(); }
 

@@ -18,7 +18,7 @@ constexpr double mm_per_m = 1e3;
 struct Quantity {
   const char* name;
   const char* key;
-  double units_per_base_unit;  // number of units of the status in one base unit
+  double units_per_base_unit;  // factor by which the value in the status is divided to get the base unit
   const char* help;
 };
 constexpr Quantity quantities[] = {
@@ -43,8 +43,8 @@ void tell_each(const Json& channels, MetricText& metrics, const auto& value_of) 
     metrics.sample({{"channel", json_text(channel, "name")}}, value_of(channel));
 }
 
-/// Returns the commanded pressure as a share of the range between the rest pressure and the limit on the same
-/// side of rest.
+/// Returns the commanded pressure as a share of the available range. The range is from the rest pressure to
+/// the pressure limit on the same side of rest as the command.
 double pressure_use(const Json& channel) {
   const Json& limits = json_member(channel, "limits");
   const double rest_kpa = json_number(limits, "rest_kpa");

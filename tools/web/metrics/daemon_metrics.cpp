@@ -18,7 +18,7 @@ using enum MetricText::Type;
 
 constexpr double us_per_s = 1e6;
 
-/// Returns 1 for true and 0 for false. Returns NaN if the member is not a Boolean.
+/// Returns 1 for true and 0 for false. Returns NaN if the member `key` is not a Boolean.
 double flag_value(const Json& object, const char* key) {
   const Json& value = json_member(object, key);
   if (!value.is_boolean()) return std::numeric_limits<double>::quiet_NaN();
@@ -65,7 +65,7 @@ void tell_lines(const Json& status, MetricText& metrics) {
            "1 if the daemon can no longer read the digital lines.", flag_value(lines, "lost"));
 }
 
-/// Writes a summary of the durations that the daemon has measured since its start.
+/// Writes a summary of the durations that the daemon has recorded since its start.
 void tell_durations(MetricText& metrics, const std::string& name, std::string_view help,
                     const Json& histogram) {
   if (!histogram.is_object()) return;

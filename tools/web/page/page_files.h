@@ -1,6 +1,6 @@
 #pragma once
-// The files of the page. They are part of the program, so that a path in a browser's request never selects a
-// file on the disk.
+// The files of the page. They are compiled into the program, so that a path in a browser's request never
+// selects a file on the disk.
 
 #include <string_view>
 
