@@ -67,7 +67,7 @@ def parsed(words):
     parser.add_argument("--softgrip", type=pathlib.Path, default=ROOT / "build/release/tools/softgrip")
     parser.add_argument("--threads", type=int, default=1, help="of each softgrip call")
     parser.add_argument("--at-most-s", type=float, default=3600, help="for one call")
-    parser.add_argument("--reference", type=pathlib.Path, default=REFERENCE, help="results of an earlier version")
+    parser.add_argument("--reference", type=pathlib.Path, default=REFERENCE, help="results of an earlier version, or none")
     parser.add_argument("--title", default="Data of other laboratories", help="of the page [%(default)s]")
     parser.add_argument("--page", type=pathlib.Path, nargs="?", const=PAGE, help=f"Markdown [{PAGE.relative_to(ROOT)}]")
     return parser.parse_args(words)
@@ -166,7 +166,8 @@ def main(words=None):
     if options.page:
         command = "bench/foreign.py --out DIR" + (" --data DATA" if options.data != [SHARED if SHARED.is_dir() else COPY] else "")
         command += f" --only {' '.join(options.only)}" if options.only != list(JUDGES) else ""
-        foreign_page.write(options.page, values, read_json(options.reference), options.title, f"{command} --page")
+        reference = None if options.reference.name == "none" else read_json(options.reference)
+        foreign_page.write(options.page, values, reference, options.title, f"{command} --page")
         print(f"page: {options.page}")
     failed = [case for case in values["cases"] if has_failed(case)]
     return 1 if failed or problems else 0

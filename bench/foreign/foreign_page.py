@@ -185,7 +185,7 @@ def failures_section(values):
     return ["## Failed cases", "", *table(["judge", "set", "case", "reason"], rows)] if rows else []
 
 
-def meaning(values):
+def meaning(values, subject="data of other laboratories"):
     """Returns sentences with the numbers of right and wrong answers of softgrip on these data."""
     summary, parts = values.get("summary", {}), []
     if "runs" in summary.get("repeats", {}):
@@ -203,14 +203,14 @@ def meaning(values):
         parts.append(f"the error of a linear model is more than 10 % smaller than the error of `softgrip identify --structure auto` in {of(part['linear_better']['auto'], part['rows'])} "
                      "fits")
     parts = parts or ["nothing was evaluated"]
-    return " ".join([f"On data of other laboratories, {parts[0]}.", *(f"{part[0].upper()}{part[1:]}." for part in parts[1:])])
+    return " ".join([f"On {subject}, {parts[0]}.", *(f"{part[0].upper()}{part[1:]}." for part in parts[1:])])
 
 
 def head(values, title, command):
     machine = values["machine"]
     loads = [case["load_1min"] for case in values["cases"] if case["load_1min"] is not None]
     load = f"{number(min(loads))} to {number(max(loads))}" if loads else "-"
-    lines = results_page.head(title, meaning(values), values["softgrip"]["version"], command,
+    lines = results_page.head(title, meaning(values, title[0].lower() + title[1:]), values["softgrip"]["version"], command,
                               f"{machine['processors']} processors, {machine['threads']} thread per call, 1-minute load {load}",
                               values["began"][:10])
     return [*lines, "The time of a case is the duration of all its calls of softgrip; if two cases use the same identification, its duration is counted in each of the two cases. "
