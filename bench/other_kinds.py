@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Simulates rigs of other kinds than soft grippers, with published equations. The logs are simulations, not measurements.
+"""Simulates rigs of other kinds than soft grippers, with textbook equations. The logs are simulations, not measurements.
+The parameters are typical and do not describe a certain rig.
 
     bench/other_kinds.py --out DIR
 
@@ -63,7 +64,7 @@ def variation(rng):
 
 
 def dryer(rng, kind, change=None):
-    """Heater power [V] to air temperature [V]: two lags and a delay (Ljung, System Identification, 1999)."""
+    """Heater power [V] to air temperature [V]: two lags and a delay."""
     time_s = np.arange(DRYER_SAMPLES) * DRYER_STEP_S
     gain, offset, initial = variation(rng)
     signal = (lambda: binary(time_s, rng, 0.4, 0.45), lambda: binary(time_s, rng, 0.8, 0.5), lambda: steps(time_s, rng, 5))
@@ -78,7 +79,7 @@ def dryer(rng, kind, change=None):
 
 
 def exchanger(rng, kind, change=None):
-    """Liquid flow to outlet temperature [deg C]: negative gain, inverse response (Bittanti and Piroddi, 1997)."""
+    """Liquid flow to outlet temperature [deg C]: negative gain, inverse response."""
     time_s = np.arange(EXCHANGER_SAMPLES) * EXCHANGER_STEP_S
     gain, offset, initial = variation(rng)
     signal = (lambda: steps(time_s, rng, 80), lambda: binary(time_s, rng, 30, 0.4), lambda: multisine(time_s, rng, 0.012))
@@ -94,7 +95,7 @@ def exchanger(rng, kind, change=None):
 
 
 def drives(rng, kind, change=None):
-    """Motor voltage [V] to absolute belt speed: a lag and a resonance (Wigren and Schoukens, 2017)."""
+    """Motor voltage [V] to absolute belt speed: a lag and a resonance."""
     time_s = np.arange(DRIVES_SAMPLES) * DRIVES_STEP_S
     gain, offset, _ = variation(rng)
     signal = (lambda: binary(time_s, rng, 1.0, 0.5) * 2 - 1, lambda: binary(time_s, rng, 0.5, 0.4) * 2.4 - 1.2,
@@ -126,7 +127,7 @@ def write_rig(name, out):
     folder.mkdir(parents=True, exist_ok=True)
     for run, kind in enumerate(KINDS_OF_INPUT):
         write_log(folder / f"r{run + 1}.csv", simulate(np.random.default_rng([base, run]), kind))
-    lines = [f'title: "{name} (simulation)"', "about: simulated with published equations, not measured",
+    lines = [f'title: "{name} (simulation)"', "about: simulated with textbook equations, not measured",
              "same: {time: time_s, command: pressure_command_kpa, displacement: displacement_mm}", "logs:",
              '- {file: "*.csv"}', "repeats:", "- {baseline: r1, later: r2, because: simulated without a change}",
              *(f"- {{baseline: [r1, r2, r3], later: {later}, because: simulated without a change}}" for later in ("r4", "r5")),
