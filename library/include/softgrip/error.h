@@ -1,5 +1,6 @@
 #pragma once
-/// @file Declares the exceptions of the library. The changelog announces every incompatible change of these
+/// @file
+/// Declares the exceptions of the library. The changelog announces every incompatible change of these
 /// exceptions.
 ///
 /// Functions that load data, fit models or construct objects report errors by these exceptions. Functions
