@@ -1,6 +1,7 @@
 // Reads the channels of a rig file.
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/numbers.h"
 #include "control/feedforward/invertibility.h"
@@ -132,17 +133,20 @@ void check_feedforward_exists(Context& context, MapReader& reader, const control
                           : "");
 }
 
-/// Reports each dead time, lag and period of a channel's model that is too long for a controller. A model
-/// file of a slow process may contain larger values.
-void check_model_times(MapReader& reader, const model::Model& model) {
-  constexpr double longest_s = 10;
-  for (std::size_t i = 0; i < model::parameter_count(model); ++i) {
-    const double value = model::flat_values(model)[i];
-    if (!model::parameter_spec(model, i).latency || value <= longest_s) continue;
+/// Reports the times, gains and rates of a channel's model that are too large for a soft finger: more than 10
+/// s, or more than 10 mm/kPa or 10/kPa. Model files may contain larger values, because they also describe
+/// slow processes and pressures in MPa. In the model of a finger, such a value has a wrong unit.
+void check_model_values(MapReader& reader, const model::Model& model) {
+  constexpr double largest = 10;
+  const std::vector<double> values = model::flat_values(model);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const model::ParameterSpec& spec = model::parameter_spec(model, i);
+    if (!(spec.latency || spec.per_pressure) || std::abs(values[i]) <= largest) continue;
+    const std::string unit = " " + model::in_unit(spec.unit, model.output_unit);
     reader.report("model",
-                  "`" + model::parameter_path(model, i) + "` of the model is " + written(value) +
-                      " s, but a controller allows at most " + written(longest_s) + " s",
-                  "check the unit in the model file: 13 ms = 0.013 s");
+                  "`" + model::parameter_path(model, i) + "` of the model is " + written(values[i]) + unit +
+                      ", but a controller allows at most " + written(largest) + unit,
+                  "check the unit of the values in the model file");
   }
 }
 
@@ -157,7 +161,7 @@ void read_channel(Context& context, const Node& node, const Shared& shared, Chan
   const std::string who = channel.name.empty() ? number : "channel `" + channel.name + "`";
   const auto model = named_model(context, reader, "model", InputFile::Role::model);
   if (model) {
-    check_model_times(reader, *model);
+    check_model_values(reader, *model);
     channel.model = *model;
   }
   read_feedforward(context, reader, channel);

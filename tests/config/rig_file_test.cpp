@@ -376,24 +376,31 @@ TEST(RestPressure, IsComparedWithTheValveThatHasNoPower) {
       << problems.format();
 }
 
-TEST(RigFile, AModelWithALagBeyondTheLimitOfAControllerIsRefused) {
+TEST(RigFile, AModelWithALagOrAGainBeyondTheLimitsOfAControllerIsRefused) {
   const ScratchFolder folder;
-  const auto problems_with = [&](const std::string& lag_s) {
+  const auto problems_with = [&](const std::string& old, const std::string& now) {
     std::ifstream shipped_model(shipped("models/bench_twin.yaml"));
     std::string text{std::istreambuf_iterator<char>(shipped_model), {}};
-    const std::string lag = "time_constant_s: 0.044";
-    text.replace(text.find(lag), lag.size(), "time_constant_s: " + lag_s);
-    std::ofstream(folder.path() + "/slow.yaml") << text;
+    text.replace(text.find(old), old.size(), now);
+    std::ofstream(folder.path() + "/changed.yaml") << text;
     Problems problems;
-    const std::pair<std::string, std::string> model{"models/bench_twin.yaml", folder.path() + "/slow.yaml"};
+    const std::pair<std::string, std::string> model{"models/bench_twin.yaml",
+                                                    folder.path() + "/changed.yaml"};
     edited("rig.yaml", {model, model, model}, problems);  // two simulated fingers and the channels
     return problems.format();
   };
-  EXPECT_EQ(problems_with("10").find("but a controller allows"), std::string::npos) << problems_with("10");
-  EXPECT_NE(problems_with("44").find("time_constant_s` of the model is 44 s, but a controller allows at most "
-                                     "10 s"),
-            std::string::npos)
-      << problems_with("44");
+  const auto contains = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
+  EXPECT_FALSE(contains(problems_with("time_constant_s: 0.044", "time_constant_s: 10"), "controller allows"));
+  const std::string slow = problems_with("time_constant_s: 0.044", "time_constant_s: 44");
+  EXPECT_TRUE(contains(slow, "time_constant_s` of the model is 44 s, but a controller allows at most 10 s"))
+      << slow;
+  const std::string soft = problems_with("alpha_mm_per_kpa: 0.21105", "alpha_mm_per_kpa: 211");
+  EXPECT_TRUE(contains(soft,
+                       "alpha_mm_per_kpa` of the model is 211 mm/kPa, but a controller allows at most "
+                       "10 mm/kPa"))
+      << soft;
 }
 
 TEST(RigFile, PathsAreRelativeToTheFile) {
