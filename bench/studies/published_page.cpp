@@ -99,7 +99,7 @@ void latency_section(sysid::Page& page, const PublishedStudy& study) {
     page.figure(
         {"fit to the longest latency",
          "The longest latency: the structure without a valve fits this response closely, so a small error is "
-         "no evidence for the structure.",
+         "no evidence that the actuator has this structure.",
          fit_charts(study.latency_log, study.latency_mm, "actuator behind the valve", "fitted model")});
   }
 }

@@ -14,8 +14,8 @@ namespace softgrip::control {
                                           document::Problems& problems);
 
 /// Plans the motion of the channels with the feedforward `planned` (control/sequences/sequence_plans.h). A
-/// planned position that is out of reach is a warning. A plan that is longer than most_planned_s, or that a
-/// request through `stop` ends, is a problem.
+/// planned position that is out of reach is a warning. The function adds a problem in two cases: a plan is
+/// longer than most_planned_s, or `stop` requests the end of the computation.
 /// @param prepared  result of fit_to_rig() for this sequence.
 void plan_motion(const Sequence& sequence, const RigSettings& settings, PreparedSequence& prepared,
                  document::Problems& problems, const std::stop_token& stop);

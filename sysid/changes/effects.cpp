@@ -86,7 +86,7 @@ class Collector {
     const model::BlockDescriptor& descriptor = model::catalogue()[form.type];
     // The free form of this cause is piecewise linear and can represent a sinusoidal drift too.
     if (form.type == model::block_type<model::SensorWander>()) return;
-    // add_softening() and add_crescent() add similar effects for any baseline model.
+    // add_softening() and add_crescent() add the effects of the next two blocks for any baseline model.
     if (form.type == model::block_type<model::PseudoElasticSoftening>()) return;
     if (form.type == model::block_type<model::CrescentHysteresis>()) return;
     if (cause.station != model::Station::valve && !is_carried(base_, starts.front())) return;

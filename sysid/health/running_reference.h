@@ -42,7 +42,8 @@ class SerialSums {
   double n_ = 0, x0_ = 0, y0_ = 0;
   double x_ = 0, y_ = 0, xx_ = 0, xy_ = 0, yy_ = 0;
   double last_x_ = 0, last_y_ = 0;
-  /// Sums of the products of a pair with the pair before it.
+  /// Sums over all points after the first one. Each term is a value of a point times a value of the point
+  /// before it.
   double before_xx_ = 0, before_xy_ = 0, before_yx_ = 0, before_yy_ = 0;
 };
 

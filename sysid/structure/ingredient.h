@@ -20,12 +20,12 @@ enum class Ingredient {
   second_lag,
   rate_limit,
   latency,      ///< delay and lag together, because a delay can largely replace a lag, and a lag a delay
-  regulator,    ///< regulator; a lag replaces it
-  venting_lag,  ///< separate time constant for venting; one time constant for both directions replaces it
+  regulator,    ///< regulator; a structure without it has a lag
+  venting_lag,  ///< separate time constant for venting; a structure without it has one time constant
   /// Characteristic and envelopes together, because one of them can largely replace the other.
   characteristic,
   resonance,
-  envelopes  ///< generalised play operators; ordinary play operators replace them
+  envelopes  ///< generalised play operators; a structure without them has ordinary play operators
 };
 inline constexpr std::array all_ingredients{Ingredient::hysteresis,
                                             Ingredient::play_operators,

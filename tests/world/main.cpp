@@ -222,7 +222,8 @@ int run(int argc, char** argv) {
   app.add_option("--first", options.first, "First seed")->capture_default_str();
   app.add_option("--count", options.count, "Number of seeds")->capture_default_str();
   app.add_option("--jobs", options.jobs, "Processes")->capture_default_str();
-  app.add_option("--tool", options.tool, "Program that runs in the world; `tools`: each tool in turn")
+  app.add_option("--tool", options.tool,
+                 "Program that is tested on the simulated rig; `tools` tests all tools one after the other")
       ->check(CLI::IsMember(known))
       ->capture_default_str();
   app.add_option("--seconds", options.length_s, "Simulated time of each world [s]")->capture_default_str();

@@ -27,8 +27,8 @@ struct Excuse {
   bool paused = false;   ///< true: a thread or the whole daemon process is paused
   bool no_line = false;  ///< true: the line or the board prevents exchanges, or no exchange has succeeded
                          ///< since they did
-  bool line_but_for_foreign = false;  ///< like no_line, but writes of another client do not count as a
-                                      ///< disturbance
+  bool line_but_for_foreign = false;  ///< true: no_line is true for a reason other than writes of another
+                                      ///< client
   bool no_daemon = false;
 };
 

@@ -33,7 +33,7 @@ using LeftOutLosses = std::function<BlockLosses(const StructureFit&)>;
 /// considered candidate fulfils all conditions.
 /// @param scored  candidates, the best first. @param without  the structure that each candidate extends.
 /// @param gains  returns true if a candidate reduces the error sufficiently. The search ends at the first
-/// candidate that does not.
+/// candidate for which `gains` returns false.
 [[nodiscard]] bool put_nameable_first(std::vector<ScoredCandidate>& scored,
                                       const std::vector<Record>& records, const StructureFit& without,
                                       const std::function<bool(const ScoredCandidate&)>& gains,

@@ -9,7 +9,6 @@
 #include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {
-namespace {}  // namespace
 
 bool is_free_form(const ScoredCandidate& scored) {
   return has_free_form(scored.candidate.fit->point.model, scored.candidate.cause);

@@ -511,8 +511,8 @@ TEST_F(SingleFault, ABriefDropoutIsBridged) {
   EXPECT_EQ(rig.result(0), GripResult::holding);
 }
 
-// The end time of the last step is within a pause of the process. The board may vent during this pause. The
-// sequence must therefore not end before the first exchange after the pause.
+// The daemon process is paused, and the last step of the sequence ends during this pause. The board may vent
+// during the pause. The sequence must therefore not end before the first exchange after the pause.
 TEST(FaultAfterAPause, ASequenceDoesNotEndBeforeTheFirstExchangeAfterAPause) {
   const RigSettings settings = two_finger_settings();
   const PreparedSequence brief =
