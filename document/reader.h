@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "document/node.h"
@@ -38,6 +39,11 @@ class MapReader {
   MapReader& operator=(MapReader&&) = delete;
   /// Calls finish() if it has not been called yet.
   ~MapReader();
+
+  /// Returns a reader of another map of the same document.
+  [[nodiscard]] MapReader inner(const Node& node, std::string what) const {
+    return {document_, node, problems_, std::move(what)};
+  }
 
   /// Reads a required number in `range`. Adds a problem if the number is missing, not finite or out of range,
   /// or if the value is not a number. After a problem, returns the nearest allowed value, or 0 limited to the

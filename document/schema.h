@@ -14,6 +14,7 @@
 
 #include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/time.h"
 #include "document/reader.h"
 
 namespace softgrip::document {
@@ -23,6 +24,7 @@ namespace softgrip::document {
 struct Allowed {
   Allowed() = default;
   Allowed(double lower, double upper) : range{lower, upper} {}
+  Allowed(Range numbers) : range(numbers) {}
   Allowed(std::vector<std::string> choices) : words(std::move(choices)) {}
   Allowed(std::initializer_list<const char*> choices) : words(choices.begin(), choices.end()) {}
 
@@ -64,10 +66,23 @@ template <class S>
 using Keys = std::vector<Key<S>>;
 
 /// Reads all keys of a map in the order of the declaration. If an optional key is omitted, its member in
-/// `settings` keeps its value; a std::optional member is reset.
+/// `settings` keeps its value.
 template <class S>
 void read_keys(MapReader& reader, const Keys<S>& keys, S& settings) {
   for (const Key<S>& key : keys) key.read(reader, key.facts, settings);
+}
+
+/// Reads the map under `name` of the map `outer` into `settings`, then calls `check` for keys and conditions
+/// that have no declaration. `what` is the name of the map in messages; the default is `name`. Does nothing
+/// if an optional map is absent.
+template <class S>
+void read_map(MapReader& outer, const std::string& name, bool required, const Keys<S>& keys, S& settings,
+              const std::function<void(MapReader& reader)>& check = nullptr, const std::string& what = "") {
+  const Node* const node = outer.child(name, required);
+  if (node == nullptr) return;
+  MapReader reader = outer.inner(*node, what.empty() ? name : what);
+  read_keys(reader, keys, settings);
+  if (check) check(reader);
 }
 
 /// Appends the descriptions of the keys for a reference page. The text `map` is put before the name of each
@@ -92,7 +107,7 @@ void read_value(MapReader& reader, std::string_view key, const Allowed& allowed,
   } else if constexpr (std::is_floating_point_v<T>) {
     value = reader.number(key, allowed.range);
   } else if constexpr (std::is_same_v<T, std::chrono::nanoseconds>) {
-    value = T(static_cast<std::int64_t>(reader.number(key, allowed.range) * 1e9));
+    value = T(nanoseconds(reader.number(key, allowed.range)));
   } else if constexpr (std::is_same_v<T, std::string>) {
     value = reader.text(key);
   } else {
@@ -141,12 +156,8 @@ Key<S> optional(std::string name, T S::*member, const Allowed& allowed, std::str
                 std::string fallback = "") {
   Key<S> key = required(std::move(name), member, allowed, std::move(meaning));
   key.facts.fallback = fallback.empty() ? default_text(S{}.*member, allowed) : std::move(fallback);
-  key.read = [member, read = std::move(key.read)](MapReader& reader, const KeyFacts& facts, S& settings) {
-    if (reader.child(facts.name, false) != nullptr) {
-      read(reader, facts, settings);
-    } else if constexpr (requires { (settings.*member).reset(); }) {
-      (settings.*member).reset();
-    }
+  key.read = [read = std::move(key.read)](MapReader& reader, const KeyFacts& facts, S& settings) {
+    if (reader.child(facts.name, false) != nullptr) read(reader, facts, settings);
   };
   return key;
 }

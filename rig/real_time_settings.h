@@ -17,7 +17,7 @@ struct RealTimeSettings {
   std::size_t prefault_stack_bytes = 256 * 1024;
   std::size_t prefault_heap_bytes = 8 * 1024 * 1024;
   /// The value is written to /dev/cpu_dma_latency; if it is empty, nothing is written.
-  std::optional<int> cpu_dma_latency_us = 0;
+  std::optional<int> cpu_dma_latency_us;
   std::vector<int> cpus;
 };
 

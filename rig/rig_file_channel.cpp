@@ -89,7 +89,7 @@ struct Shared {
 };
 
 void read_plausibility(Context& context, MapReader& outer, control::PlausibilitySettings& settings) {
-  read_map(context, outer, "plausibility", false, rig_keys().plausibility, settings, [&](MapReader& reader) {
+  read_map(outer, "plausibility", false, rig_keys().plausibility, settings, [&](MapReader& reader) {
     if (!context.rate_known || !reader.good("max_age_s") || settings.max_age_s > context.period_s()) return;
     reader.report("max_age_s",
                   "`max_age_s` must be longer than one cycle of the control loop, which is " +
@@ -99,7 +99,7 @@ void read_plausibility(Context& context, MapReader& outer, control::Plausibility
 }
 
 void read_model_health(Context& context, MapReader& outer, control::ModelHealthSettings& settings) {
-  read_map(context, outer, "model_health", false, rig_keys().model_health, settings);
+  read_map(outer, "model_health", false, rig_keys().model_health, settings);
 }
 
 void read_own_or_shared(Context& context, MapReader& reader, const std::string& who, const Shared& shared,
@@ -167,13 +167,13 @@ void read_channel(Context& context, const Node& node, const Shared& shared, Chan
   read_feedforward(context, reader, channel);
   read_keys(reader, rig_keys().channel_parts, channel);
   read_map(
-      context, reader, "pid", true, rig_keys().pid, channel.pid,
+      reader, "pid", true, rig_keys().pid, channel.pid,
       [&](MapReader& pid) {
         (void)pid.child("tracking_time_s", channel.pid.anti_windup == control::AntiWindup::back_calculation);
       },
       "pid of " + who);
   read_map(
-      context, reader, "limits", true, rig_keys().limits, channel.limits,
+      reader, "limits", true, rig_keys().limits, channel.limits,
       [&](MapReader& limits) { check_limits(limits, channel.limits); }, "limits of " + who);
   read_rest_pressure(reader, who, channel.limits);
   const bool motion_known = model && context.problems.size() == before && context.rate_known &&

@@ -84,20 +84,6 @@ struct Context {
 [[nodiscard]] std::optional<model::Model> named_model(Context& context, MapReader& reader,
                                                       std::string_view key, InputFile::Role role);
 
-/// Reads the map under `key` into `settings`, then calls `check` for keys and conditions that have no
-/// declaration. `what` is the name of the map in messages; the default is the key. Does nothing if an
-/// optional map is absent.
-template <class S>
-void read_map(Context& context, MapReader& outer, const std::string& key, bool required,
-              const document::Keys<S>& keys, S& settings,
-              const std::function<void(MapReader& reader)>& check = nullptr, const std::string& what = "") {
-  const document::Node* const node = outer.child(key, required);
-  if (node == nullptr) return;
-  MapReader reader(context.document, *node, context.problems, what.empty() ? key : what);
-  read_keys(reader, keys, settings);
-  if (check) check(reader);
-}
-
 /// Reads a name that can be used in folders, metrics and messages: letters, digits, `-` and `_`.
 [[nodiscard]] std::string read_name(MapReader& reader, std::string_view key);
 /// Returns a location as text, for example "12:5" for line 12, column 5.

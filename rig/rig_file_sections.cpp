@@ -102,7 +102,7 @@ void finish_socket_file(const Context& context, MapReader& reader, SocketFile& s
 
 void read_safety(Context& context, MapReader& top) {
   control::SafetySettings& safety = context.rig.settings.safety;
-  read_map(context, top, "safety", true, rig_keys().safety, safety, [&](MapReader& reader) {
+  read_map(top, "safety", true, rig_keys().safety, safety, [&](MapReader& reader) {
     read_keys(reader, rig_keys().commands, context.rig.loop);
     if (const Node* actions = reader.child("safe_action", true)) read_safe_actions(context, *actions);
     const auto words = reader.optional_text("accept_no_watchdog");
@@ -118,7 +118,7 @@ void read_safety(Context& context, MapReader& top) {
 
 void read_faults(Context& context, MapReader& top) {
   control::FaultSettings& faults = context.rig.settings.faults;
-  read_map(context, top, "faults", true, rig_keys().faults, faults, [&](MapReader& reader) {
+  read_map(top, "faults", true, rig_keys().faults, faults, [&](MapReader& reader) {
     std::vector<const char*> given{"pressure_cycles", "pressure_tolerance_kpa", "pressure_delay_s"};
     std::erase_if(given, [&](const char* key) { return !reader.has(key); });
     if (given.empty() || given.size() == 3) return;
@@ -131,7 +131,7 @@ void read_faults(Context& context, MapReader& top) {
 
 void read_detection(Context& context, MapReader& top) {
   control::DetectionSettings& detection = context.rig.settings.detection;
-  read_map(context, top, "detection", true, rig_keys().detection, detection, [&](MapReader& reader) {
+  read_map(top, "detection", true, rig_keys().detection, detection, [&](MapReader& reader) {
     const double least_mm = 3 * detection.model_rmse_mm;
     if (reader.good("margin_mm") && reader.good("model_rmse_mm") && detection.margin_mm < least_mm) {
       reader.report("margin_mm", "`margin_mm` must be at least three times `model_rmse_mm`",
@@ -142,7 +142,7 @@ void read_detection(Context& context, MapReader& top) {
 
 void read_rest(Context& context, MapReader& top) {
   control::RigSettings& settings = context.rig.settings;
-  read_map(context, top, "rest", true, rig_keys().rest, settings, [&](MapReader& reader) {
+  read_map(top, "rest", true, rig_keys().rest, settings, [&](MapReader& reader) {
     if (reader.good("time_s") && reader.good("timeout_s") && settings.rest_timeout_s <= settings.rest_time_s)
       reader.report("timeout_s", "`timeout_s` must be longer than `time_s`");
   });
@@ -167,28 +167,28 @@ void read_timing(Context& context, MapReader& reader) {
 }
 
 void read_loop(Context& context, MapReader& top) {
-  read_map(context, top, "loop", false, rig_keys().loop, context.rig.loop);
+  read_map(top, "loop", false, rig_keys().loop, context.rig.loop);
 }
 
 void read_real_time(Context& context, MapReader& top) {
   RealTimeSettings& real_time = context.rig.real_time;
-  read_map(context, top, "real_time", true, rig_keys().real_time, real_time,
+  read_map(top, "real_time", true, rig_keys().real_time, real_time,
            [&](MapReader& reader) { real_time.cpus = read_cpus(context, reader); });
 }
 
 void read_recorder(Context& context, MapReader& top) {
   RecorderSettings& recorder = context.rig.recorder;
-  read_map(context, top, "recorder", true, rig_keys().recorder, recorder);
+  read_map(top, "recorder", true, rig_keys().recorder, recorder);
   recorder.directory = resolved(context, recorder.directory);
 }
 
 void read_socket(Context& context, MapReader& top) {
   SocketSettings& socket = context.rig.socket;
-  read_map(context, top, "socket", true, rig_keys().socket, socket, [&](MapReader& reader) {
+  read_map(top, "socket", true, rig_keys().socket, socket, [&](MapReader& reader) {
     finish_socket_file(context, reader, socket, true);
     socket.sequence_directory = resolved(context, socket.sequence_directory);
     read_map(
-        context, reader, "look", false, rig_keys().look, socket.look,
+        reader, "look", false, rig_keys().look, socket.look,
         [&](MapReader& look) {
           finish_socket_file(context, look, socket.look, false);
           if (!socket.look.path.empty() && socket.look.path == socket.path) {

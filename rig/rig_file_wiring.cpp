@@ -20,7 +20,7 @@ using drivers::ElectricalUnit;
 /// Returns the range of values in V, mA or kPa that a rig file may contain for a terminal of any supported
 /// board. The limits of a particular board map are narrower than this range.
 constexpr document::Range range_of(ElectricalUnit unit) {
-  return unit == ElectricalUnit::kilopascal ? document::Range{-200, 10'000} : document::Range{-100, 100};
+  return unit == ElectricalUnit::kilopascal ? document::Rangeline_pressure_kpa : document::Range{-100, 100};
 }
 
 /// A key whose suffix gives the unit of its value, such as `at_v` or `at_ma`.
@@ -244,9 +244,9 @@ drivers::OutputWiring read_valve(Context& context, const Node& node, const std::
   wiring.output = read_terminal(context, reader, "output", wiring.module, context.outputs);
   const ElectricalKey at = electrical_key(reader, "at");
   wiring.unit = at.unit;
-  wiring.scaling = read_scaling(reader, at, "is_kpa", {-200, 10'000});
+  wiring.scaling = read_scaling(reader, at, "is_kpa", line_pressure_kpa);
   check_unit(reader, at, terminal_of(context, "output", wiring.module, wiring.output));
-  const auto range = reader.numbers("range_kpa", 2, {-200, 10'000});
+  const auto range = reader.numbers("range_kpa", 2, line_pressure_kpa);
   facts.range_min_kpa = range[0];
   facts.range_max_kpa = range[1];
   if (reader.good("range_kpa") && range[0] >= range[1]) {
@@ -281,7 +281,7 @@ drivers::InputWiring read_sensor(Context& context, const Node& node, const std::
 
 drivers::InputWiring read_pressure_monitor(Context& context, const Node& node, const std::string& who) {
   MapReader reader(context.document, node, context.problems, "the pressure monitor of " + who);
-  return read_input(context, reader, "pressure monitor of " + who, "is_kpa", {-200, 10'000});
+  return read_input(context, reader, "pressure monitor of " + who, "is_kpa", line_pressure_kpa);
 }
 
 drivers::InputWiring read_temperature_sensor(Context& context, const Node& node, const std::string& who) {

@@ -14,8 +14,6 @@ using document::required;
 /// rig are narrower than this range.
 const document::Allowed any_pressure_kpa{-100, 2000};
 const document::Allowed any_displacement_mm{-1000, 1000};
-/// Range of pressures at a valve or in its line [kPa].
-const document::Allowed line_pressure_kpa{-200, 10'000};
 const document::Allowed cycles{1, 100'000};
 
 void declare_rig(RigKeys& keys) {
@@ -146,15 +144,20 @@ void declare_safety(RigKeys& keys) {
        "required if the board has no watchdog that vents: `" + std::string(no_watchdog_words) + "`"}};
   using Fault = control::FaultSettings;
   keys.faults = {
-      required("bus_down_cycles", &Fault::bus_down_cycles, cycles, "no successful exchange"),
-      required("invalid_reading_cycles", &Fault::invalid_reading_cycles, cycles, "a reading is not valid"),
-      required("displacement_cycles", &Fault::displacement_cycles, cycles, "displacement outside its limits"),
-      required("readback_cycles", &Fault::readback_cycles, cycles, "an output differs from the commands"),
+      required("bus_down_cycles", &Fault::bus_down_cycles, cycles,
+               "cycles without a successful exchange until the fault"),
+      required("invalid_reading_cycles", &Fault::invalid_reading_cycles, cycles,
+               "cycles with an invalid reading until the fault"),
+      required("displacement_cycles", &Fault::displacement_cycles, cycles,
+               "cycles with a displacement outside its limits until the fault"),
+      required("readback_cycles", &Fault::readback_cycles, cycles,
+               "cycles with an output that differs from the commands until the fault"),
       required("readback_tolerance_kpa", &Fault::readback_tolerance_kpa, {0.001, 1000},
                "permitted difference of the output from the commands of the last `readback_delay_s`"),
       required("readback_delay_s", &Fault::readback_delay_s, {0, 10}, "see `readback_tolerance_kpa`"),
-      optional("pressure_cycles", &Fault::pressure_cycles, {0, 100'000},
-               "a measured pressure differs from the commands; 0: no comparison"),
+      optional(
+          "pressure_cycles", &Fault::pressure_cycles, {0, 100'000},
+          "cycles with a measured pressure that differs from the commands until the fault; 0: no comparison"),
       optional("pressure_tolerance_kpa", &Fault::pressure_tolerance_kpa, {0.001, 1000},
                "permitted difference of the pressure from the commands of the last `pressure_delay_s`",
                "none"),
@@ -214,7 +217,7 @@ void declare_service(RigKeys& keys) {
       optional("prefault_heap_bytes", &RealTime::prefault_heap_bytes, {0, 1 << 30}, "prefaulted heap")};
   using Recorder = RecorderSettings;
   keys.recorder = {
-      required("mode", &Recorder::mode, {"off", "sequences", "always"}, "occasions of recordings"),
+      required("mode", &Recorder::mode, {"off", "sequences", "always"}, "when recordings are made"),
       required("directory", &Recorder::directory, {}, "folder of the recordings"),
       optional("decimation", &Recorder::decimation, {1, 10'000}, "number of cycles per row of the recording"),
       optional("flush_interval_s", &Recorder::flush_interval_s, {0.001, 0.5},

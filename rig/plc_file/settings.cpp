@@ -59,8 +59,8 @@ class SettingsReader {
   Settings read() {
     MapReader top(document_, document_.root, problems_, "the file");
     read_keys(top, plc_keys().file, settings_);
-    if (const Node* const node = top.child("listen", true)) listen(*node);
-    if (const Node* const node = top.child("master", true)) master(*node);
+    read_map(top, "listen", true, plc_keys().listen, settings_, [this](MapReader& reader) { check(reader); });
+    read_map(top, "master", true, plc_keys().master, settings_);
     for (const Node* const node : top.sequence("recipes", true)) recipe(*node);
     if (const Node* const node = top.child("registers", true))
       settings_.registers = read_register_map(document_, *node, problems_);
@@ -68,9 +68,8 @@ class SettingsReader {
   }
 
  private:
-  void listen(const Node& node) {
-    MapReader reader(document_, node, problems_, "listen");
-    read_keys(reader, plc_keys().listen, settings_);
+  /// Checks the addresses of the map `listen`.
+  void check(MapReader& reader) {
     if (reader.good("address") && !net::is_numeric(settings_.address))
       reader.report("address", "this is not a numeric address", std::string(numeric_hint));
     for (const Node* const item : reader.sequence("allow", true)) {
@@ -83,11 +82,6 @@ class SettingsReader {
       reader.report("allow", "other machines can reach this address, so the permitted clients must be listed",
                     "allow: [192.168.1.20]");
     }
-  }
-
-  void master(const Node& node) {
-    MapReader reader(document_, node, problems_, "master");
-    read_keys(reader, plc_keys().master, settings_);
   }
 
   void recipe(const Node& node) {

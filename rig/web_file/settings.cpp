@@ -81,17 +81,11 @@ Settings read_settings(const document::Document& document, document::Problems& p
   Settings settings;
   MapReader top(document, document.root, problems, "the file");
   read_keys(top, web_keys().file, settings);
-  const auto read = [&](const char* name, const Keys& keys, const auto& check) {
-    const Node* const node = top.child(name, true);
-    if (node == nullptr) return;
-    MapReader reader(document, *node, problems, name);
-    read_keys(reader, keys, settings);
-    check(reader);
-  };
-  read("daemon", web_keys().daemon, [](MapReader&) {});
-  read("listen", web_keys().listen,
-       [&](MapReader& reader) { check_listen(document, reader, problems, settings); });
-  read("access", web_keys().access, [&](MapReader& reader) { check_access(reader, settings); });
+  read_map(top, "daemon", true, web_keys().daemon, settings);
+  read_map(top, "listen", true, web_keys().listen, settings,
+           [&](MapReader& reader) { check_listen(document, reader, problems, settings); });
+  read_map(top, "access", true, web_keys().access, settings,
+           [&](MapReader& reader) { check_access(reader, settings); });
   return settings;
 }
 

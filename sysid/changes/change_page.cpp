@@ -1,5 +1,6 @@
 #include "sysid/changes/change_page.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "base/numbers.h"
@@ -114,8 +115,8 @@ Figure runs_figure(const JudgedChange& judged, bool explained) {
 void add_reading(Page& page, const JudgedChange& judged, const ChangeDiagnosis& d) {
   page.section(std::string("The ") + name_of(judged.judged));
   page.terms(result::terms_of(fields_of(judged)));
-  bool explained = false;
-  for (const ChangeCause& cause : d.causes) explained |= cause.judged == judged.judged;
+  const bool explained = std::any_of(d.causes.begin(), d.causes.end(),
+                                     [&](const ChangeCause& cause) { return cause.judged == judged.judged; });
   page.figure(residual_figure(judged, explained));
   page.figure(runs_figure(judged, explained));
   page.figure(tried_figure(judged));

@@ -128,12 +128,13 @@ Value logs_value(const std::vector<Log>& logs) {
 Fields fields_of(const std::vector<Score>& scores) {
   Fields fields;
   if (scores.empty()) return fields;
-  const Fields keys = fields_of_score({}, 0);
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (keys[i].key.empty()) continue;
+  std::vector<Fields> rows;
+  for (const Score& s : scores) rows.push_back(fields_of_score(s, 0));
+  for (std::size_t i = 0; i < rows.front().size(); ++i) {
+    if (rows.front()[i].key.empty()) continue;
     Fields by_log;
-    for (const Score& s : scores) by_log.emplace_back(s.name, fields_of_score(s, 0)[i].value);
-    fields.emplace_back(keys[i].key, std::move(by_log));
+    for (std::size_t j = 0; j < scores.size(); ++j) by_log.emplace_back(scores[j].name, rows[j][i].value);
+    fields.emplace_back(rows.front()[i].key, std::move(by_log));
   }
   return fields;
 }
