@@ -4,13 +4,14 @@
 
 #include <limits>
 #include <string>
+#include <string_view>
 
 namespace softgrip {
 
 /// Returns the member at `key` of an object. Returns null if the member is missing, or if `object` is not an
 /// object. `Json` is nlohmann's json or ordered_json.
 template <class Json>
-[[nodiscard]] const Json& json_member(const Json& object, const char* key) {
+[[nodiscard]] const Json& json_member(const Json& object, std::string_view key) {
   static const Json none;
   if (!object.is_object()) return none;
   const auto found = object.find(key);
@@ -19,7 +20,7 @@ template <class Json>
 
 /// Returns the number at `key`, or `missing` if there is no number.
 template <class Json>
-[[nodiscard]] double json_number(const Json& object, const char* key,
+[[nodiscard]] double json_number(const Json& object, std::string_view key,
                                  double missing = std::numeric_limits<double>::quiet_NaN()) {
   const Json& value = json_member(object, key);
   return value.is_number() ? value.template get<double>() : missing;
@@ -27,21 +28,21 @@ template <class Json>
 
 /// Returns the text at `key`, or "" if there is no text.
 template <class Json>
-[[nodiscard]] std::string json_text(const Json& object, const char* key) {
+[[nodiscard]] std::string json_text(const Json& object, std::string_view key) {
   const Json& value = json_member(object, key);
   return value.is_string() ? value.template get<std::string>() : std::string();
 }
 
 /// Returns true if the member at `key` is the Boolean value true.
 template <class Json>
-[[nodiscard]] bool json_flag(const Json& object, const char* key) {
+[[nodiscard]] bool json_flag(const Json& object, std::string_view key) {
   const Json& value = json_member(object, key);
   return value.is_boolean() && value.template get<bool>();
 }
 
 /// Returns the list at `key`, or an empty list if there is no list.
 template <class Json>
-[[nodiscard]] const Json& json_list(const Json& object, const char* key) {
+[[nodiscard]] const Json& json_list(const Json& object, std::string_view key) {
   static const Json none = Json::array();
   const Json& value = json_member(object, key);
   return value.is_array() ? value : none;

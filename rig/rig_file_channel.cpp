@@ -98,7 +98,7 @@ void read_plausibility(Context& context, MapReader& outer, control::Plausibility
   });
 }
 
-void read_model_health(Context& context, MapReader& outer, control::ModelHealthSettings& settings) {
+void read_model_health(MapReader& outer, control::ModelHealthSettings& settings) {
   read_map(outer, "model_health", false, rig_keys().model_health, settings);
 }
 
@@ -110,7 +110,7 @@ void read_own_or_shared(Context& context, MapReader& reader, const std::string& 
   // missing.
   const bool judge = context.document.complete && !reader.keys().empty();
   read_plausibility(context, reader, channel.plausibility);
-  read_model_health(context, reader, channel.health);
+  read_model_health(reader, channel.health);
   for (const std::string key : {"plausibility", "model_health"}) {
     if (!judge || reader.has(key) || shared.top.has(key)) continue;
     reader.report(key, who + " has no `" + key + "`, and the top level of the rig file has none either",
@@ -194,7 +194,7 @@ void read_channel(Context& context, const Node& node, const Shared& shared, Chan
 void read_channels(Context& context, MapReader& top) {
   Shared shared{top, {}};
   read_plausibility(context, top, shared.settings.plausibility);
-  read_model_health(context, top, shared.settings.health);
+  read_model_health(top, shared.settings.health);
   ChannelDefaults defaults(context, top);
   const std::vector<const Node*> channels = top.sequence("channels", true);
   if (top.has("channels") && channels.empty() && context.document.complete) {

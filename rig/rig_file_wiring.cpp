@@ -20,7 +20,7 @@ using drivers::ElectricalUnit;
 /// Returns the range of values in V, mA or kPa that a rig file may contain for a terminal of any supported
 /// board. The limits of a particular board map are narrower than this range.
 constexpr document::Range range_of(ElectricalUnit unit) {
-  return unit == ElectricalUnit::kilopascal ? document::Rangeline_pressure_kpa : document::Range{-100, 100};
+  return unit == ElectricalUnit::kilopascal ? line_pressure_kpa : document::Range{-100, 100};
 }
 
 /// A key whose suffix gives the unit of its value, such as `at_v` or `at_ma`.

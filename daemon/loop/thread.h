@@ -13,7 +13,7 @@
 
 #include <pthread.h>
 
-#include "model/reading.h"
+#include "base/time.h"
 
 namespace softgrip::daemon {
 

@@ -10,9 +10,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "base/time.h"
 #include "daemon/recording/event_log.h"
 #include "daemon/socket/client_request.h"
-#include "model/reading.h"
 
 namespace softgrip::daemon {
 

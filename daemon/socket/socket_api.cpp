@@ -30,7 +30,7 @@ constexpr Nanoseconds pause_while_asked = ns_per_s / 1000;
 }  // namespace
 
 SocketApi::SocketApi(StatusSources sources, rig::SocketSettings settings,
-                     std::shared_ptr<const SequenceLoader> loader, const EventLog& events, Send send)
+                     std::shared_ptr<const SequenceLoader> loader, const EventLog& events, SendLine send)
     : sources_(sources),
       settings_(std::move(settings)),
       started_at_(utc_text(wall_time(sources.origin), 3)),

@@ -27,10 +27,8 @@ namespace softgrip::daemon {
 /// Service.
 class SocketApi {
  public:
-  using Send = SendLine;
-
   SocketApi(StatusSources sources, rig::SocketSettings settings, std::shared_ptr<const SequenceLoader> loader,
-            const EventLog& events, Send send);
+            const EventLog& events, SendLine send);
   SocketApi(const SocketApi&) = delete;
   SocketApi& operator=(const SocketApi&) = delete;
   /// Cancels the planning that is in progress, but does not wait until it ends, because its thread may be
@@ -117,7 +115,7 @@ class SocketApi {
   std::string started_at_;
   std::shared_ptr<const SequenceLoader> loader_;
   EventFeed events_;
-  Send send_;
+  SendLine send_;
   std::multimap<std::uint32_t, Asked> asked_;  // requests that wait for the loop's reply, by their id in the
                                                // loop
   std::map<ClientId, Client> clients_;

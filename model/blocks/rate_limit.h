@@ -20,9 +20,9 @@ class RateLimit {
                  "p follows u, -1 / venting_s_per_kpa <= p' <= 1 / filling_s_per_kpa");
   static constexpr std::array parameters{
       parameter("filling_s_per_kpa", "s/kPa", "shortest time in which the pressure rises by 1 kPa",
-                Typical{0.005}, Within{0.0, 1e6}, Scale{0.005}, Neutral{0.0}),
+                Typical{0.005}, Within{0.0, 1000.0}, Scale{0.005}, Neutral{0.0}),
       parameter("venting_s_per_kpa", "s/kPa", "shortest time in which the pressure falls by 1 kPa",
-                Typical{0.005}, Within{0.0, 1e6}, Scale{0.005}, Neutral{0.0})};
+                Typical{0.005}, Within{0.0, 1000.0}, Scale{0.005}, Neutral{0.0})};
 
   RateLimit(std::span<const T> values, const Preparation&)
       : filling_s_per_kpa_(values[0]), venting_s_per_kpa_(values[1]) {}

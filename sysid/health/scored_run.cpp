@@ -4,16 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
+#include "base/json_member.h"
 
 namespace softgrip::sysid::health {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string text_at(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
 
 }  // namespace
 
@@ -29,14 +25,14 @@ std::vector<ScoredRun> read_scores(std::string_view text) {
     const Json line = Json::parse(text.substr(begin, end - begin), nullptr, false);
     begin = end + 1;
     if (!line.is_object()) continue;
-    ScoredRun run{text_at(line, "run"),    text_at(line, "finger"),   text_at(line, "started_at"),
-                  text_at(line, "recipe"), text_at(line, "baseline"), {}};
+    ScoredRun run{json_text(line, "run"),    json_text(line, "finger"),   json_text(line, "started_at"),
+                  json_text(line, "recipe"), json_text(line, "baseline"), {}};
     for (std::size_t i = 0; i < sysid::health_numbers; ++i) {
-      const auto value = line.find(sysid::health_number_infos[i].id);
-      if (value != line.end() && value->is_number()) run.score.values[i] = value->get<double>();
+      const Json& value = json_member(line, sysid::health_number_infos[i].id);
+      if (value.is_number()) run.score.values[i] = value.get<double>();
     }
-    const auto temperature = line.find("temperature_c");
-    if (temperature != line.end() && temperature->is_number()) run.temperature_c = temperature->get<double>();
+    const Json& temperature = json_member(line, "temperature_c");
+    if (temperature.is_number()) run.temperature_c = temperature.get<double>();
     runs.push_back(std::move(run));
   }
   return runs;

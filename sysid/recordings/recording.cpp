@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
+#include "base/json_member.h"
 #include "base/json_text.h"
 #include "base/numbers.h"
 
@@ -18,14 +19,9 @@ using nlohmann::json;
 constexpr std::size_t longest_log = std::size_t{512} << 20U;
 constexpr std::size_t longest_story = std::size_t{64} << 20U;
 
-std::string text_at(const json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
 /// Returns the recipe of a sequence as text: "pick_stone 4419590a hold_s=5 squeeze_kpa=5".
 std::string recipe_of(const json& sequence) {
-  std::string recipe = text_at(sequence, "name") + " " + text_at(sequence, "sha256").substr(0, 8);
+  std::string recipe = json_text(sequence, "name") + " " + json_text(sequence, "sha256").substr(0, 8);
   const auto parameters = sequence.find("parameters");
   if (parameters == sequence.end() || !parameters->is_object()) return recipe;
   for (const auto& [name, value] : parameters->items()) {
@@ -40,19 +36,20 @@ void read_story(const std::string& path, Recording& recording) {
   if (!text) return;
   const json story = parse_json<json>(*text);
   if (!story.is_object()) return;
-  recording.software_version = text_at(story, "software_version");
-  recording.started_at = text_at(story, "started_at");
-  recording.unfinished = text_at(story, "state") == "recording";
+  recording.software_version = json_text(story, "software_version");
+  recording.started_at = json_text(story, "started_at");
+  recording.unfinished = json_text(story, "state") == "recording";
   if (const auto sequence = story.find("sequence"); sequence != story.end() && sequence->is_object()) {
-    recording.sequence = text_at(*sequence, "name");
+    recording.sequence = json_text(*sequence, "name");
     recording.recipe = recipe_of(*sequence);
   }
   const auto events = story.find("events");
   if (events == story.end() || !events->is_array()) return;
   for (const json& event : *events) {
     if (!event.is_object() || !event.contains("time_s") || !event["time_s"].is_number()) continue;
-    recording.events.push_back({event["time_s"].get<double>(), text_at(event, "kind"),
-                                text_at(event, "channel"), text_at(event, "code"), text_at(event, "text")});
+    recording.events.push_back({event["time_s"].get<double>(), json_text(event, "kind"),
+                                json_text(event, "channel"), json_text(event, "code"),
+                                json_text(event, "text")});
   }
 }
 

@@ -17,7 +17,6 @@ import tree
 
 PAGE = tree.ROOT / "docs/explanation/libraries.md"
 
-
 # The libraries of the compiler: the C library, the C++ runtime and the sanitizers.
 RUNTIME = {"c", "m", "gcc_s", "stdc++", "atomic", "asan", "ubsan", "tsan"}
 
@@ -45,16 +44,19 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--build", type=pathlib.Path, required=True)
     build = parser.parse_args().build
-    ninja = (build / "build.ninja").read_text()
+    ninja, table = (build / "build.ninja").read_text(), stated()
     wrong = [f"{program}: the page says {', '.join(sorted(says))}; the build links {', '.join(sorted(has))}"
-             for program, says in stated().items() if says != (has := linked(program, ninja))]
-    built = {program: build / folder / program for program in stated() for folder in ("daemon", "tools")
+             for program, says in table.items() if says != (has := linked(program, ninja))]
+    built = {program: build / folder / program for program in table for folder in ("daemon", "tools")
              if (build / folder / program).is_file()}
     wrong += [f"{program} loads {', '.join(sorted(more))}, which the page does not list"
-              for program, file in built.items() if (more := loaded(file) - stated()[program])]
-    if len(stated()) < 4:
+              for program, file in built.items() if (more := loaded(file) - table[program])]
+    if len(table) < 4:
         wrong.append("the table does not have the 4 programs")
-    print("\n".join(wrong) or f"{len(stated())} programs are linked with what {PAGE.name} says; {len(built)} load that")
+    if not built:
+        wrong.append(f"{build} contains none of the programs {', '.join(table)}")
+    print("\n".join(wrong) or f"{PAGE.name} lists the libraries of {len(table)} programs; "
+                              f"the {len(built)} built programs load no others")
     return 1 if wrong else 0
 
 

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json_member.h"
 #include "document/problem.h"
 
 namespace softgrip::tools {
@@ -9,20 +10,19 @@ namespace softgrip::tools {
 using Json = nlohmann::ordered_json;
 
 std::string text_at(const Json& json, const char* key, std::size_t most) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_string() ? document::shown(found->get<std::string>(), most) : "-";
+  const Json& value = json_member(json, key);
+  return value.is_string() ? document::shown(value.get<std::string>(), most) : "-";
 }
 
 std::optional<double> number_at(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  if (found == json.end() || !found->is_number()) return std::nullopt;
-  return found->get<double>();
+  const Json& value = json_member(json, key);
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
 }
 
 const Json& object_at(const Json& json, const char* key) {
   static const Json empty = Json::object();
-  const auto found = json.find(key);
-  return found != json.end() && found->is_object() ? *found : empty;
+  const Json& value = json_member(json, key);
+  return value.is_object() ? value : empty;
 }
 
 }  // namespace softgrip::tools

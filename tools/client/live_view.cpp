@@ -91,8 +91,8 @@ void take_status(LiveState& state, Json status) {
     const Json& channel = channels[i];
     // If the reading is not valid, its last value is out of date, so the trend gets a gap.
     const bool valid = channel.is_object() && channel.value("validity", "") == "valid";
-    const auto pressure = channel.is_object() ? number_at(channel, "pressure_kpa") : std::nullopt;
-    const auto command = channel.is_object() ? number_at(channel, "command_kpa") : std::nullopt;
+    const auto pressure = number_at(channel, "pressure_kpa");
+    const auto command = number_at(channel, "command_kpa");
     state.trends[i].pressure_kpa.add(time_s, pressure ? pressure : command);
     state.trends[i].displacement_mm.add(time_s, valid ? number_at(channel, "displacement_mm") : std::nullopt);
   }

@@ -69,6 +69,9 @@ TEST(ServerProgram, TakesTheSignalsThatEndAServerAndThoseItIsGiven) {
   ::sigprocmask(SIG_BLOCK, nullptr, &before);
   {
     const Descriptor signals = take_server_signals({SIGUSR1});
+    struct sigaction pipe {};
+    ::sigaction(SIGPIPE, nullptr, &pipe);
+    EXPECT_EQ(pipe.sa_handler, SIG_IGN) << "a client that disconnects must not end the server";
     for (const int signal : {SIGHUP, SIGINT, SIGTERM, SIGUSR1}) {
       ::raise(signal);
       EXPECT_EQ(next_signal(signals), signal);

@@ -100,6 +100,13 @@ TEST(Metrics, WhatIsNotKnownIsNotThere) {
   EXPECT_EQ(text.find("softgrip_loop_compute_seconds{"), std::string::npos)
       << "without samples, no quantiles must be reported";
   EXPECT_EQ(text.find("nan"), std::string::npos);
+  Json unknown = status();
+  unknown.erase("simulated");
+  unknown["gpio"] = Json::object();
+  const std::string without_flags = told(unknown, statistics());
+  EXPECT_EQ(without_flags.find("\nsoftgrip_simulated "), std::string::npos);
+  EXPECT_EQ(without_flags.find("\nsoftgrip_emergency_stop "), std::string::npos)
+      << "an unknown state of the emergency stop must not be reported as not pressed";
   const std::string gone = told(nullptr, statistics());
   EXPECT_TRUE(has_line(gone, "softgrip_up 0"));
   EXPECT_EQ(gone.find("softgrip_state"), std::string::npos)
