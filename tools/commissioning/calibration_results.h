@@ -38,8 +38,6 @@ struct Results {
 
 /// Formats a number for a rig file: rounded to `decimals`, without trailing zeros.
 [[nodiscard]] std::string rounded(double value, int decimals);
-/// Returns the suffix of a key that contains electrical values: "v", "ma" or "kpa".
-[[nodiscard]] std::string suffix_of(drivers::ElectricalUnit unit);
 
 /// The x and y values of two points as texts for a rig file.
 struct PairText {

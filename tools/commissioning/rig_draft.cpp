@@ -12,6 +12,7 @@
 #include "control/feedforward/free_motion.h"
 #include "control/feedforward/invertibility.h"
 #include "drivers/board/channel_wiring.h"
+#include "rig/electrical_suffix.h"
 #include "rig/rig_file.h"
 #include "tools/commissioning/calibration_results.h"
 #include "tools/commissioning/rig_template.h"
@@ -20,8 +21,8 @@ namespace softgrip::tools {
 namespace {
 
 using calibrate::rounded;
-using calibrate::suffix_of;
 using drivers::ElectricalUnit;
+using rig::suffix_of;
 
 constexpr std::array<double, 8> usual_rates_hz{200, 100, 50, 40, 20, 10, 5, 2};
 constexpr double bus_lag = 0.25;  // delay of the bus schedule after the loop schedule, as a share of the
@@ -183,18 +184,18 @@ std::string channels_text(const RigDraft& draft) {
   return text;
 }
 
-std::string valid_text(const drivers::TwoPoints& points, const std::string& unit) {
+std::string valid_text(const drivers::TwoPoints& points, std::string_view unit) {
   const double span = points.x1 - points.x0;
-  return fmt::format("valid_{}: {}", unit,
+  return fmt::format("valid{}: {}", unit,
                      pair_text(points.x0 + beyond_ends * span, points.x1 - beyond_ends * span));
 }
 
 std::string monitor_text(const RigDraft& draft) {
   if (!draft.monitor) return "";
-  const std::string unit = suffix_of(input_unit(draft));
+  const std::string_view unit = suffix_of(input_unit(draft));
   const ElectricalRange range = input_range(draft);
   const double span = range.highest - range.lowest;
-  return fmt::format("  pressure_monitor: {{at_{}: {}, is_kpa: {}, valid_{}: {}}}\n", unit,
+  return fmt::format("  pressure_monitor: {{at{}: {}, is_kpa: {}, valid{}: {}}}\n", unit,
                      pair_text(range.lowest, range.highest), pair_text(draft.valve.y0, draft.valve.y1), unit,
                      pair_text(range.lowest - 0.02 * span, range.highest + 0.02 * span));
 }
@@ -239,8 +240,8 @@ std::string text_at(const RigDraft& draft, double rate_hz, const std::filesystem
   const double gain = std::max(
       1e-6, (motion.highest_mm - motion.lowest_mm) / (limits.pressure_max_kpa - limits.pressure_min_kpa));
   const auto feedforward = feedforward_of(draft, limits, 1 / rate_hz);
-  const std::string output = suffix_of(output_unit(draft));
-  const std::string input = suffix_of(input_unit(draft));
+  const std::string_view output = suffix_of(output_unit(draft));
+  const std::string_view input = suffix_of(input_unit(draft));
   const std::string lines =
       draft.accepts_no_watchdog ? fmt::format("  accept_no_watchdog: \"{}\"\n", rig::no_watchdog_words) : "";
   const Values values{
@@ -259,11 +260,11 @@ std::string text_at(const RigDraft& draft, double rate_hz, const std::filesystem
       {"displacement_max", rounded(limits.displacement_max_mm, 1)},
       {"valve",
        fmt::format(
-           "{{at_{}: {}, is_kpa: {}, range_kpa: {}, on_power_loss: vents}}", output,
+           "{{at{}: {}, is_kpa: {}, range_kpa: {}, on_power_loss: vents}}", output,
            pair_text(draft.valve.x0, draft.valve.x1), pair_text(draft.valve.y0, draft.valve.y1),
            pair_text(std::min(draft.valve.y0, draft.valve.y1), std::max(draft.valve.y0, draft.valve.y1)))},
       {"sensor",
-       fmt::format("{{at_{}: {}, is_mm: {}, {}}}", input, pair_text(draft.sensor.x0, draft.sensor.x1),
+       fmt::format("{{at{}: {}, is_mm: {}, {}}}", input, pair_text(draft.sensor.x0, draft.sensor.x1),
                    pair_text(draft.sensor.y0, draft.sensor.y1), valid_text(draft.sensor, input))},
       {"monitor", monitor_text(draft)},
       {"channels", channels_text(draft)},

@@ -10,6 +10,7 @@
 
 #include "base/files.h"
 #include "document/edit.h"
+#include "rig/electrical_suffix.h"
 #include "rig/rig_file.h"
 
 namespace softgrip::tools::calibrate {
@@ -60,7 +61,7 @@ bool set_pair(document::Edit& edit, const Node& map, const std::string& key, con
 bool set_points(document::Edit& edit, const Node::Entry& entry, const Target& target,
                 const Results& results) {
   const LineText points = text_of(target.line->points);
-  if (!set_pair(edit, entry.value, "at_" + suffix_of(target.unit), points.at)) return false;
+  if (!set_pair(edit, entry.value, "at" + std::string(rig::suffix_of(target.unit)), points.at)) return false;
   if (!set_pair(edit, entry.value, target.is, points.is)) return false;
   const std::string unit = target.is == "is_mm" ? "mm" : "kPa";
   edit.comment_above(entry, mark,

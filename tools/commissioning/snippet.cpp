@@ -7,6 +7,7 @@
 #include "base/enumerated.h"
 #include "base/numbers.h"
 #include "document/number.h"
+#include "rig/electrical_suffix.h"
 #include "rig/rig_file.h"
 
 namespace softgrip::tools::calibrate {
@@ -17,18 +18,17 @@ std::string pair(double first, double second, int decimals) {
 }
 
 /// Returns the two points of a scaling as text: `at_v: [1.2, 7.8], is_mm: [3, 21]`.
-std::string scaling(const drivers::TwoPoints& points, const std::string& electrical,
-                    const std::string& unit) {
+std::string scaling(const drivers::TwoPoints& points, std::string_view electrical, const std::string& unit) {
   const LineText text = text_of(points);
-  return fmt::format("at_{}: [{}, {}], is_{}: [{}, {}]", electrical, text.at.first, text.at.second, unit,
+  return fmt::format("at{}: [{}, {}], is_{}: [{}, {}]", electrical, text.at.first, text.at.second, unit,
                      text.is.first, text.is.second);
 }
 
 std::string error_codes(const drivers::InputWiring& wiring) {
   if (wiring.error_codes.empty()) return {};
-  const std::string electrical = suffix_of(wiring.unit);
+  const std::string_view electrical = rig::suffix_of(wiring.unit);
   const auto text_of = [&](const auto& code) {
-    return fmt::format("{{at_{}: {}, tolerance_{}: {}}}", electrical, written(code.electrical), electrical,
+    return fmt::format("{{at{}: {}, tolerance{}: {}}}", electrical, written(code.electrical), electrical,
                        written(code.tolerance));
   };
   return ", error_codes: [" + with_commas(wiring.error_codes, text_of) + "]";
@@ -43,8 +43,8 @@ std::string module_of(const rig::RigFile& rig, std::size_t module) {
 
 std::string input(const rig::RigFile& rig, const std::string& key, const drivers::InputWiring& wiring,
                   const drivers::TwoPoints& points, const std::string& unit) {
-  const std::string electrical = suffix_of(wiring.unit);
-  return fmt::format("{}: {{{}input: {}, {}, valid_{}: {}{}}}\n", key, module_of(rig, wiring.module),
+  const std::string_view electrical = rig::suffix_of(wiring.unit);
+  return fmt::format("{}: {{{}input: {}, {}, valid{}: {}{}}}\n", key, module_of(rig, wiring.module),
                      wiring.input, scaling(points, electrical, unit), electrical,
                      pair(wiring.valid_min, wiring.valid_max, 5), error_codes(wiring));
 }
@@ -65,7 +65,7 @@ std::string valve_line(const rig::RigFile& rig, std::size_t channel, const drive
   const rig::ValveFacts& facts = rig.valves[channel];
   return fmt::format(
       "valve: {{{}output: {}, {}, range_kpa: {}, on_power_loss: {}}}\n", module_of(rig, wiring.module),
-      wiring.output, scaling(points, suffix_of(wiring.unit), "kpa"),
+      wiring.output, scaling(points, rig::suffix_of(wiring.unit), "kpa"),
       pair(facts.range_min_kpa, facts.range_max_kpa, 4),
       facts.on_power_loss == rig::PowerLoss::holds ? "holds"
       : facts.power_loss_kpa == 0                  ? "vents"
@@ -90,18 +90,6 @@ std::string dead_zone_lines(const DeadZoneResult& result, double rest_kpa) {
 std::string rounded(double value, int decimals) {
   const double scale = std::pow(10, decimals);
   return written(std::round(value * scale) / scale + 0.0);
-}
-
-std::string suffix_of(drivers::ElectricalUnit unit) {
-  switch (unit) {
-    case drivers::ElectricalUnit::volt:
-      return "v";
-    case drivers::ElectricalUnit::milliampere:
-      return "ma";
-    case drivers::ElectricalUnit::kilopascal:
-      return "kpa";
-  }
-  return {};
 }
 
 LineText text_of(const drivers::TwoPoints& points) {
