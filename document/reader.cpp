@@ -99,32 +99,19 @@ double MapReader::number(std::string_view key, Range range) {
   return checked(key, need(key), range);
 }
 
-std::int64_t MapReader::integer(std::string_view key, std::int64_t lower, std::int64_t upper) {
+std::int64_t MapReader::integer(std::string_view key, Range range) {
   const Node* const value = need(key);
-  const std::int64_t zero = std::clamp<std::int64_t>(0, lower, upper);
-  if (value == nullptr || value->refused) return zero;
+  const auto fallback = static_cast<std::int64_t>(harmless(range));
+  if (value == nullptr || value->refused) return fallback;
   Parsed<std::int64_t> number = parse_integer(*value);
   if (!number.value) {
     refuse(*value, key, number.message, std::move(number.hint));
-    return zero;
+    return fallback;
   }
-  if (*number.value < lower || *number.value > upper) {
-    using Limits = std::numeric_limits<std::int64_t>;
-    std::string range = lower == upper ? "only " + std::to_string(lower)
-                                       : std::to_string(lower) + " to " + std::to_string(upper);
-    if (lower == Limits::min()) range = "at most " + std::to_string(upper);
-    if (upper == Limits::max()) range = "at least " + std::to_string(lower);
-    refuse(*value, key, "is " + std::to_string(*number.value) + ", allowed is " + range, "");
-  }
-  return std::clamp(*number.value, lower, upper);
-}
-
-std::int64_t MapReader::integer(std::string_view key, Range range) {
-  using Limits = std::numeric_limits<std::int64_t>;
-  const bool above = range.lower == Range{}.lower;
-  const bool below = range.upper == Range{}.upper;
-  return integer(key, above ? Limits::min() : static_cast<std::int64_t>(range.lower),
-                 below ? Limits::max() : static_cast<std::int64_t>(range.upper));
+  const auto compared = static_cast<double>(*number.value);
+  if (compared >= range.lower && compared <= range.upper) return *number.value;
+  refuse(*value, key, "is " + std::to_string(*number.value) + ", allowed is " + text_of(range), "");
+  return static_cast<std::int64_t>(std::clamp(compared, range.lower, range.upper));
 }
 
 bool MapReader::boolean(std::string_view key) {

@@ -54,13 +54,10 @@ class MapReader {
   std::optional<double> optional_number(std::string_view key, Range range) {
     return given(key) ? std::optional(number(key, range)) : std::nullopt;
   }
-  /// Reads a required whole number from `lower` to `upper`.
-  std::int64_t integer(std::string_view key, std::int64_t lower, std::int64_t upper);
-  /// Reads a required whole number in `range`, whose ends must be whole numbers. An infinite end means that
-  /// there is no limit.
+  /// Reads a required whole number in `range`, whose ends must be whole numbers if they are given.
   std::int64_t integer(std::string_view key, Range range);
-  std::optional<std::int64_t> optional_integer(std::string_view key, std::int64_t lower, std::int64_t upper) {
-    return given(key) ? std::optional(integer(key, lower, upper)) : std::nullopt;
+  std::optional<std::int64_t> optional_integer(std::string_view key, Range range) {
+    return given(key) ? std::optional(integer(key, range)) : std::nullopt;
   }
   /// Reads a truth value: `true` or `false`. No other words are accepted.
   bool boolean(std::string_view key);

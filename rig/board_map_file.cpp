@@ -49,12 +49,12 @@ class BoardReader {
     MapReader in(document_, document_.root, problems_, "the board");
     map_.name = in.text("name");
     map_.source = in.text("source");
-    map_.address_base = static_cast<int>(in.integer("address_base", 0, 1));
+    map_.address_base = static_cast<int>(in.integer("address_base", {0, 1}));
     map_.word_order = word_order(in);
     map_.max_registers = static_cast<std::uint16_t>(
-        in.optional_integer("max_registers", 1, drivers::max_read_registers).value_or(map_.max_registers));
+        in.optional_integer("max_registers", {1, drivers::max_read_registers}).value_or(map_.max_registers));
     map_.has_fc23 = in.boolean("fc23");
-    map_.readable_gap = static_cast<std::uint16_t>(in.optional_integer("readable_gap", 0, 120).value_or(0));
+    map_.readable_gap = static_cast<std::uint16_t>(in.optional_integer("readable_gap", {0, 120}).value_or(0));
     if (const Node* node = in.child("inputs", !in.has("outputs"))) inputs(*node);
     if (const Node* node = in.child("outputs", !in.has("inputs"))) outputs(*node);
     if (const Node* node = in.child("input_status", false)) input_status(*node);
@@ -81,7 +81,8 @@ class BoardReader {
   /// Returns the address to use in Modbus requests for the key `address` of the file.
   std::uint16_t address(MapReader& in, std::int64_t registers) {
     const std::int64_t base = map_.address_base;
-    const std::int64_t number = in.integer("address", base, base + last_address);
+    const std::int64_t number =
+        in.integer("address", {static_cast<double>(base), static_cast<double>(base + last_address)});
     if (number - base + registers > last_address + 1) {
       in.report("address", "the block of registers ends beyond the last register of the board");
     }
@@ -89,7 +90,7 @@ class BoardReader {
   }
 
   std::uint8_t function(MapReader& in, const std::vector<int>& allowed, const std::string& meaning) {
-    const std::int64_t code = in.integer("function", 1, 23);
+    const std::int64_t code = in.integer("function", {1, 23});
     if (std::find(allowed.begin(), allowed.end(), code) == allowed.end()) {
       in.report("function", "`function` is " + std::to_string(code) + ", " + meaning + ": " +
                                 with_commas(allowed, [](int one) { return std::to_string(one); }));
@@ -123,7 +124,7 @@ class BoardReader {
     block.raw_max = in.number("raw_max", raw_range(kind));
     if (block.raw_min >= block.raw_max) in.report("raw_max", "`raw_max` must be above `raw_min`");
     const bool is_float = kind == drivers::RegisterKind::float32;
-    block.bits = static_cast<int>(in.integer("bits", is_float ? 0 : 1, 32));
+    block.bits = static_cast<int>(in.integer("bits", {is_float ? 0.0 : 1.0, 32}));
     if (!is_float && std::exp2(block.bits) - 1 > block.raw_max - block.raw_min) {
       in.report("bits", "`bits` is too large for the range from `raw_min` to `raw_max`");
     }
@@ -133,8 +134,8 @@ class BoardReader {
                  std::int64_t most_registers) {
     drivers::RegisterBlock& registers = block.registers;
     registers.kind = kind(in);
-    registers.count =
-        static_cast<std::uint16_t>(in.integer("count", 1, most_registers / words_of(registers.kind)));
+    registers.count = static_cast<std::uint16_t>(
+        in.integer("count", {1, static_cast<double>(most_registers / words_of(registers.kind))}));
     registers.function = function(in, functions, "allowed is");
     registers.address = address(in, registers.registers());
     scaling(in, block);
@@ -194,7 +195,7 @@ class BoardReader {
     block.registers.address = address(in, block.registers.registers());
     block.tolerance_raw = in.number("tolerance_raw", {0, 4294967295.0});
     block.lag_exchanges =
-        static_cast<std::uint32_t>(in.optional_integer("lag_exchanges", 0, 100).value_or(0));
+        static_cast<std::uint32_t>(in.optional_integer("lag_exchanges", {0, 100}).value_or(0));
     map_.read_back = block;
   }
 
@@ -206,10 +207,10 @@ class BoardReader {
     write.function = function(in, {fc_write_coil, fc_write_register, fc_write_registers},
                               "the function of a write must be one of");
     write.address = address(in, 1);
-    const int largest = write.function == fc_write_coil ? 1 : 0xffff;
+    const double largest = write.function == fc_write_coil ? 1 : 0xffff;
     write.value = value_of(in, largest);
     if (!heartbeat) return write;
-    if (const auto alternate = in.optional_integer("alternate", 0, largest)) {
+    if (const auto alternate = in.optional_integer("alternate", {0, largest})) {
       write.alternate = static_cast<std::uint16_t>(*alternate);
       if (in.good("alternate") && in.good("value") && write.alternate == write.value)
         in.report("alternate",
@@ -220,12 +221,12 @@ class BoardReader {
 
   /// Reads the value of a write. The value may also be the text functions_1_to_16 or functions_17_to_32. For
   /// such a text, computes the bit mask of the function codes in this group that feed the watchdog.
-  std::uint16_t value_of(MapReader& in, std::int64_t largest) {
+  std::uint16_t value_of(MapReader& in, double largest) {
     const Node* const node = in.child("value", true);
     if (node == nullptr) return 0;
     if (largest > 1 && node->scalar == "functions_1_to_16") return functions_mask(1);
     if (largest > 1 && node->scalar == "functions_17_to_32") return functions_mask(17);
-    return static_cast<std::uint16_t>(in.integer("value", 0, largest));
+    return static_cast<std::uint16_t>(in.integer("value", {0, largest}));
   }
 
   std::uint16_t functions_mask(unsigned first) const {
@@ -247,10 +248,10 @@ class BoardReader {
     MapReader in(document_, node, problems_, "the watchdog's tripped state");
     drivers::BoardWatchdog::Tripped state;
     state.function = function(in, {1, 2, 3, 4}, "the function of a read must be one of");
-    state.count =
-        static_cast<std::uint16_t>(in.optional_integer("count", 1, drivers::max_read_registers).value_or(1));
+    state.count = static_cast<std::uint16_t>(
+        in.optional_integer("count", {1, drivers::max_read_registers}).value_or(1));
     state.address = address(in, state.count);
-    state.mask = static_cast<std::uint16_t>(in.optional_integer("mask", 1, 0xffff).value_or(0xffff));
+    state.mask = static_cast<std::uint16_t>(in.optional_integer("mask", {1, 0xffff}).value_or(0xffff));
     return state;
   }
 

@@ -139,8 +139,8 @@ class ModulesReader {
       rtu = address.rtu_framing;
       module.link = link_of(reader, address);
     }
-    module.unit = static_cast<std::uint8_t>(
-        reader.integer("unit", rtu ? 1 : 0, rtu ? largest_rtu_unit : largest_tcp_unit));
+    module.unit = static_cast<std::uint8_t>(reader.integer(
+        "unit", rtu ? document::Range{1, largest_rtu_unit} : document::Range{0, largest_tcp_unit}));
     const auto same = [&](const ModbusModuleSettings& other) {
       return other.link == module.link && other.unit == module.unit;
     };

@@ -95,7 +95,7 @@ const drivers::Terminal* terminal_of(const Context& context, std::string_view ke
 /// @param shared  terminals that several channels may use; null: there are none.
 std::size_t read_terminal(Context& context, MapReader& reader, std::string_view key, std::size_t module,
                           UsedTerminals& used, UsedTerminals* shared = nullptr) {
-  const auto terminal = static_cast<std::size_t>(reader.integer(key, 0, 255));
+  const auto terminal = static_cast<std::size_t>(reader.integer(key, {0, 255}));
   const bool unknown_module = !context.modules.empty() && module >= context.modules.size();
   if (!reader.good(key) || unknown_module) return terminal;
   const auto [first, fresh] = used.try_emplace({module, terminal}, reader.where(key));

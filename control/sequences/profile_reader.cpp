@@ -49,7 +49,7 @@ void read_profile(MapReader& map, const document::Document& document, document::
     profile.scale = map.optional_number("scale", {0.01, 20}).value_or(1);
   }
   if (has_points || !has_signal) read_points(map, document, problems, profile.points);
-  profile.cycles = static_cast<std::uint32_t>(map.optional_integer("cycles", 1, 10'000).value_or(1));
+  profile.cycles = static_cast<std::uint32_t>(map.optional_integer("cycles", {1, 10'000}).value_or(1));
   if (profile.cycles > 1 && !profile.points.empty() &&
       profile.points.front().pressure_kpa != profile.points.back().pressure_kpa) {
     map.report("cycles", "the last point of a repeated profile must have the pressure of the first point");

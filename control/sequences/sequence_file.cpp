@@ -150,7 +150,7 @@ class FileReader {
         step.sine.mean_mm = map.number("mean_mm", displacement_mm);
         step.sine.amplitude_mm = map.number("amplitude_mm", {0.001, 100});
         step.sine.frequency_hz = map.number("frequency_hz", {0.001, 50});
-        step.sine.cycles = static_cast<std::uint32_t>(map.integer("cycles", 1, 10'000));
+        step.sine.cycles = static_cast<std::uint32_t>(map.integer("cycles", {1, 10'000}));
         bounds(map, step.bounds);
         on_contact(map, step, OnContact::ignore);
         break;
@@ -297,7 +297,7 @@ class FileReader {
   }
 
   std::uint32_t retries(MapReader& map) {
-    return static_cast<std::uint32_t>(map.optional_integer("retries", 0, 10).value_or(0));
+    return static_cast<std::uint32_t>(map.optional_integer("retries", {0, 10}).value_or(0));
   }
 
   /// Reads the action after a failed step. The key is required, because a default action would not be visible

@@ -33,8 +33,7 @@ std::vector<std::string> ids_of(Station station) {
 double read_value(MapReader& map, const ParameterSpec& spec, const std::string& name) {
   if (!std::isnan(spec.if_left_out) && !map.has(name)) return spec.if_left_out;
   if (spec.whole) {
-    return static_cast<double>(
-        map.integer(name, static_cast<std::int64_t>(spec.lower), static_cast<std::int64_t>(spec.upper)));
+    return static_cast<double>(map.integer(name, {spec.lower, spec.upper}));
   }
   return map.number(name, {spec.lower, spec.upper});
 }
@@ -150,8 +149,8 @@ class ModelReader {
     MapReader map(document_, entry.value, problems_, entry.key);
     std::vector<std::size_t> types = earlier.types;
     if (!earlier.choice.empty()) {
-      const auto last = static_cast<std::int64_t>(types.size()) - 1;
-      types = {types[static_cast<std::size_t>(map.optional_integer(earlier.choice, 0, last).value_or(0))]};
+      const auto last = static_cast<double>(types.size() - 1);
+      types = {types[static_cast<std::size_t>(map.optional_integer(earlier.choice, {0, last}).value_or(0))]};
     }
     std::vector<BlockSpec> blocks;
     for (const std::size_t type : types) {

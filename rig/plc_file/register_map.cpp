@@ -88,7 +88,7 @@ class Reader {
              std::vector<std::string>& missing) {
     MapReader reader(document_, node, problems_, "a register");
     const std::string& name = known[reader.choice("name", known)];
-    const std::int64_t address = reader.integer("address", 0, last_address);
+    const std::int64_t address = reader.integer("address", {0, last_address});
     static_cast<void>(reader.text("about"));
     if (std::erase(missing, name) == 0 && reader.good("name"))
       reader.report("name", fmt::format("'{}' appears twice", name));
@@ -130,9 +130,9 @@ RegisterMap read_register_map(const document::Document& document, const document
   const Node* const fingers = top.child("fingers", true);
   if (fingers == nullptr) return map;
   MapReader fingers_reader(document, *fingers, problems, "registers: fingers");
-  map.first_finger = static_cast<std::uint16_t>(fingers_reader.integer("first", 0, last_address));
-  map.finger_stride = static_cast<std::uint16_t>(fingers_reader.integer("each", 1, last_address));
-  map.most_fingers = static_cast<std::uint16_t>(fingers_reader.integer("most", 1, most_fingers));
+  map.first_finger = static_cast<std::uint16_t>(fingers_reader.integer("first", {0, last_address}));
+  map.finger_stride = static_cast<std::uint16_t>(fingers_reader.integer("each", {1, last_address}));
+  map.most_fingers = static_cast<std::uint16_t>(fingers_reader.integer("most", {1, most_fingers}));
   if (!problems.empty()) return map;
   for (std::size_t finger = 0; finger < map.most_fingers; ++finger) {
     for (const RegisterInfo& info : table) {

@@ -37,17 +37,17 @@ void read_own_keys(FaultSpec& fault, document::MapReader& map) {
       fault.interval_s = map.number("interval_s", up_to(60));
       break;
     case FaultKind::exception_reply:
-      fault.code = static_cast<std::uint8_t>(map.integer("code", 1, 255));
+      fault.code = static_cast<std::uint8_t>(map.integer("code", {1, 255}));
       break;
     case FaultKind::settling:
       fault.settle_s = map.number("settle_s", up_to(60));
       break;
     case FaultKind::few_registers:
-      fault.most = static_cast<std::uint16_t>(map.integer("most", 1, drivers::max_read_registers));
+      fault.most = static_cast<std::uint16_t>(map.integer("most", {1, drivers::max_read_registers}));
       break;
     case FaultKind::stray_bytes:
-      fault.before = static_cast<std::uint16_t>(map.integer("before", 0, drivers::max_pdu));
-      fault.behind = static_cast<std::uint16_t>(map.integer("behind", 0, drivers::max_pdu));
+      fault.before = static_cast<std::uint16_t>(map.integer("before", {0, drivers::max_pdu}));
+      fault.behind = static_cast<std::uint16_t>(map.integer("behind", {0, drivers::max_pdu}));
       break;
     case FaultKind::sensor_jumping:
       fault.interval_s = map.number("interval_s", {shortest_s, 60});
@@ -69,7 +69,7 @@ FaultSpec read_fault(const document::Document& document, const document::Node& n
   fault.at_s = map.optional_number("at_s", up_to(longest_s));
   fault.for_s = map.optional_number("for_s", document::Range{shortest_s, longest_s});
   if (on_the_wire(fault.kind)) {
-    if (const auto replies = map.optional_integer("replies", 1, 1'000'000)) {
+    if (const auto replies = map.optional_integer("replies", {1, 1'000'000})) {
       fault.replies = static_cast<std::uint32_t>(*replies);
     }
   }

@@ -54,7 +54,7 @@ class MappingReader {
   Mapping read() {
     document::MapReader map(document_, document_.root, problems_, "the mapping");
     Mapping mapping;
-    (void)map.integer("schema", 1, 1);
+    (void)map.integer("schema", {1, 1});
     for (const RoleSpec& spec : roles) {
       if (const document::Node* node = map.child(spec.word, false)) column(*node, spec, mapping[spec.role]);
     }

@@ -37,7 +37,7 @@ TEST(Reader, ReadsWhatIsThere) {
   const Lines lines = reported("n: 0.5\ni: -3\nb: true\nt: hello\nc: two\nl: [1, 2]\nm: {k: 1}\ns: [x]\n",
                                [](MapReader& reader) {
                                  EXPECT_EQ(reader.number("n", {}), 0.5);
-                                 EXPECT_EQ(reader.integer("i", -5, 5), -3);
+                                 EXPECT_EQ(reader.integer("i", {-5, 5}), -3);
                                  EXPECT_TRUE(reader.boolean("b"));
                                  EXPECT_EQ(reader.text("t"), "hello");
                                  EXPECT_EQ(reader.choice("c", {"one", "two"}), 1U);
@@ -45,7 +45,7 @@ TEST(Reader, ReadsWhatIsThere) {
                                  EXPECT_EQ(reader.child("m", true)->entries.size(), 1U);
                                  EXPECT_EQ(reader.sequence("s", true).size(), 1U);
                                  EXPECT_EQ(reader.optional_number("absent", {}), std::nullopt);
-                                 EXPECT_EQ(reader.optional_integer("absent", 0, 1), std::nullopt);
+                                 EXPECT_EQ(reader.optional_integer("absent", {0, 1}), std::nullopt);
                                  EXPECT_EQ(reader.optional_boolean("absent"), std::nullopt);
                                  EXPECT_EQ(reader.optional_text("absent"), std::nullopt);
                                  EXPECT_EQ(reader.optional_choice("absent", {"a"}), std::nullopt);
@@ -118,7 +118,10 @@ TEST(Reader, RangesSayWhatIsAllowedAndGiveTheNearest) {
             (Lines{"1:10: `delay_s` is 130, allowed is 0 to 1 | the unit is seconds: 130 ms would be 0.13"}));
   EXPECT_EQ(reported("k: -1\n", [](MapReader& r) { EXPECT_EQ(r.number("k", Range{0.5}), 0.5); }),
             (Lines{"1:4: `k` is -1, allowed is at least 0.5"}));
-  EXPECT_EQ(reported("i: 7\n", [](MapReader& r) { EXPECT_EQ(r.integer("i", 1, 3), 3); }),
+  EXPECT_EQ(reported("i: 7\n",
+                     [](MapReader& r) {
+                       EXPECT_EQ(r.integer("i", {1, 3}), 3);
+                     }),
             (Lines{"1:4: `i` is 7, allowed is 1 to 3"}));
   EXPECT_EQ(reported("k: 1\n", [](MapReader& r) { EXPECT_EQ(r.number("k", {1, 1}), 1.0); }), Lines{});
 }
@@ -127,7 +130,7 @@ TEST(Reader, WrongKindsAreNamed) {
   const Lines lines =
       reported("n: [1]\ni: {a: 1}\nb: yes\nt:\nc: tow\nl: [1, x]\ns: 1\nm: 2\n", [](MapReader& r) {
         r.number("n", {1, 2});
-        r.integer("i", 0, 9);
+        r.integer("i", {0, 9});
         r.boolean("b");
         r.text("t");
         r.choice("c", {"one", "two", "three"});

@@ -38,8 +38,8 @@ void read(const Document& document, const Node& node, Problems& problems) {
     MapReader reader(document, node, problems, "the map");
     reader.number("delay_s", {0, 10});
     reader.optional_number("pressure_max_kpa", {0, 100});
-    reader.integer("output", 0, 7);
-    reader.optional_integer("priority", 1, 80);
+    reader.integer("output", {0, 7});
+    reader.optional_integer("priority", {1, 80});
     reader.boolean("required");
     reader.text("name");
     reader.optional_text("source");
