@@ -63,9 +63,7 @@ void read_line(Context& context, MapReader& gpio, const std::vector<ComputerDevi
     read_keys(reader, rig_keys().gpio_input, line);
     if (reader.good("bias")) check_broken_wire(reader, line);
   }
-  if (role == GpioRole::enable) {
-    settings.enable_drops_on_fault = reader.choice("on_fault", {"drop", "keep"}) == 0;
-  }
+  if (role == GpioRole::enable) read_keys(reader, rig_keys().gpio_enable, settings);
   for (std::size_t i = 0; i < settings.lines.size(); ++i) {
     const GpioLineSettings& other = settings.lines[i];
     if (other.chip != line.chip || other.line != line.line || other.offset != line.offset) continue;

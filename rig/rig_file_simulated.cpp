@@ -109,9 +109,7 @@ Event read_event(Context& context, const Node& node) {
 void read_simulated_board(Context& context, const Node& node) {
   MapReader reader(context.document, node, context.problems, "simulated");
   simulation::SimulatedBoardSettings settings;
-  const auto seed =
-      static_cast<std::uint64_t>(reader.integer("seed", 0, std::numeric_limits<std::int64_t>::max()));
-  context.rig.seed = seed;
+  read_keys(reader, rig_keys().seed, context.rig);
   read_keys(reader, rig_keys().simulated, settings);
   simulation::SimulatedChannel converters;
   read_keys(reader, rig_keys().converters, converters);
@@ -123,7 +121,7 @@ void read_simulated_board(Context& context, const Node& node) {
       channel.input_bits = converters.input_bits;
       const Node* const plant = channel.name.empty() ? nullptr : plant_reader.child(channel.name, true);
       if (plant != nullptr) channel.plant = read_plant(context, *plant, channel.name);
-      channel.plant.seed = seed_of(seed, i);
+      channel.plant.seed = seed_of(context.rig.seed.value_or(0), i);
       settings.channels.push_back(std::move(channel));
     }
   }

@@ -257,8 +257,8 @@ void declare_gpio(RigKeys& keys) {
       required("active", &Line::active_low, {"high", "low"}, "level at which the line is active")};
   keys.gpio_input = {
       optional("bias", &Line::bias, {"as_is", "disabled", "pull_up", "pull_down"}, "inputs: pull resistor")};
-  keys.gpio_enable = {
-      {"on_fault", "`drop` or `keep`", "", "`enable`: behaviour during a fault other than F501 and F502"}};
+  keys.gpio_enable = {required("on_fault", &GpioSettings::keeps_enable_on_fault, {"drop", "keep"},
+                               "`enable`: behaviour during a fault other than F501 and F502")};
 }
 
 void declare_modbus(RigKeys& keys) {
@@ -318,10 +318,11 @@ void declare_converters(RigKeys& keys) {
       {"raw", "two whole numbers", "", "numbers that are written alternately"},
       required("timeout_s", &drivers::IioHeartbeat::timeout_s, {0.001, 3600},
                "time without a change after which the external circuit switches off the valves")};
-  keys.simulated = {
-      {"seed", "at least 0", "", "the same seed gives the same noise"},
-      required("watchdog_timeout_s", &simulation::SimulatedBoardSettings::watchdog_timeout_s, {0, 60},
-               "time without an exchange until the outputs go to rest; 0: no watchdog")};
+  keys.seed = {
+      required("seed", &RigFile::seed, document::Range{.lower = 0}, "the same seed gives the same noise")};
+  keys.simulated = {required("watchdog_timeout_s", &simulation::SimulatedBoardSettings::watchdog_timeout_s,
+                             {0, 60},
+                             "time without an exchange until the outputs go to rest; 0: no watchdog")};
   using simulation::SimulatedChannel;
   keys.converters = {required("output_bits", &SimulatedChannel::output_bits, {0, 24}, "0: no quantisation"),
                      required("input_bits", &SimulatedChannel::input_bits, {0, 24}, "0: no quantisation"),
@@ -366,7 +367,7 @@ std::vector<std::pair<std::string, std::vector<KeyFacts>>> rig_tables() {
           {"iio", joined(keys.iio)},
           {"terminal", joined(keys.iio_terminal, keys.iio_output)},
           {"heartbeat", joined(keys.iio_terminal, keys.heartbeat)},
-          {"simulated", joined(keys.simulated, keys.converters)},
+          {"simulated", joined(keys.seed, keys.simulated, keys.converters)},
           {"plant", joined(keys.plant)},
           {"channel", joined(keys.channel, keys.feedforward, keys.rest_pressure, keys.channel_parts)},
           {"pid", joined(keys.pid)},

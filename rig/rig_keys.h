@@ -26,7 +26,7 @@ struct RigKeys {
   Keys<control::RigSettings> rig, rest;
   Keys<LoopSettings> loop, exchange, commands;
   Keys<ReconnectSettings> connecting;
-  Keys<RigFile> budget;
+  Keys<RigFile> budget, seed;
   Keys<drivers::ModbusModuleSettings> module;
   Keys<drivers::TcpAddress> tcp, framing, rtu_framing, numbering;
   Keys<drivers::LinkHabits> habits;

@@ -148,7 +148,7 @@ bool Panel::enable_wanted(State state, bool hangs) const noexcept {
   if (hangs || lost_ || shared_.inputs.emergency_stop.load(std::memory_order_relaxed)) return false;
   if (works(state)) return true;
   const bool on = written_[static_cast<std::size_t>(GpioRole::enable)].value_or(false);
-  return on && (state == State::starting || !settings_.enable_drops_on_fault);
+  return on && (state == State::starting || settings_.keeps_enable_on_fault);
 }
 
 void Panel::drive(Nanoseconds now) noexcept {

@@ -66,7 +66,7 @@ std::string gpio_lines(const rig::RigFile& rig) {
   for (const drivers::GpioLineSettings& line : gpio.lines) {
     text += fmt::format("gpio: {} is {}", drivers::name_of(line.role), drivers::text_of(line));
     if (line.role == drivers::GpioRole::enable) {
-      text += gpio.enable_drops_on_fault ? ", switched off on a fault" : ", stays on during a fault";
+      text += gpio.keeps_enable_on_fault ? ", stays on during a fault" : ", switched off on a fault";
     }
     text += "\n";
   }

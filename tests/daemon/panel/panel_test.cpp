@@ -200,7 +200,7 @@ TEST_F(PanelTest, ALoopThatHangsUnderPressureHasASteadyFaultLamp) {
 TEST_F(PanelTest, AFaultDropsTheEnableOnlyIfTheRigSaysSo) {
   for (const bool drops : {true, false}) {
     rig::GpioSettings settings = all_lines();
-    settings.enable_drops_on_fault = drops;
+    settings.keeps_enable_on_fault = !drops;
     panel_.reset();
     make(settings);
     make_ready();
@@ -216,7 +216,7 @@ TEST_F(PanelTest, AFaultDropsTheEnableOnlyIfTheRigSaysSo) {
 
 TEST_F(PanelTest, TheEmergencyStopAlwaysDropsTheEnable) {
   rig::GpioSettings settings = all_lines();
-  settings.enable_drops_on_fault = false;
+  settings.keeps_enable_on_fault = true;
   make(settings);
   make_ready();
   terminals_.set(GpioRole::emergency_stop, true);
