@@ -70,9 +70,7 @@ void report(const RunOptions& options, const daemon::Outcome& outcome) {
 
 ExitCode run(const RunOptions& options) {
   const std::string path = options.rig.empty() ? configuration_path("rig.yaml") : options.rig;
-  for (const std::string& file : {path, options.sequence}) {
-    if (const auto code = unreadable(file)) return *code;
-  }
+  if (const auto code = unreadable(options.sequence)) return *code;
   const auto arguments = arguments_of(options.settings);
   if (!arguments) return arguments.error();
   auto rig = read_rig(path);
