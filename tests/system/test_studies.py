@@ -56,6 +56,10 @@ class Tune(bench.BenchTest):
         rig = (self.folder / "config/rig.yaml").read_text().replace("rate_hz: 200", "rate_hz: -200")
         done = self.tune("--rig", self.write("config/slow.yaml", rig), "--out", "pid.yaml", expect=3)
         self.assertRegex(done.stderr, r"slow\.yaml:\d+:\d+: ")
+        rig = (self.folder / "config/rig.yaml").read_text().replace('mode: "0660"', 'mode: "0666"')
+        done = self.tune("--rig", self.write("config/open.yaml", rig), "--channel", "left", "--out", "pid.yaml")
+        self.assertRegex(done.stderr, r"open\.yaml:\d+:\d+: .*everyone on this machine may move the gripper")
+        (self.folder / "pid.yaml").unlink()
         # The model does not permit the requested feedforward. The command must refuse the input and state the reason.
         done = self.softgrip("tune", "--model", "config/models/zhang2025.yaml", "--feedforward", "full_model", "--out",
                              "pid.yaml", expect=3)

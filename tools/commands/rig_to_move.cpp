@@ -46,7 +46,7 @@ Consent consent_on_terminal(bool yes) {
 
 tl::expected<ExperimentRig, ExitCode> rig_to_move(const std::string& path, const std::string& channel,
                                                   bool yes) {
-  auto file = read_input(path, rig::load_rig);
+  auto file = read_rig(path);
   if (!file) return tl::unexpected(file.error());
   auto rig = experiment_rig(std::move(*file), channel);
   if (!rig) return tl::unexpected(fail(ExitCode::usage, rig.error()));

@@ -41,7 +41,7 @@ constexpr double ahead_of_any_mm = 1e4;
 /// Copies the settings of the channel from the rig file to the task. Returns an exit code if the file or
 /// channel is refused.
 std::optional<ExitCode> take_rig(const TuneOptions& options, control::TuneTask& task) {
-  const auto rig = read_input(options.rig, rig::load_rig);
+  const auto rig = read_rig(options.rig);
   if (!rig) return rig.error();
   const auto index =
       options.channel.empty() ? std::optional<std::size_t>(0) : channel_of(*rig, options.channel);

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
+
+#include "base/files.h"
+#include "base/scratch_folder.h"
 #include "daemon/service/board_lock.h"
 
 namespace softgrip::tools::rig_to_move_test {
@@ -24,6 +28,19 @@ TEST(RigToMove, WhatStandsInTheWayHasItsExitCode) {
   EXPECT_EQ(rig_to_move(simulated, "", true).error(), ExitCode::usage)
       << "the rig has two channels, but no channel was selected";
   EXPECT_EQ(rig_to_move(simulated, "middle", true).error(), ExitCode::usage);
+}
+
+TEST(RigToMove, PrintsTheWarningsOfTheFile) {
+  std::string text = read_file(simulated, 65536).value();
+  text = std::regex_replace(text, std::regex("models/"), SOFTGRIP_SOURCE_DIR "/config/models/");
+  text = std::regex_replace(text, std::regex("mode: \"0660\""), "mode: \"0666\"");
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/rig.yaml";
+  ASSERT_TRUE(write_file(path, text));
+  ::testing::internal::CaptureStderr();
+  EXPECT_TRUE(rig_to_move(path, "left", true));
+  EXPECT_NE(::testing::internal::GetCapturedStderr().find("everyone on this machine may move the gripper"),
+            std::string::npos);
 }
 
 TEST(RigToMove, ABoardThatAnotherProgramHoldsIsNotTaken) {
