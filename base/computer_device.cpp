@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "base/enumerated.h"
+#include "base/text.h"
 
 namespace softgrip {
 

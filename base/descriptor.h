@@ -1,9 +1,13 @@
 #pragma once
 // Defines an object that owns a file descriptor and closes it on destruction.
+// Waits until a descriptor is ready or a deadline has passed.
 
 #include <unistd.h>
 
+#include <cstdint>
 #include <utility>
+
+#include "base/time.h"
 
 namespace softgrip {
 
@@ -32,5 +36,16 @@ class Descriptor {
  private:
   int number_ = -1;
 };
+
+enum class Waited : std::uint8_t {
+  ready,      ///< the descriptor is ready, or has an error or a hang-up, which the next call on the
+              ///< descriptor reports
+  timed_out,  ///< the deadline has passed before the descriptor was ready
+  failed,     ///< waiting failed; errno contains the reason
+};
+
+/// Waits for events of poll() until `deadline` on CLOCK_BOOTTIME. select() is not used, because it does not
+/// accept descriptors above 1023.
+[[nodiscard]] Waited wait_for(int descriptor, short events, Nanoseconds deadline) noexcept;
 
 }  // namespace softgrip

@@ -13,8 +13,8 @@
 #include <optional>
 #include <system_error>
 
-#include "base/errno_text.h"
 #include "base/files.h"
+#include "base/text.h"
 
 namespace softgrip {
 namespace {

@@ -6,15 +6,15 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
 
-#include "base/errno_text.h"
+#include "base/text.h"
 
 namespace softgrip {
-
 namespace {
 
 using Failure = tl::unexpected<std::string>;
@@ -114,6 +114,21 @@ tl::expected<std::string, std::string> read_file(const std::string& path, std::s
   if (!contents) return Failure("cannot read " + path + ": " + contents.error());
   if (contents->size() > bound) return too_large;
   return contents;
+}
+
+namespace fs = std::filesystem;
+
+ScratchFolder::ScratchFolder() {
+  std::error_code none;
+  const fs::path temporary = fs::temp_directory_path(none);
+  if (none) return;
+  path_ = (temporary / "softgrip-XXXXXX").string();
+  if (::mkdtemp(path_.data()) == nullptr) path_.clear();
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove_all(path_, ignored);
 }
 
 }  // namespace softgrip

@@ -1,5 +1,6 @@
 #pragma once
 // Reads regular files up to a maximum size. Writes files such that a reader never sees an incomplete file.
+// Creates a temporary folder.
 
 #include <cstddef>
 #include <string>
@@ -76,5 +77,22 @@ enum class Sync {
 
 /// Writes all bytes to an open descriptor. Returns 0, or the errno of the system call that failed.
 [[nodiscard]] int write_all(int descriptor, std::string_view bytes) noexcept;
+
+/// A new folder for temporary files. The destructor removes the folder. path() returns an empty text if the
+/// folder could not be created.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ScratchFolder(ScratchFolder&&) = delete;
+  ScratchFolder& operator=(ScratchFolder&&) = delete;
+  ~ScratchFolder();
+
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+
+ private:
+  std::string path_;
+};
 
 }  // namespace softgrip

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/cancellation.h"
 #include "base/thread_budget.h"
 
 namespace softgrip {

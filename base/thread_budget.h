@@ -1,5 +1,8 @@
 #pragma once
 // Limits the number of threads that compute at the same time for one task.
+// Ends a long computation early. The request to end is stored in the thread budget of the computation. All
+// threads of the computation can read this request from the thread budget. Therefore, no function needs an
+// argument for the request.
 
 #include <algorithm>
 #include <atomic>
@@ -19,7 +22,7 @@ class ThreadBudget {
   /// Sets the budget of the calling thread, and of the threads started from it, until the destructor runs. At
   /// most `threads` threads (0: one per core) compute at a time, including the calling thread. If the calling
   /// thread already has a budget, the new budget has no effect.
-  /// @param stop  requests an early end of the task (base/cancellation.h).
+  /// @param stop  requests an early end of the task (base/thread_budget.h).
   explicit ThreadBudget(unsigned threads, std::stop_token stop = {}) noexcept : stop_(std::move(stop)) {
     if (current_ != nullptr) return;
     const std::size_t all = threads != 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
@@ -61,5 +64,21 @@ class ThreadBudget {
   std::stop_token stop_;
   inline static thread_local ThreadBudget* current_ = nullptr;
 };
+
+/// Exception that end_if_cancelled() throws. Only the function that created the thread budget catches this
+/// exception.
+struct WorkCancelled {};
+
+/// Returns true if the computation of the calling thread must end early.
+[[nodiscard]] inline bool is_cancelled() noexcept {
+  const ThreadBudget* const budget = ThreadBudget::current();
+  return budget != nullptr && budget->stop_requested();
+}
+
+/// Throws WorkCancelled if the computation of the calling thread must end early. The loops of a fit call this
+/// function. Therefore, the fit ends within the time that one simulation of the model takes.
+inline void end_if_cancelled() {
+  if (is_cancelled()) throw WorkCancelled{};
+}
 
 }  // namespace softgrip

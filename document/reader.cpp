@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "document/characters.h"
 #include "document/key_hint.h"
 #include "document/number.h"

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "base/time.h"
 #include "document/reader.h"
 

@@ -4,7 +4,6 @@
 #include <stop_token>
 #include <utility>
 
-#include "base/cancellation.h"
 #include "base/thread_budget.h"
 #include "library/include/softgrip/error.h"
 

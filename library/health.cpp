@@ -3,9 +3,9 @@
 #include <limits>
 #include <utility>
 
+#include "base/clock.h"
 #include "base/files.h"
 #include "base/result/result.h"
-#include "base/wall_clock.h"
 #include "library/cancellable.h"
 #include "library/model_parts.h"
 #include "sysid/health/health_result.h"

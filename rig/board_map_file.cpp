@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/enumerated.h"
+#include "base/text.h"
 #include "document/reader.h"
 #include "drivers/modbus/modbus_request.h"
 #include "rig/electrical_suffix.h"

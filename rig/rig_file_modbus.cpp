@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "document/number.h"
 #include "drivers/modbus/serial_device.h"
 #include "drivers/modbus/serial_port.h"

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 
 namespace softgrip::result {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "bench/studies/control_study.h"
 #include "bench/studies/models.h"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "document/key_hint.h"
 #include "document/reader.h"
 

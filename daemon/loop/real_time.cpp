@@ -1,6 +1,6 @@
 #include "daemon/loop/real_time.h"
 
-#include "base/errno_text.h"
+#include "base/text.h"
 
 #include <fcntl.h>
 #include <linux/capability.h>

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "base/clock.h"
 #include "base/periodic_schedule.h"
-#include "base/wall_clock.h"
 
 namespace softgrip::daemon {
 

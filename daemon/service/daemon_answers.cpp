@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/clock.h"
-#include "base/descriptor_wait.h"
+#include "base/descriptor.h"
 #include "base/net/line_buffer.h"
 #include "daemon/service/trusted_user.h"
 #include "daemon/socket/listener.h"

@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "base/errno_text.h"
 #include "base/files.h"
+#include "base/text.h"
 #include "daemon/service/trusted_user.h"
 
 namespace softgrip::daemon {

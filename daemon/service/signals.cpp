@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "base/ending_signal.h"
+#include "base/exit_code.h"
 
 namespace softgrip::daemon {
 

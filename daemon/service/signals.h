@@ -23,7 +23,7 @@ class Signals {
   ~Signals();
 
   /// Waits for a signal and returns it, or returns 0 after `timeout`. Stores this signal as the signal that
-  /// ends the process (ending_signal.h).
+  /// ends the process (base/exit_code.h).
   [[nodiscard]] int wait(Nanoseconds timeout) noexcept;
   /// Reads all pending signals. Returns the first signal that this object has ever read; 0 if there is none.
   [[nodiscard]] int first() noexcept;

@@ -11,10 +11,8 @@
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
-#include "base/ending_signal.h"
 #include "base/exit_code.h"
 #include "base/files.h"
-#include "base/standard_output.h"
 #include "base/version.h"
 #include "daemon/service/daemon.h"
 #include "daemon/service/event_printer.h"

@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/clock.h"
 #include "base/periodic_schedule.h"
-#include "base/wall_clock.h"
 #include "daemon/socket/reply_json.h"
 #include "daemon/socket/status_json.h"
 

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "base/enumerated.h"
+#include "base/text.h"
 #include "drivers/gpio/gpio_chip.h"
 #include "drivers/gpio/gpio_lines.h"
 #if SOFTGRIP_GPIOD_2

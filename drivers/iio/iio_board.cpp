@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "base/clock.h"
-#include "base/errno_text.h"
+#include "base/text.h"
 #include "base/time.h"
 #include "drivers/board/judged_input.h"
 #include "drivers/board/round_trip.h"

@@ -12,8 +12,8 @@
 #include <cstdio>
 
 #include "base/clock.h"
-#include "base/descriptor_wait.h"
-#include "base/errno_text.h"
+#include "base/descriptor.h"
+#include "base/text.h"
 #include "base/time.h"
 #include "drivers/modbus/exception_text.h"
 #include "drivers/modbus/modbus_rtu_link.h"

@@ -9,9 +9,9 @@
 #include <cerrno>
 
 #include "base/clock.h"
-#include "base/descriptor_wait.h"
-#include "base/errno_text.h"
+#include "base/descriptor.h"
 #include "base/periodic_schedule.h"
+#include "base/text.h"
 
 namespace softgrip::drivers {
 

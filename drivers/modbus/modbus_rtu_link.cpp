@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "base/clock.h"
-#include "base/descriptor_wait.h"
-#include "base/errno_text.h"
+#include "base/descriptor.h"
 #include "base/periodic_schedule.h"
+#include "base/text.h"
 #include "base/time.h"
 #include "drivers/modbus/serial_device.h"
 

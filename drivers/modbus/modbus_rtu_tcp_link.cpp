@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "base/errno_text.h"
+#include "base/text.h"
 #include "base/time.h"
 #include "drivers/modbus/tcp_socket.h"
 

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "base/errno_text.h"
+#include "base/text.h"
 #include "drivers/modbus/big_endian.h"
 #include "drivers/modbus/mbap.h"
 #include "drivers/modbus/tcp_socket.h"

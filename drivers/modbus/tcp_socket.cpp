@@ -9,8 +9,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "base/descriptor_wait.h"
-#include "base/errno_text.h"
+#include "base/descriptor.h"
+#include "base/text.h"
 
 namespace softgrip::drivers {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "base/cancellation.h"
+#include "base/thread_budget.h"
 #include "sysid/changes/downstream.h"
 #include "sysid/fitting/start_estimate.h"
 #include "sysid/fitting/trajectory.h"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
-#include "base/json_text.h"
+#include "base/json.h"
 #include "base/sha256.h"
 
 namespace softgrip::sysid {

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "base/cancellation.h"
+#include "base/thread_budget.h"
 
 namespace softgrip::sysid {
 

@@ -10,7 +10,7 @@
 #include <ceres/ceres.h>
 #include <glog/logging.h>
 
-#include "base/cancellation.h"
+#include "base/thread_budget.h"
 
 namespace softgrip::sysid {
 namespace {

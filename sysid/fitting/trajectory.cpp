@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/cancellation.h"
+#include "base/thread_budget.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/catalogue.h"
 #include "model/named.h"

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "base/clock.h"
 #include "base/version.h"
-#include "base/wall_clock.h"
 
 namespace softgrip::sysid::health {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "sysid/health/number_watch.h"
 
 namespace softgrip::sysid::health {

@@ -8,8 +8,8 @@
 #include <set>
 #include <utility>
 
-#include "base/cancellation.h"
 #include "base/statistics.h"
+#include "base/thread_budget.h"
 #include "sysid/recordings/recording.h"
 
 namespace softgrip::sysid::health {

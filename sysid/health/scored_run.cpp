@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
-#include "base/json_member.h"
+#include "base/json.h"
 
 namespace softgrip::sysid::health {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/numbers.h"
-#include "base/shell_word.h"
+#include "base/text.h"
 
 namespace softgrip::sysid {
 namespace {

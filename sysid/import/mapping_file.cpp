@@ -3,9 +3,9 @@
 #include <cmath>
 #include <utility>
 
-#include "base/enumerated.h"
 #include "base/files.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "document/node.h"
 #include "document/reader.h"
 

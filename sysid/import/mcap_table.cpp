@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/enumerated.h"
+#include "base/text.h"
 #include "sysid/import/byte_scanner.h"
 #include "sysid/import/cell_value.h"
 #include "sysid/import/mcap_topics.h"

@@ -7,8 +7,8 @@
 #include <initializer_list>
 #include <string_view>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "sysid/import/clock.h"
 #include "sysid/import/fingers.h"
 #include "sysid/logs/sensor_codes.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "sysid/import/clock.h"
 #include "sysid/import/proposal.h"
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "sysid/import/clock.h"
 #include "sysid/import/conversion.h"
 #include "sysid/import/fingers.h"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/enumerated.h"
+#include "base/text.h"
 #include "sysid/import/cell_value.h"
 #include "sysid/import/text_table.h"
 #include "sysid/import/workbook_date.h"

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "sysid/diagnosis/residual/wrong_readings.h"
 #include "sysid/fitting/score.h"
 #include "sysid/identification/excitation_limits.h"

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <limits>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "base/sha256.h"
+#include "base/text.h"
 #include "sysid/logs/csv_text.h"
 #include "sysid/logs/log.h"
 #include "sysid/logs/log_checks.h"

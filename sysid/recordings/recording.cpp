@@ -6,8 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
-#include "base/json_member.h"
-#include "base/json_text.h"
+#include "base/json.h"
 #include "base/numbers.h"
 
 namespace softgrip::sysid {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "base/cancellation.h"
+#include "base/thread_budget.h"
 #include "sysid/fitting/bounded_solve.h"
 
 namespace softgrip::sysid {

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <ctime>
 #include <string>
 
 #include "base/periodic_schedule.h"
@@ -69,6 +70,21 @@ TEST(MonotonicClock, OfAMachineThatNeverSleptIsTheKernelsOtherOne) {
   const Nanoseconds now = MonotonicClock().now();
   EXPECT_GE(now, before + slept - ns_per_s / 1000);
   EXPECT_LE(now, monotonic() + slept + ns_per_s / 1000);
+}
+
+TEST(WallClock, TextsAreUtcAndSortAsTheirTimes) {
+  constexpr Nanoseconds moment = 1'763'610'372'045'678'901;
+  EXPECT_EQ(utc_text(moment), "2025-11-20T03:46:12Z");
+  EXPECT_EQ(utc_text(moment, 3), "2025-11-20T03:46:12.045Z");
+  EXPECT_EQ(utc_text(moment, 9), "2025-11-20T03:46:12.045678901Z");
+  EXPECT_LT(utc_text(moment, 3), utc_text(moment + ns_per_s / 500, 3));
+}
+
+TEST(WallClock, AMomentOfTheOtherClockIsFoundOnTheWall) {
+  timespec now{};
+  clock_gettime(CLOCK_BOOTTIME, &now);
+  const Nanoseconds moment = now.tv_sec * ns_per_s + now.tv_nsec;
+  EXPECT_NEAR(seconds(wall_time_now() - wall_time(moment - 60 * ns_per_s)), 60, 5);
 }
 
 }  // namespace

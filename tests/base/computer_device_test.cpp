@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "base/scratch_folder.h"
+#include "base/files.h"
 
 namespace softgrip::computer_device_test {
 namespace {

@@ -11,8 +11,6 @@
 #include <fstream>
 #include <string>
 
-#include "base/scratch_folder.h"
-
 namespace softgrip::files_test {
 namespace {
 
@@ -89,6 +87,18 @@ TEST_F(FilesTest, InAFolderNoLinkIsFollowed) {
   EXPECT_EQ(*read_start(*opened, 3), "t") << "the second call continues after the bytes of the first call";
   EXPECT_EQ(open_regular_in(folder, "link").error(), "it is a symbolic link, not a regular file");
   EXPECT_TRUE(open_regular(at("link")));
+}
+
+TEST(ScratchFolder, IsGoneWithWhatIsInIt) {
+  std::string path;
+  {
+    const ScratchFolder one, other;
+    path = one.path();
+    ASSERT_FALSE(path.empty());
+    EXPECT_NE(path, other.path());
+    ASSERT_TRUE(write_file(path + "/deeper/file", "text"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 }  // namespace

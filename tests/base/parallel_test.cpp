@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/cancellation.h"
+#include "base/thread_budget.h"
 
 // GCC 12 incorrectly warns that a new std::stop_source is not initialised.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"

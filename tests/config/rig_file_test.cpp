@@ -14,7 +14,7 @@
 #include <sstream>
 
 #include "base/clock.h"
-#include "base/scratch_folder.h"
+#include "base/files.h"
 
 namespace softgrip::daemon::rig_file_test {
 namespace {

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/scratch_folder.h"
+#include "base/files.h"
 #include "tests/document/problems_of.h"
 
 namespace softgrip::document::parse_test {

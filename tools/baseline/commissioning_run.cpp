@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "base/files.h"
 #include "base/numbers.h"
-#include "base/scratch_folder.h"
 #include "base/time.h"
 #include "daemon/service/signals.h"
 #include "sysid/diagnosis/experiments/experiment.h"

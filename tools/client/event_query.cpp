@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "base/wall_clock.h"
+#include "base/clock.h"
 
 namespace softgrip::tools {
 namespace {

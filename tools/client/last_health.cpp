@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "base/clock.h"
 #include "base/files.h"
-#include "base/json_text.h"
+#include "base/json.h"
 #include "base/numbers.h"
-#include "base/wall_clock.h"
 #include "tools/client/json_fields.h"
 
 namespace softgrip::tools {

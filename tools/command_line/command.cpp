@@ -5,8 +5,8 @@
 #include <cerrno>
 #include <cstdio>
 
-#include "base/errno_text.h"
 #include "base/files.h"
+#include "base/text.h"
 #include "document/problem.h"
 
 namespace softgrip::tools {

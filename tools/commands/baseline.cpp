@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/clock.h"
 #include "base/numbers.h"
 #include "base/sha256.h"
 #include "base/version.h"
-#include "base/wall_clock.h"
 #include "sysid/changes/baseline_folder.h"
 #include "sysid/changes/change.h"
 #include "sysid/identification/validate.h"

@@ -12,7 +12,7 @@
 
 #include <tl/expected.hpp>
 
-#include "base/enumerated.h"
+#include "base/text.h"
 #include "tools/client/daemon_client.h"
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/options.h"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "base/wall_clock.h"
+#include "base/clock.h"
 #include "tools/client/daemon_command.h"
 #include "tools/client/daemon_text.h"
 #include "tools/client/event_query.h"

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/clock.h"
 #include "base/files.h"
 #include "base/result/result.h"
-#include "base/wall_clock.h"
 #include "sysid/health/health_result.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/options.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "base/ending_signal.h"
+#include "base/exit_code.h"
 #include "base/numbers.h"
 #include "daemon/service/daemon.h"
 #include "daemon/socket/sequence_loader.h"

@@ -13,7 +13,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "base/ending_signal.h"
+#include "base/exit_code.h"
 #include "base/files.h"
 #include "tools/client/daemon_command.h"
 #include "tools/client/daemon_text.h"

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <utility>
 
-#include "base/ending_signal.h"
+#include "base/exit_code.h"
 #include "tools/client/daemon_command.h"
 #include "tools/client/daemon_text.h"
 #include "tools/client/key_dialogue.h"

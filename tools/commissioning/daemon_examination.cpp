@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "base/json_member.h"
+#include "base/json.h"
 
 namespace softgrip::tools::doctor {
 namespace {

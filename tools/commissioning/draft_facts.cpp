@@ -11,8 +11,8 @@
 
 #include <fmt/format.h>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "document/problem.h"
 #include "drivers/modbus/serial_device.h"
 #include "model/file/model_file.h"

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "document/number.h"
 #include "rig/electrical_suffix.h"
 #include "rig/rig_file.h"

@@ -6,8 +6,8 @@
 #include <map>
 #include <vector>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "control/elements/feedforward.h"
 #include "control/elements/limits.h"
 #include "control/feedforward/invertibility.h"

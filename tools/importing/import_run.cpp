@@ -12,7 +12,7 @@
 
 #include "base/files.h"
 #include "base/numbers.h"
-#include "base/shell_word.h"
+#include "base/text.h"
 #include "base/version.h"
 #include "document/problem.h"
 #include "sysid/import/conversion.h"

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "base/random.h"
+#include "base/text.h"
 #include "control/feedforward/invertibility.h"
 #include "control/tuning/gain_search.h"
 #include "control/tuning/tracking_run.h"

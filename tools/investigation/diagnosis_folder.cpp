@@ -8,10 +8,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/enumerated.h"
 #include "base/files.h"
 #include "base/numbers.h"
 #include "base/result/result.h"
+#include "base/text.h"
 #include "model/file/model_file.h"
 #include "sysid/diagnosis/report/diagnosis_json.h"
 #include "sysid/identification/log_report.h"

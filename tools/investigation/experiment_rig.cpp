@@ -10,11 +10,11 @@
 #include <filesystem>
 #include <variant>
 
-#include "base/ending_signal.h"
+#include "base/exit_code.h"
 #include "base/files.h"
 #include "base/numbers.h"
 #include "base/random.h"
-#include "base/shell_word.h"
+#include "base/text.h"
 #include "daemon/service/daemon.h"
 #include "daemon/socket/sequence_loader.h"
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "base/files.h"
-#include "base/shell_word.h"
+#include "base/text.h"
 #include "sysid/import/conversion.h"
 #include "sysid/import/foreign_file.h"
 #include "sysid/import/proposal.h"

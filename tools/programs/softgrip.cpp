@@ -6,9 +6,7 @@
 #include <new>
 #include <string>
 
-#include "base/ending_signal.h"
 #include "base/exit_code.h"
-#include "base/standard_output.h"
 #include "base/version.h"
 #include "tools/command_line/program.h"
 #include "tools/commands/commands.h"

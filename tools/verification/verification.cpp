@@ -15,9 +15,7 @@
 #include <set>
 
 #include "base/files.h"
-#include "base/json_member.h"
-#include "base/json_text.h"
-#include "base/scratch_folder.h"
+#include "base/json.h"
 #include "base/sha256.h"
 #include "document/problem.h"
 #include "model/file/model_file.h"

@@ -12,7 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/wall_clock.h"
+#include "base/clock.h"
 #include "tools/client/last_health.h"
 
 namespace softgrip::web {

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "base/json_member.h"
+#include "base/json.h"
 
 namespace softgrip::web {
 

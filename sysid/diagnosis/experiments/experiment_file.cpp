@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "sysid/diagnosis/experiments/experiment.h"
 
 namespace softgrip::sysid {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "sysid/diagnosis/report/report_appendix.h"
 #include "sysid/diagnosis/report/report_budget.h"
 #include "sysid/diagnosis/report/report_chain.h"

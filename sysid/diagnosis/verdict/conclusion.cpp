@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "base/enumerated.h"
 #include "base/statistics.h"
+#include "base/text.h"
 #include "sysid/diagnosis/causes/clock_offset.h"
 #include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/residual/unexplained_limit.h"

@@ -1,7 +1,7 @@
 #include <string>
 
-#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "model/catalogue.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "sysid/diagnosis/verdict/naming.h"

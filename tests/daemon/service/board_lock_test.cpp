@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "base/scratch_folder.h"
+#include "base/files.h"
 #include "base/sha256.h"
 
 namespace softgrip::daemon::board_lock_test {

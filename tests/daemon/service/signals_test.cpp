@@ -6,7 +6,7 @@
 
 #include <functional>
 
-#include "base/ending_signal.h"
+#include "base/exit_code.h"
 
 namespace softgrip::daemon::signals_test {
 namespace {

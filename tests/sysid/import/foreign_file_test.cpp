@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "base/files.h"
-#include "base/scratch_folder.h"
 #include "sysid/import/array_table.h"
 #include "sysid/import/hdf5_table.h"
 #include "sysid/import/mat_table.h"

@@ -11,7 +11,6 @@
 
 #include "base/files.h"
 #include "base/numbers.h"
-#include "base/scratch_folder.h"
 #include "sysid/import/text_table.h"
 #include "sysid/import/workbook_package.h"
 #include "sysid/import/workbook_sheet.h"

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "base/clock.h"
 #include "base/files.h"
-#include "base/wall_clock.h"
 
 namespace softgrip::tools::last_health_test {
 namespace {

@@ -5,7 +5,6 @@
 #include <regex>
 
 #include "base/files.h"
-#include "base/scratch_folder.h"
 #include "daemon/service/board_lock.h"
 
 namespace softgrip::tools::rig_to_move_test {

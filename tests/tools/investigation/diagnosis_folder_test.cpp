@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "base/scratch_folder.h"
+#include "base/files.h"
 #include "model/file/model_file.h"
 
 namespace softgrip::tools::diagnosis_folder_test {

@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/wall_clock.h"
+#include "base/clock.h"
 
 namespace softgrip::web::recordings_test {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/json_member.h"
+#include "base/json.h"
 
 namespace softgrip::web {
 

@@ -1,6 +1,7 @@
 #pragma once
 // Reads members of JSON objects that come from other programs. A member may be missing or of an unexpected
 // type.
+// Parses JSON text that comes from other users and programs.
 
 #include <limits>
 #include <string>
@@ -46,6 +47,19 @@ template <class Json>
   static const Json none = Json::array();
   const Json& value = json_member(object, key);
   return value.is_array() ? value : none;
+}
+
+/// Largest depth of nested arrays and objects; parse_json() omits deeper values.
+inline constexpr int deepest_json = 64;
+
+/// Parses a text with nlohmann's type `Json` (json or ordered_json). Values that are nested deeper than
+/// deepest_json are omitted. The copy and print functions of the nlohmann library recurse once per level, so
+/// a deeply nested value would exhaust the stack. For invalid JSON, the result is a discarded value, for
+/// which is_discarded() returns true.
+template <class Json>
+[[nodiscard]] Json parse_json(std::string_view text) {
+  return Json::parse(
+      text, [](int depth, auto /*event*/, auto& /*value*/) { return depth < deepest_json; }, false);
 }
 
 }  // namespace softgrip

@@ -1,7 +1,10 @@
 #pragma once
 // Joins several texts into one, for messages.
+// Describes errno values without allocating memory.
+// Quotes words of a shell command line.
 
 #include <cstddef>
+#include <cstring>
 #include <functional>
 #include <iterator>
 #include <string>
@@ -29,5 +32,15 @@ template <typename Items, typename TextOf = std::identity>
 [[nodiscard]] std::string with_commas(const Items& items, TextOf text_of = {}) {
   return enumerated(items, ", ", text_of);
 }
+
+/// Returns the description of an errno value from a constant table in the C library.
+[[nodiscard]] inline const char* text_of_errno(int error) noexcept {
+  const char* text = ::strerrordesc_np(error);
+  return text != nullptr ? text : "unknown error";
+}
+
+/// Returns `text` in a form that a POSIX shell reads as one word. If no character of `text` is special in a
+/// shell, the result is the unchanged text. Otherwise, the result is the text in single quotes.
+[[nodiscard]] std::string shell_word(std::string_view text);
 
 }  // namespace softgrip

@@ -1,11 +1,14 @@
-#include "base/ending_signal.h"
+#include "base/exit_code.h"
 
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+
+#include "base/text.h"
 
 namespace softgrip {
 namespace {
@@ -16,6 +19,16 @@ std::atomic<int> noted{0};
 constexpr int shell_offset = 128;
 
 }  // namespace
+
+ExitCode with_output_checked(ExitCode code, const char* program) noexcept {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  // stdout stores that an earlier write failed, but not the reason of the failure.
+  const char* const reason =
+      errno != 0 ? text_of_errno(errno) : "an earlier write failed, so a part of the output is lost";
+  std::fprintf(stderr, "%s: cannot write to the standard output: %s\n", program, reason);
+  return code == ExitCode::done ? ExitCode::io : code;
+}
 
 void note_ending_signal(int signal) noexcept {
   int none = 0;

@@ -1,4 +1,4 @@
-#include "base/descriptor_wait.h"
+#include "base/descriptor.h"
 
 #include <poll.h>
 

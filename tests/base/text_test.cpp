@@ -1,13 +1,34 @@
-#include "base/shell_word.h"
+#include "base/text.h"
 
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-namespace softgrip::shell_word_test {
+namespace softgrip::text_test {
 namespace {
+
+using Words = std::vector<std::string>;
+
+TEST(Enumerated, PutsItsWordBeforeTheLastOnly) {
+  EXPECT_EQ(enumerated(Words{}, " and "), "");
+  EXPECT_EQ(enumerated(Words{"a"}, " and "), "a");
+  EXPECT_EQ(enumerated(Words{"a", "b"}, " and "), "a and b");
+  EXPECT_EQ(enumerated(Words{"a", "b", "c"}, " or "), "a, b or c");
+  EXPECT_EQ(enumerated(Words{"", "b"}, " and "), " and b") << "an empty item counts as an item";
+}
+
+TEST(Enumerated, TakesWhatMakesATextOfAnItemOrTheMemberThatHoldsIt) {
+  struct Channel {
+    std::string_view name;
+  };
+  const std::vector<Channel> channels{{"left"}, {"right"}};
+  EXPECT_EQ(with_commas(channels, &Channel::name), "left, right");
+  EXPECT_EQ(with_commas(std::vector<int>{3, 4, 16}, [](int code) { return std::to_string(code); }),
+            "3, 4, 16");
+}
 
 /// Splits `text` into words as the shell does. Returns the words, each in square brackets.
 std::string words_of(const std::string& text) {
@@ -48,4 +69,4 @@ TEST(ShellWord, IsOneWordToTheShellWhateverStandsInIt) {
 }
 
 }  // namespace
-}  // namespace softgrip::shell_word_test
+}  // namespace softgrip::text_test
