@@ -10,7 +10,6 @@
 #include "base/files.h"
 #include "document/node.h"
 #include "document/syntax.h"
-#include "document/text_check.h"
 
 namespace softgrip::document {
 

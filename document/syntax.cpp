@@ -4,11 +4,11 @@
 #include <array>
 #include <cctype>
 #include <optional>
+#include <string_view>
 
-#include "document/brackets.h"
+#include "document/characters.h"
 
 namespace softgrip::document {
-
 namespace {
 
 std::string opened(const Node* open) {
@@ -142,6 +142,144 @@ SyntaxMessage translated(const Document& document, std::string_view said, const 
   return {"this is not YAML: " + shown(said), ""};
 }
 
+/// The first location of one kind of problem, and the number of its occurrences.
+struct Trouble {
+  std::optional<Location> first;
+  std::string what;
+  std::size_t count = 0;
+
+  void note(Location at, std::string_view text) {
+    if (!first) {
+      first = at;
+      what = shown(text);
+    }
+    ++count;
+  }
+};
+
+struct Troubles {
+  Trouble not_utf8;
+  Trouble control;
+  Trouble tab;
+};
+
+std::string more(const Trouble& trouble, std::string_view things) {
+  if (trouble.count < 2) return {};
+  return " (and " + std::to_string(trouble.count - 1) + " more " + std::string(things) + ")";
+}
+
+void scan_line(std::string_view line, int number, Troubles& troubles) {
+  const std::string_view whole = line;
+  const auto at = [&] { return Location{number, static_cast<int>(whole.size() - line.size()) + 1}; };
+  while (!line.empty()) {
+    const std::size_t length = character_length(line);
+    if (length == 0) {
+      troubles.not_utf8.note(at(), line.substr(0, 1));
+    } else if (line[0] != '\t' && is_control(line.substr(0, length))) {
+      troubles.control.note(at(), line.substr(0, length));
+    }
+    line.remove_prefix(length == 0 ? 1 : length);
+  }
+  const std::size_t content = whole.find_first_not_of(" \t");
+  if (content == std::string_view::npos) return;
+  const std::size_t tab = whole.substr(0, content).find('\t');
+  if (tab != std::string_view::npos) troubles.tab.note({number, static_cast<int>(tab) + 1}, "\t");
+}
+
+/// Calls `see(line, number)` for each line of the text, without its line break (\n or \r\n).
+template <class See>
+void for_each_line(std::string_view text, See&& see) {
+  int number = 1;
+  while (true) {
+    const std::size_t end = text.find('\n');
+    std::string_view line = text.substr(0, end);
+    if (end != std::string_view::npos && !line.empty() && line.back() == '\r') line.remove_suffix(1);
+    if (!see(line, number)) return;
+    if (end == std::string_view::npos) return;
+    text.remove_prefix(end + 1);
+    ++number;
+  }
+}
+
+/// Returns the location of a directive, such as `%YAML 1.2`; nothing if the text has no directive. A
+/// directive can only precede the document.
+std::optional<Location> find_directive(std::string_view text) {
+  std::optional<Location> found;
+  for_each_line(text, [&](std::string_view line, int number) {
+    const std::size_t content = line.find_first_not_of(" \t");
+    if (content == std::string_view::npos || line[content] == '#') return true;
+    if (line[0] == '%') found = Location{number, 1};
+    return false;
+  });
+  return found;
+}
+
+bool check_size(const Document& document, const Bounds& bounds, Problems& problems) {
+  if (document.text.size() <= bounds.bytes) return true;
+  Problem problem;
+  problem.file = document.file;
+  problem.message = "the file is larger than " + std::to_string(bounds.bytes) +
+                    " bytes, the largest permitted size of a configuration file";
+  problems.add(std::move(problem));
+  return false;
+}
+
+/// Reads a text line by line and keeps the list of open brackets.
+class Scan {
+ public:
+  void line(std::string_view text, int number) {
+    const std::size_t indent = std::min(text.find_first_not_of(' '), text.size());
+    const bool blank = indent == text.size();
+    if (open_.empty() && quote_ == 0 && folded_ && (blank || indent > folded_indent_)) return;
+    folded_ = false;
+    begins_value_ = true;
+    for (std::size_t i = indent; i < text.size(); ++i) {
+      if (quote_ == 0 && text[i] == '#' && (i == 0 || text[i - 1] == ' ')) break;
+      i += step(text, i, number);
+    }
+    const std::size_t last = text.find_last_not_of(" +-0123456789");
+    if (open_.empty() && quote_ == 0 && !blank && last != std::string_view::npos && last > 1 &&
+        (text[last] == '|' || text[last] == '>') && text[last - 1] == ' ') {
+      folded_ = true;
+      folded_indent_ = indent;
+    }
+  }
+
+  [[nodiscard]] std::vector<Bracket> open() const { return open_; }
+
+ private:
+  /// Reads the character at index `i`. Returns the number of characters after this character that are read
+  /// together with it: 1 for the backslash of `\"`.
+  std::size_t step(std::string_view text, std::size_t i, int number) {
+    const char c = text[i];
+    if (quote_ != 0) {
+      if (c == '\\' && quote_ == '"') return 1;
+      if (c != quote_) return 0;
+      if (c == '\'' && i + 1 < text.size() && text[i + 1] == c) return 1;
+      quote_ = 0;
+      return 0;
+    }
+    const bool value_begins = begins_value_;
+    if (c == ' ') return 0;
+    const bool before_blank = i + 1 == text.size() || text[i + 1] == ' ';
+    begins_value_ = c == ',' || c == '[' || c == '{' || ((c == ':' || c == '-') && before_blank);
+    if ((c == '"' || c == '\'') && value_begins) quote_ = c;
+    if ((c == '[' || c == '{') && (value_begins || !open_.empty())) {
+      open_.push_back({c, {number, static_cast<int>(i) + 1}});
+    }
+    const char opener = c == ']' ? '[' : c == '}' ? '{' : '\0';
+    if (opener != '\0' && !open_.empty() && open_.back().character == opener) open_.pop_back();
+    return 0;
+  }
+
+  std::vector<Bracket> open_;
+  char quote_ = 0;
+  bool begins_value_ = true;
+  bool folded_ = false;  // true: the text is inside a `|` or `>` block; folded_indent_ is the indentation of
+                         // the line that opened the block
+  std::size_t folded_indent_ = 0;
+};
+
 }  // namespace
 
 SyntaxMessage syntax_message(const Document& document, std::string_view said, const Node* open, Location at) {
@@ -165,6 +303,55 @@ std::string_view line_of(std::string_view text, int line) {
   text = text.substr(0, text.find('\n'));
   if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
   return text;
+}
+
+bool check_text(const Document& document, const Bounds& bounds, Problems& problems) {
+  if (!check_size(document, bounds, problems)) return false;
+  const std::string_view text = document.text;
+  if (text.substr(0, 3) == "\xEF\xBB\xBF") {
+    problems.add(document.problem({1, 1}, "the file starts with a byte order mark",
+                                  "save the file as UTF-8 without a byte order mark"));
+    return false;
+  }
+  Troubles troubles;
+  for_each_line(text, [&](std::string_view line, int number) {
+    scan_line(line, number, troubles);
+    return true;
+  });
+  bool good = true;
+  const auto refuse = [&](const Trouble& trouble, std::string message, std::string hint) {
+    if (!trouble.first) return;
+    good = false;
+    problems.add(document.problem(*trouble.first, std::move(message), std::move(hint)));
+  };
+  const Trouble& bytes = troubles.not_utf8;
+  refuse(bytes, "the byte " + bytes.what + " is not UTF-8" + more(bytes, "such bytes"),
+         "save the file as UTF-8");
+  const Trouble& control = troubles.control;
+  refuse(control, "the text contains the control character " + control.what + more(control, "of them"),
+         "remove this character; lines must end with a line feed");
+  refuse(troubles.tab, "the indentation contains a tab" + more(troubles.tab, "lines"),
+         "YAML indents with spaces only");
+  if (const auto directive = find_directive(text)) {
+    good = false;
+    problems.add(document.problem(*directive, "a YAML directive is not accepted here", "remove this line"));
+  }
+  return good;
+}
+
+std::vector<Bracket> open_brackets(std::string_view text, Location place) {
+  Scan scan;
+  for (int number = 1; number <= place.line; ++number) {
+    const std::size_t end = text.find('\n');
+    std::string_view line = text.substr(0, end);
+    if (number == place.line) {
+      line = line.substr(0, std::min(line.size(), static_cast<std::size_t>(std::max(place.column, 1)) - 1));
+    }
+    scan.line(line, number);
+    if (end == std::string_view::npos) break;
+    text.remove_prefix(end + 1);
+  }
+  return scan.open();
 }
 
 }  // namespace softgrip::document

@@ -1,10 +1,10 @@
-#include "document/brackets.h"
+#include "document/syntax.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-namespace softgrip::document::brackets_test {
+namespace softgrip::document::syntax_test {
 namespace {
 
 /// Returns the brackets that are still open at the end of a text. Each bracket is followed by its line and
@@ -43,4 +43,4 @@ TEST(Brackets, OnlyWhatStandsBeforeThePlaceCounts) {
 }
 
 }  // namespace
-}  // namespace softgrip::document::brackets_test
+}  // namespace softgrip::document::syntax_test
