@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "bench/play_model.h"
-#include "control/sequences/prepare_sequence.h"
 #include "control/sequences/sequence_file.h"
 #include "control/tick/rig_controller.h"
 #include "model/chain.h"

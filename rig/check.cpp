@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "control/sequences/prepare_sequence.h"
 #include "control/sequences/sequence_file.h"
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"

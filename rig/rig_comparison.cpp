@@ -7,7 +7,6 @@
 
 #include "base/numbers.h"
 #include "control/feedforward/free_curve.h"
-#include "control/feedforward/free_motion.h"
 #include "document/edit.h"
 
 namespace softgrip::rig {

@@ -1,6 +1,7 @@
 #pragma once
 // Defines the fault codes and their descriptions. A fault stays latched until an operator resets it. The code
 // of a fault never changes, because the code appears in events, recordings, metrics and the manual.
+// Returns the message for a refused request.
 
 #include <cstdint>
 #include <span>
@@ -86,5 +87,14 @@ enum class RefusalCode : std::uint16_t {
 /// snake_case.
 [[nodiscard]] std::string_view id_of(RefusalCode code) noexcept;
 [[nodiscard]] std::string_view name_of(RefusalCode code) noexcept;
+
+struct RefusalText {
+  std::string_view meaning;  ///< reason for the refusal in one sentence
+  std::string_view next;     ///< action that the user should take next, with the command for this action
+};
+
+/// Returns the texts for the code of a refusal. For `none` and for unknown codes, the text says that the
+/// request was not refused.
+[[nodiscard]] const RefusalText& text_of(RefusalCode code) noexcept;
 
 }  // namespace softgrip::control

@@ -1,4 +1,4 @@
-#include "control/elements/refusal_text.h"
+#include "control/elements/fault.h"
 
 #include <array>
 #include <cstddef>

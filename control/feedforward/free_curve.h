@@ -1,6 +1,8 @@
 #pragma once
 // Computes the pressure that a finger without contact needs for a displacement. The difference between the
 // command and this pressure is the gripping pressure.
+// Computes the displacements and the speed that a finger without contact reaches within the limits of its
+// channel. The results are compared with the limits in the rig file.
 
 #include <vector>
 
@@ -42,5 +44,16 @@ class FreeCurve {
                                      ///< step_mm_
   std::vector<double> pressure_kpa_;
 };
+
+struct FreeMotion {
+  double rest_mm = 0;           ///< displacement of the finger at rest under the rest pressure
+  double lowest_mm = 0;         ///< displacement 3 s after the command went to the lowest pressure
+  double highest_mm = 0;        ///< displacement 3 s after the command went to the highest pressure
+  double fastest_mm_per_s = 0;  ///< largest speed, upward or downward, within the slew limits
+};
+
+/// Simulates the model through the complete pressure range and back, in a few thousand steps. The simulation
+/// leaves out noise and dead times.
+[[nodiscard]] FreeMotion free_motion(const model::Model& model, const LimitSettings& limits);
 
 }  // namespace softgrip::control

@@ -1,11 +1,10 @@
-#include "control/feedforward/invertible_part.h"
+#include "control/feedforward/invertibility.h"
 
 #include <array>
 #include <utility>
 #include <vector>
 
 #include "base/statistics.h"
-#include "control/feedforward/invertibility.h"
 #include "model/catalogue.h"
 #include "model/chain.h"
 

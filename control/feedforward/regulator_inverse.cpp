@@ -1,4 +1,4 @@
-#include "control/feedforward/regulator_inverse.h"
+#include "control/feedforward/valve_inverse.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "control/sequences/fit_sequence.h"
+#include "control/sequences/sequence_plans.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 
 #include "base/numbers.h"
 #include "control/feedforward/free_curve.h"
-#include "control/sequences/sequence_plans.h"
 #include "document/node.h"
 
 namespace softgrip::control {

@@ -1,8 +1,7 @@
-#include "control/sequences/prepare_sequence.h"
-
-#include "control/sequences/blame.h"
-#include "control/sequences/fit_sequence.h"
 #include "control/sequences/sequence_file.h"
+
+#include "control/sequences/parameters.h"
+#include "control/sequences/sequence_plans.h"
 #include "document/node.h"
 
 namespace softgrip::control {

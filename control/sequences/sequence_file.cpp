@@ -6,7 +6,6 @@
 #include <set>
 #include <utility>
 
-#include "control/sequences/blame.h"
 #include "control/sequences/parameters.h"
 #include "control/sequences/profile_reader.h"
 #include "control/sequences/step_ranges.h"

@@ -14,7 +14,7 @@
 #include "control/feedforward/free_curve.h"
 #include "control/feedforward/running_model.h"
 #include "control/tick/channel_demand.h"
-#include "control/tick/channel_settings.h"
+#include "control/tick/settings.h"
 #include "control/tick/tick.h"
 #include "model/reading.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "control/feedforward/pressure_plan.h"
-#include "control/tick/channel_settings.h"
+#include "control/tick/settings.h"
 #include "model/model.h"
 
 namespace softgrip::control {

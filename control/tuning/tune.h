@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "control/feedforward/pressure_plan.h"
-#include "control/tick/channel_settings.h"
+#include "control/tick/settings.h"
 #include "control/tuning/tracking_run.h"
 #include "model/model.h"
 

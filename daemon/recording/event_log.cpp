@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "base/numbers.h"
+#include "control/elements/fault.h"
 #include "control/elements/model_health.h"
-#include "control/elements/refusal_text.h"
 #include "control/tick/sequence.h"
 #include "daemon/recording/csv_row.h"
 

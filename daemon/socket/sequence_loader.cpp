@@ -11,7 +11,6 @@
 #include <fmt/ranges.h>
 
 #include "base/sha256.h"
-#include "control/sequences/prepare_sequence.h"
 #include "control/sequences/sequence_file.h"
 #include "control/sequences/sequence_plans.h"
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "control/sequences/prepare_sequence.h"
 #include "control/sequences/sequence_file.h"
 #include "model/file/model_file.h"
 

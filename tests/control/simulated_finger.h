@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "control/tick/channel_settings.h"
+#include "control/tick/settings.h"
 #include "model/chain.h"
 #include "model/file/model_file.h"
 #include "model/reading.h"

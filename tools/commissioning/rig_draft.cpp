@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/numbers.h"
-#include "control/feedforward/free_motion.h"
+#include "control/feedforward/free_curve.h"
 #include "control/feedforward/invertibility.h"
 #include "drivers/board/channel_wiring.h"
 #include "rig/electrical_suffix.h"

@@ -12,7 +12,7 @@
 
 #include "control/elements/feedforward.h"
 #include "control/elements/pid.h"
-#include "control/feedforward/invertible_part.h"
+#include "control/feedforward/invertibility.h"
 #include "control/tuning/tracking_run.h"
 #include "model/model.h"
 

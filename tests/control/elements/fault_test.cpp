@@ -1,7 +1,5 @@
 #include "control/elements/fault.h"
 
-#include "control/elements/refusal_text.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>

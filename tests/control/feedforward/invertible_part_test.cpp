@@ -1,8 +1,7 @@
-#include "control/feedforward/invertible_part.h"
+#include "control/feedforward/invertibility.h"
 
 #include <gtest/gtest.h>
 
-#include "control/feedforward/invertibility.h"
 #include "model/blocks/relaxing_friction.h"
 #include "model/named.h"
 #include "tests/control/simulated_finger.h"

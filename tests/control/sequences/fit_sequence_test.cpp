@@ -1,4 +1,4 @@
-#include "control/sequences/fit_sequence.h"
+#include "control/sequences/sequence_plans.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 #include <stop_token>
 #include <string>
 
-#include "control/sequences/prepare_sequence.h"
 #include "control/sequences/sequence_file.h"
 #include "control/tick/sequence.h"
 #include "tests/control/settings_fixture.h"

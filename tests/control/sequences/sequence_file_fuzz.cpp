@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <string>
 
-#include "control/sequences/prepare_sequence.h"
 #include "control/sequences/sequence_file.h"
 
 namespace {

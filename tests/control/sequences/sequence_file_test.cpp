@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "control/sequences/prepare_sequence.h"
 #include "tests/control/settings_fixture.h"
 
 namespace softgrip::control::sequence_file_test {

@@ -2,7 +2,7 @@
 // sequence. Also checks the motion of the rig along these plans, with and without disturbances.
 
 #include "control/sequences/sequence_plans.h"
-#include "control/sequences/prepare_sequence.h"
+#include "control/sequences/sequence_file.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,6 @@
 
 #include "control/feedforward/feedforward_kinds.h"
 #include "control/feedforward/running_model.h"
-#include "control/sequences/sequence_file.h"
 #include "tests/control/rig_fixture.h"
 #include "tests/control/simulated_finger.h"
 

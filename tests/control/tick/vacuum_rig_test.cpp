@@ -6,7 +6,6 @@
 #include <cmath>
 #include <string>
 
-#include "control/sequences/prepare_sequence.h"
 #include "control/sequences/sequence_file.h"
 #include "tests/control/rig_fixture.h"
 
