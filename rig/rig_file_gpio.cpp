@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "drivers/gpio/gpio_chip.h"
+#include "drivers/gpio/gpio_lines.h"
 #include "rig/rig_file_reader.h"
 
 namespace softgrip::rig {

@@ -8,7 +8,6 @@
 #include "base/numbers.h"
 #include "base/text.h"
 #include "document/number.h"
-#include "drivers/modbus/serial_device.h"
 #include "drivers/modbus/serial_port.h"
 #include "rig/board_map_file.h"
 #include "rig/rig_file_reader.h"

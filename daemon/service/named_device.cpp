@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <variant>
 
-#include "drivers/gpio/gpio_chip.h"
+#include "drivers/gpio/gpio_lines.h"
 #include "drivers/iio/iio_device.h"
 
 namespace softgrip::daemon {

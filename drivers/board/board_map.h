@@ -2,6 +2,8 @@
 // Defines the contents of a board file (config/boards/*.yaml): the registers of an I/O board and their
 // meaning. load_board_map() in rig/board_map_file.h reads the file. The Modbus board and the emulator use the
 // values. docs/reference/board-map.md describes the file.
+// Defines a straight line through two calibration points. Every scaling in a rig file or board file is a line
+// of this kind. The slope may be positive or negative.
 
 #include <algorithm>
 #include <cstddef>
@@ -11,9 +13,26 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/board/two_points.h"
-
 namespace softgrip::drivers {
+
+/// The line through (x0, y0) and (x1, y1). For example, {4, 85, 20, 15} describes a sensor with 4-20 mA whose
+/// reading decreases as the current increases. x0 and x1 must differ; x_at() also requires that y0 and y1
+/// differ. wiring_problems() and the loaders of the files check these conditions.
+struct TwoPoints {
+  double x0 = 0;
+  double y0 = 0;
+  double x1 = 1;
+  double y1 = 1;
+
+  [[nodiscard]] constexpr double y_at(double x) const noexcept {
+    return y0 + (x - x0) * ((y1 - y0) / (x1 - x0));
+  }
+  [[nodiscard]] constexpr double x_at(double y) const noexcept {
+    return x0 + (y - y0) * ((x1 - x0) / (y1 - y0));
+  }
+
+  bool operator==(const TwoPoints&) const = default;
+};
 
 /// The format in which registers contain a number.
 enum class RegisterKind : std::uint8_t { uint16, int16, uint32, int32, float32 };

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "drivers/board/board_map.h"
-#include "drivers/board/two_points.h"
 
 namespace softgrip::drivers {
 

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "base/text.h"
-#include "drivers/gpio/gpio_chip.h"
 #include "drivers/gpio/gpio_lines.h"
 #if SOFTGRIP_GPIOD_2
 #include "drivers/gpio/libgpiod_2.h"

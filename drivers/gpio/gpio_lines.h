@@ -2,6 +2,7 @@
 // Defines the interface for the digital lines of a rig: buttons, lamps and an enable output.
 // daemon/panel/panel.h uses the interface. drivers/gpio/gpio_libgpiod.cpp implements the interface with the
 // GPIO character device. The tests have an implementation of their own.
+// Finds the GPIO chips of this computer.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,9 +12,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <tl/expected.hpp>
 
+#include "base/computer_device.h"
 #include "model/reading.h"
 
 namespace softgrip::drivers {
@@ -95,5 +98,11 @@ struct GpioFailure {
 [[nodiscard]] tl::expected<std::unique_ptr<GpioLines>, GpioFailure> open_gpio_lines_in(
     const std::filesystem::path& devices, const std::filesystem::path& sys,
     std::span<const GpioLineSettings> lines);
+
+/// Returns the GPIO chips whose files are in the folder `devices`. The words of a chip are the names by which
+/// a rig file can select it. These are its address in sysfs (`sys`), the names of links to its file, and its
+/// label if this user may open the chip.
+[[nodiscard]] std::vector<ComputerDevice> chips_in(const std::filesystem::path& devices = "/dev",
+                                                   const std::filesystem::path& sys = "/sys");
 
 }  // namespace softgrip::drivers

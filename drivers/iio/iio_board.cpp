@@ -13,9 +13,7 @@
 #include "base/time.h"
 #include "drivers/board/judged_input.h"
 #include "drivers/board/round_trip.h"
-#include "drivers/iio/iio_attribute.h"
 #include "drivers/iio/iio_device.h"
-#include "drivers/iio/iio_scaling.h"
 
 namespace softgrip::drivers {
 namespace {

@@ -15,9 +15,8 @@
 #include "base/descriptor.h"
 #include "base/text.h"
 #include "base/time.h"
-#include "drivers/modbus/exception_text.h"
+#include "drivers/modbus/modbus_reply.h"
 #include "drivers/modbus/modbus_rtu_link.h"
-#include "drivers/modbus/modbus_rtu_tcp_link.h"
 #include "drivers/modbus/modbus_tcp_link.h"
 
 namespace softgrip::drivers {

@@ -1,6 +1,7 @@
 #pragma once
 // Checks if bytes from an untrusted source are the Modbus response to a request. The bytes begin with the
 // function code. The functions in mbap.h and rtu_frame.h check the framing of these bytes.
+// Provides the texts of Modbus exceptions without allocating memory.
 
 #include <cstddef>
 #include <cstdint>
@@ -59,5 +60,8 @@ struct ModbusReply {
 [[nodiscard]] inline ModbusReply defective(ReplyDefect defect) noexcept {
   return {.state = ModbusReply::State::defective, .defect = defect};
 }
+
+/// Returns the text of a Modbus exception.
+[[nodiscard]] const char* text_of_exception(unsigned code) noexcept;
 
 }  // namespace softgrip::drivers

@@ -1,12 +1,15 @@
 #pragma once
 // Opens serial devices with the settings of a serial line, and calculates the timing of this line.
+// Checks that a path is the name of exactly one serial device of this computer.
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "base/computer_device.h"
 #include "base/descriptor.h"
 #include "drivers/modbus/modbus_address.h"
 
@@ -56,5 +59,12 @@ struct AdapterLatency {
 /// driver has no latency setting. `sys` is the path of sysfs.
 [[nodiscard]] std::optional<AdapterLatency> adapter_latency(const std::string& device,
                                                             const std::string& sys = "/sys");
+
+/// Returns nothing if a path is the name of exactly one serial device, otherwise the reason why it is not.
+/// There are two reasons. The path does not exist, or udev gave it to several devices, such as two adapters
+/// of one type without a serial number. In the second case, the link in /dev leads to the device that was
+/// connected last. Only names in /dev are checked. `root` is the folder that contains /dev and /run.
+[[nodiscard]] std::optional<UnclearDevice> unclear_serial_device(const std::string& path,
+                                                                 const std::filesystem::path& root = "/");
 
 }  // namespace softgrip::drivers

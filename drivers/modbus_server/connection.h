@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/descriptor.h"
-#include "drivers/modbus_server/reply.h"
 #include "drivers/modbus_server/requests.h"
 
 namespace softgrip::modbus {

@@ -1,5 +1,7 @@
 #pragma once
 // Divides the bytes of a connection or a serial line into requests, and puts replies into frames.
+// Defines the bytes that a client receives, and the times at which the server sends these bytes. The emulator
+// also uses these types to simulate transmission faults.
 
 #include <chrono>
 #include <cstddef>
@@ -70,5 +72,17 @@ inline void append_word(Bytes& bytes, std::uint16_t word) {
   bytes.push_back(static_cast<std::uint8_t>(word >> 8U));
   bytes.push_back(static_cast<std::uint8_t>(word & 0xffU));
 }
+
+/// Bytes of a reply that are sent when the time `after` has passed since the arrival of the request.
+struct Piece {
+  std::chrono::nanoseconds after{0};
+  Bytes bytes;
+};
+
+/// The complete response to one request. If the board does not respond to the request, `pieces` is empty.
+struct Reply {
+  std::vector<Piece> pieces;
+  bool disconnect = false;  ///< true: the connection is closed after all pieces are sent
+};
 
 }  // namespace softgrip::modbus

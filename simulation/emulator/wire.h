@@ -3,7 +3,6 @@
 
 #include "drivers/modbus_server/connection.h"
 #include "drivers/modbus_server/registers.h"
-#include "drivers/modbus_server/reply.h"
 #include "drivers/modbus_server/requests.h"
 
 namespace softgrip::simulation {

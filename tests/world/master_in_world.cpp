@@ -1,7 +1,7 @@
 #include "tests/world/master_in_world.h"
 
 #include "base/periodic_schedule.h"
-#include "drivers/modbus_server/reply.h"
+#include "drivers/modbus_server/requests.h"
 
 namespace softgrip::world {
 namespace {

@@ -14,7 +14,7 @@
 #include "base/numbers.h"
 #include "base/text.h"
 #include "document/problem.h"
-#include "drivers/modbus/serial_device.h"
+#include "drivers/modbus/serial_port.h"
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"
 #include "tools/command_line/input_files.h"

@@ -8,7 +8,7 @@
 
 #include <tl/expected.hpp>
 
-#include "drivers/board/two_points.h"
+#include "drivers/board/board_map.h"
 
 namespace softgrip::tools::calibrate {
 

@@ -10,7 +10,6 @@
 
 #include "document/problem.h"
 #include "drivers/board/board_map.h"
-#include "drivers/board/two_points.h"
 #include "model/model.h"
 
 namespace softgrip::tools {

@@ -11,7 +11,7 @@
 
 #include "base/time.h"
 #include "drivers/modbus_server/registers.h"
-#include "drivers/modbus_server/reply.h"
+#include "drivers/modbus_server/requests.h"
 #include "rig/plc_file/settings.h"
 #include "tools/plc/handshake.h"
 #include "tools/plc/master_watch.h"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "drivers/board/two_points.h"
+#include "drivers/board/board_map.h"
 
 namespace softgrip::drivers::registers_test {
 namespace {

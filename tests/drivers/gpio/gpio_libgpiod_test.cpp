@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "drivers/gpio/gpio_chip.h"
 #include "drivers/gpio/gpio_lines.h"
 #include "tests/drivers/gpio/fake_gpio.h"
 

@@ -1,8 +1,12 @@
 #include "drivers/iio/iio_device.h"
 
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "base/files.h"
 
@@ -34,6 +38,35 @@ TEST(IioDevice, IsItsNameWhereItIsOnNoBus) {
   fs::create_directories(fs::path(scratch.path()) / "iio:device0");
   std::ofstream(fs::path(scratch.path()) / "iio:device0/name") << "dac7578\n";
   EXPECT_EQ(identity_of(converters_in(scratch.path()).at(0)), "dac7578");
+}
+
+namespace fs = std::filesystem;
+
+class IioScalingTest : public testing::Test {
+ protected:
+  IioScalingTest() { fs::create_directories(folder_); }
+  ~IioScalingTest() override { fs::remove_all(folder_); }
+  void put(const std::string& file, const std::string& text) const {
+    std::ofstream(folder_ / file) << text << "\n";
+  }
+  const fs::path folder_ = fs::temp_directory_path() / ("softgrip_iio_scaling_" + std::to_string(::getpid()));
+};
+
+TEST_F(IioScalingTest, IsThatOfTheChannelOrOfAllChannels) {
+  put("in_voltage_scale", "2");
+  put("in_voltage_offset", "-5");
+  put("in_voltage1_scale", "4");
+  const IioScaling shared = scaling_of(folder_, "voltage0", false);
+  EXPECT_DOUBLE_EQ(shared.scale, 2e-3);
+  EXPECT_EQ(shared.offset, -5);
+  EXPECT_DOUBLE_EQ(scaling_of(folder_, "voltage1", false).scale, 4e-3);
+  EXPECT_EQ(scaling_of(folder_, "voltage0", true).scale, 0) << "an output does not have the scale of inputs";
+}
+
+TEST_F(IioScalingTest, OfAProcessedNumberConvertsOnlyItsUnit) {
+  EXPECT_DOUBLE_EQ(scaling_of_processed("voltage0").scale, 1e-3);
+  EXPECT_EQ(scaling_of_processed("current0").scale, 1);
+  EXPECT_EQ(scaling_of_processed("pressure").offset, 0);
 }
 
 }  // namespace

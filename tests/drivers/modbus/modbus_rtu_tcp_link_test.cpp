@@ -2,7 +2,7 @@
 // frames: tests/simulation/emulator/board_habits_test.cpp with the emulator, and modbus_rtu_link_test.cpp on
 // a serial line.
 
-#include "drivers/modbus/modbus_rtu_tcp_link.h"
+#include "drivers/modbus/modbus_rtu_link.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "drivers/modbus/serial_device.h"
+#include "drivers/modbus/serial_port.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "base/files.h"
 
-namespace softgrip::drivers::serial_device_test {
+namespace softgrip::drivers::serial_port_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,4 +87,4 @@ TEST_F(SerialDevice, OnlyNamesInDevAreJudged) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers::serial_device_test
+}  // namespace softgrip::drivers::serial_port_test
