@@ -7,7 +7,6 @@
 #include "base/text.h"
 #include "document/reader.h"
 #include "drivers/modbus/modbus_request.h"
-#include "rig/electrical_suffix.h"
 
 namespace softgrip::rig {
 namespace {

@@ -10,7 +10,6 @@
 
 #include "model/file/model_file.h"
 #include "rig/rig_file_reader.h"
-#include "rig/stored_rig.h"
 
 namespace softgrip::rig {
 

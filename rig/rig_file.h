@@ -1,6 +1,7 @@
 #pragma once
 // Reads rig files: all settings of softgripd for one rig, as plain values. docs/reference/rig-file.md
 // describes the file, and config/rig.yaml and config/rig_tcp.yaml are examples.
+// Reads a rig from stored texts of its files, without access to the files.
 
 #include <cstdint>
 #include <optional>
@@ -14,11 +15,8 @@
 #include "drivers/board/channel_wiring.h"
 #include "drivers/iio/iio_board.h"
 #include "drivers/modbus/modbus_board.h"
+#include "rig/daemon_settings.h"
 #include "rig/gpio_settings.h"
-#include "rig/loop_settings.h"
-#include "rig/real_time_settings.h"
-#include "rig/recorder_settings.h"
-#include "rig/socket_settings.h"
 #include "simulation/plant/simulated_board.h"
 
 namespace softgrip::rig {
@@ -104,5 +102,10 @@ struct RigReading {
 /// Replaces the seeds of the simulated fingers by the seeds that they would have if the rig file contained
 /// this `seed`. Returns false if the board is not simulated.
 bool reseed(RigFile& rig, std::uint64_t seed);
+
+/// Reads a rig from the stored texts of its files (RigFile::inputs), without access to the disk. Reports the
+/// same problems as load_rig() reports for the files.
+[[nodiscard]] std::optional<RigFile> read_stored_rig(const std::vector<InputFile>& inputs,
+                                                     document::Problems& problems);
 
 }  // namespace softgrip::rig

@@ -14,7 +14,7 @@
 #include "daemon/loop/shared_state.h"
 #include "daemon/loop/statistics.h"
 #include "drivers/board/board.h"
-#include "rig/loop_settings.h"
+#include "rig/daemon_settings.h"
 
 namespace softgrip::daemon {
 

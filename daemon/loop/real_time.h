@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rig/real_time_settings.h"
+#include "rig/daemon_settings.h"
 
 namespace softgrip::daemon {
 

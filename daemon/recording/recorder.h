@@ -16,7 +16,7 @@
 #include "daemon/recording/run_folder.h"
 #include "daemon/recording/run_json.h"
 #include "daemon/recording/sequence_store.h"
-#include "rig/recorder_settings.h"
+#include "rig/daemon_settings.h"
 
 namespace softgrip::daemon {
 

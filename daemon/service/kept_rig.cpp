@@ -9,7 +9,7 @@
 #include "base/sha256.h"
 #include "daemon/service/board_lock.h"
 #include "daemon/service/runtime_folder.h"
-#include "rig/stored_rig.h"
+#include "rig/rig_file.h"
 
 namespace softgrip::daemon {
 

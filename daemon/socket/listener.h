@@ -8,7 +8,7 @@
 #include <tl/expected.hpp>
 
 #include "base/descriptor.h"
-#include "rig/socket_settings.h"
+#include "rig/daemon_settings.h"
 
 namespace softgrip::daemon {
 

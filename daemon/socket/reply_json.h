@@ -14,7 +14,7 @@
 #include "daemon/socket/role.h"
 #include "daemon/socket/sequence_loader.h"
 #include "document/problem.h"
-#include "rig/socket_settings.h"
+#include "rig/daemon_settings.h"
 
 namespace softgrip::daemon {
 

@@ -19,7 +19,7 @@
 #include "daemon/socket/service.h"
 #include "daemon/socket/start_ledger.h"
 #include "daemon/socket/status_json.h"
-#include "rig/socket_settings.h"
+#include "rig/daemon_settings.h"
 
 namespace softgrip::daemon {
 

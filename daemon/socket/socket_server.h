@@ -17,7 +17,7 @@
 #include "daemon/socket/listener.h"
 #include "daemon/socket/role.h"
 #include "model/reading.h"
-#include "rig/socket_settings.h"
+#include "rig/daemon_settings.h"
 
 namespace softgrip::daemon {
 

@@ -333,5 +333,13 @@ TEST(BoardMapFile, AllProblemsAtOnce) {
   EXPECT_GT(result.problems.size(), 5U) << result.problems.format();
 }
 
+using drivers::ElectricalUnit;
+
+TEST(ElectricalSuffix, IsTheUnitAtTheEndOfAKey) {
+  EXPECT_EQ(suffix_of(ElectricalUnit::volt), "_v");
+  EXPECT_EQ(suffix_of(ElectricalUnit::milliampere), "_ma");
+  EXPECT_EQ(suffix_of(ElectricalUnit::kilopascal), "_kpa");
+}
+
 }  // namespace
 }  // namespace softgrip::rig::board_map_file_test

@@ -1,4 +1,4 @@
-#include "rig/stored_rig.h"
+#include "rig/rig_file.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include "control/feedforward/free_curve.h"
 #include "control/feedforward/invertibility.h"
 #include "drivers/board/channel_wiring.h"
-#include "rig/electrical_suffix.h"
+#include "rig/board_map_file.h"
 #include "rig/rig_file.h"
 #include "tools/commissioning/calibration_results.h"
 #include "tools/commissioning/rig_template.h"

@@ -10,7 +10,7 @@
 
 #include "base/files.h"
 #include "document/edit.h"
-#include "rig/electrical_suffix.h"
+#include "rig/board_map_file.h"
 #include "rig/rig_file.h"
 
 namespace softgrip::tools::calibrate {

@@ -7,7 +7,7 @@
 #include "base/numbers.h"
 #include "base/text.h"
 #include "document/number.h"
-#include "rig/electrical_suffix.h"
+#include "rig/board_map_file.h"
 #include "rig/rig_file.h"
 
 namespace softgrip::tools::calibrate {

@@ -1,9 +1,16 @@
 #pragma once
 // Settings for the timing of the loop and of the bus thread.
+// The settings in the `real_time` map of a rig file, which the daemon requests from the operating system.
+// The settings in the `recorder` map of a rig file: contents, folder and write intervals of recordings.
+// The settings in the `socket` map of a rig file: the Unix domain sockets of the daemon.
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "base/time.h"
 
@@ -46,6 +53,59 @@ struct ReconnectSettings {
   std::chrono::nanoseconds first_pause = std::chrono::milliseconds(100);
   /// Longest pause between two attempts [ns]. The pause doubles after each failed attempt, up to this value.
   std::chrono::nanoseconds longest_pause = std::chrono::seconds(5);
+};
+
+/// The map `real_time` of a rig file. rig/rig_keys.cpp declares the meaning and the range of each member.
+struct RealTimeSettings {
+  bool required = false;
+  int priority = 70;
+  /// If true, the daemon locks its present and future pages with mlockall(). It also does not return heap
+  /// memory to the kernel, and does not use mmap() for large blocks.
+  bool lock_memory = true;
+  std::size_t prefault_stack_bytes = 256 * 1024;
+  std::size_t prefault_heap_bytes = 8 * 1024 * 1024;
+  /// The value is written to /dev/cpu_dma_latency; if it is empty, nothing is written.
+  std::optional<int> cpu_dma_latency_us;
+  std::vector<int> cpus;
+};
+
+/// The map `recorder` of a rig file. rig/rig_keys.cpp declares the meaning and the range of each member.
+struct RecorderSettings {
+  enum class Mode : std::uint8_t {
+    off,
+    sequences,  ///< one folder per sequence, and one folder per fault, which begins with the rows from before
+                ///< the fault
+    always,     ///< one folder for the complete time from the start to the end of the daemon
+  };
+  Mode mode = Mode::sequences;
+  /// Folder in which the daemon creates one folder per recording.
+  std::string directory = "/var/lib/softgrip/runs";
+  std::uint32_t decimation = 1;
+  double flush_interval_s = 0.1;
+  double sync_interval_s = 5;
+  double history_s = 1;
+};
+
+/// The file of a Unix domain stream socket.
+struct SocketFile {
+  std::string path;  ///< path of the socket file; empty: there is no such socket
+  /// Permissions of the socket file (file mode).
+  unsigned mode = 0660;
+  /// Group of the socket file; empty: the group of the daemon.
+  std::string group;
+};
+
+/// The socket for clients that may move the gripper, and the settings for both sockets. rig/rig_keys.cpp
+/// declares the meaning and the range of each member.
+struct SocketSettings : SocketFile {
+  SocketSettings() { path = "/run/softgrip/softgripd.sock"; }
+  /// The socket for read-only clients.
+  SocketFile look;
+  std::size_t max_clients = 16;
+  std::size_t max_line_bytes = 64 * 1024;
+  std::size_t max_queue_bytes = 1024 * 1024;
+  /// Folder with the sequences that clients can start by name.
+  std::string sequence_directory = "/etc/softgrip/sequences";
 };
 
 }  // namespace softgrip::rig
