@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "simulation/emulator/wire_fault.h"
+#include "simulation/emulator/wire.h"
 
 namespace softgrip::simulation {
 namespace {

@@ -10,7 +10,7 @@
 #include "rig/board_map_file.h"
 #include "rig/rig_file.h"
 #include "simulation/emulator/control.h"
-#include "simulation/emulator/wiring.h"
+#include "simulation/emulator/finger.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/output.h"

@@ -7,7 +7,7 @@
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"
 #include "simulation/emulator/control.h"
-#include "simulation/emulator/wiring.h"
+#include "simulation/emulator/finger.h"
 
 namespace softgrip::simulation::emulator_test {
 namespace {

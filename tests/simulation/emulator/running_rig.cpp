@@ -11,7 +11,7 @@
 
 #include "base/net/listener.h"
 #include "model/file/model_file.h"
-#include "simulation/emulator/wiring.h"
+#include "simulation/emulator/finger.h"
 
 namespace softgrip::simulation::test {
 namespace {

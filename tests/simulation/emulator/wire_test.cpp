@@ -1,8 +1,8 @@
-#include "simulation/emulator/wire_fault.h"
+#include "simulation/emulator/wire.h"
 
 #include <gtest/gtest.h>
 
-namespace softgrip::simulation::wire_fault_test {
+namespace softgrip::simulation::wire_test {
 namespace {
 
 const Request request{0x0102, 1, {0x03, 0, 0, 0, 1}};
@@ -80,4 +80,4 @@ TEST(WireFault, CutsRepeatsRefusesAndHangsUp) {
 }
 
 }  // namespace
-}  // namespace softgrip::simulation::wire_fault_test
+}  // namespace softgrip::simulation::wire_test

@@ -1,4 +1,4 @@
-#include "simulation/emulator/wire_fault.h"
+#include "simulation/emulator/wire.h"
 
 #include <modbus/modbus.h>
 
