@@ -1,7 +1,9 @@
 #pragma once
 // Defines the grip result: HOLDING, NO PART, PART LOST, RELEASED or ERROR.
+// Combines the results of several fingers into one overall result of the grip.
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 namespace softgrip::control {
@@ -30,5 +32,11 @@ enum class GripEvidence : std::uint8_t {
 };
 /// Returns the name of the evidence: "none", "displacement" or "pressure (weaker)".
 [[nodiscard]] std::string_view name_of(GripEvidence evidence) noexcept;
+
+/// Returns the overall result of the fingers in `members` (bit i: results[i]). The results error, part_lost
+/// and no_part have priority, in this order: the first of them that any finger has is the overall result. If
+/// no finger has any of these three and all fingers have the same result, this result is the overall result.
+/// In all other cases, and if `members` is 0, the overall result is `none`.
+[[nodiscard]] GripResult overall_result(std::span<const GripResult> results, std::uint32_t members) noexcept;
 
 }  // namespace softgrip::control

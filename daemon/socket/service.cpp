@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/periodic_schedule.h"
-#include "daemon/socket/overall_result.h"
+#include "control/elements/grip_result.h"
 
 namespace softgrip::daemon {
 

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/periodic_schedule.h"
+#include "control/elements/grip_result.h"
 #include "daemon/recording/csv_row.h"
-#include "daemon/socket/overall_result.h"
 
 namespace softgrip::daemon {
 

@@ -1,10 +1,10 @@
-#include "daemon/socket/overall_result.h"
+#include "control/elements/grip_result.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-namespace softgrip::daemon::overall_result_test {
+namespace softgrip::control::grip_result_test {
 namespace {
 
 using enum control::GripResult;
@@ -30,4 +30,4 @@ TEST(OverallResult, FingersThatDoNotTakePartDoNotCount) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon::overall_result_test
+}  // namespace softgrip::control::grip_result_test
