@@ -12,7 +12,6 @@
 #include "daemon/loop/shared_state.h"
 #include "daemon/recording/csv_row.h"
 #include "daemon/recording/event_log.h"
-#include "daemon/recording/provenance.h"
 #include "daemon/recording/run_folder.h"
 #include "daemon/recording/run_json.h"
 #include "daemon/recording/sequence_store.h"

@@ -10,7 +10,7 @@
 #include "base/periodic_schedule.h"
 #include "daemon/service/board_lock.h"
 #include "daemon/service/daemon.h"
-#include "daemon/service/daemon_answers.h"
+#include "daemon/service/trusted_user.h"
 
 namespace softgrip::daemon {
 

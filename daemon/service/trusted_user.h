@@ -1,10 +1,13 @@
 #pragma once
 // Decides which users a softgrip program trusts to drive a board. This is necessary because any user may bind
 // any socket name.
+// Checks if a running daemon replies on a socket. An accepted connection does not prove this: another program
+// can listen on the socket, and a stopped daemon also accepts connections.
 
 #include <sys/types.h>
 
 #include <optional>
+#include <string>
 
 namespace softgrip::daemon {
 
@@ -28,5 +31,9 @@ struct Peer {
 };
 /// Returns the process at the other end of a connected socket; empty if the kernel does not report it.
 [[nodiscard]] std::optional<Peer> peer_of(int socket);
+
+/// Requests the status and waits at most 2 s for the reply. Returns true if a trusted program
+/// (trusted_user.h) replied in the way softgripd does.
+[[nodiscard]] bool daemon_answers(const std::string& socket_path);
 
 }  // namespace softgrip::daemon

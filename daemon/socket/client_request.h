@@ -2,6 +2,8 @@
 // Reads one line of a client of the socket API into a plain value. Any user of the socket can send lines, so
 // this parser is fuzz-tested (tests/daemon/socket/client_request_fuzz.cpp). docs/reference/socket-api.md
 // describes the requests.
+// Defines the roles of the clients of the socket API. The socket to which a client is connected determines
+// the role of the client.
 
 #include <cstdint>
 #include <optional>
@@ -12,9 +14,17 @@
 #include <tl/expected.hpp>
 
 #include "control/tick/parameter.h"
-#include "daemon/socket/role.h"
 
 namespace softgrip::daemon {
+
+enum class Role : std::uint8_t {
+  look,     ///< read-only; for clients of the socket `socket: look:` of the rig file
+  operate,  ///< may move the gripper; for clients of the socket `socket: path:` of the rig file
+};
+/// Returns the name of a role: "look" or "operate".
+[[nodiscard]] constexpr std::string_view name_of(Role role) noexcept {
+  return role == Role::look ? "look" : "operate";
+}
 
 /// Version of the socket API that this daemon implements.
 inline constexpr std::uint64_t api_version = 1;

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/recording/sequence_store.h"
-#include "daemon/socket/role.h"
+#include "daemon/socket/client_request.h"
 #include "daemon/socket/sequence_loader.h"
 #include "document/problem.h"
 #include "rig/daemon_settings.h"

@@ -14,7 +14,6 @@
 
 #include "daemon/socket/client_request.h"
 #include "daemon/socket/event_feed.h"
-#include "daemon/socket/role.h"
 #include "daemon/socket/sequence_loader.h"
 #include "daemon/socket/service.h"
 #include "daemon/socket/start_ledger.h"

@@ -14,8 +14,8 @@
 #include "base/descriptor.h"
 #include "base/net/line_buffer.h"
 #include "base/net/poll_set.h"
+#include "daemon/socket/client_request.h"
 #include "daemon/socket/listener.h"
-#include "daemon/socket/role.h"
 #include "model/reading.h"
 #include "rig/daemon_settings.h"
 

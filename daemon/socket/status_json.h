@@ -11,8 +11,8 @@
 #include "daemon/loop/real_time.h"
 #include "daemon/loop/statistics.h"
 #include "daemon/recording/event_log.h"
-#include "daemon/recording/provenance.h"
 #include "daemon/recording/recorder.h"
+#include "daemon/recording/run_json.h"
 #include "daemon/socket/service.h"
 #include "rig/gpio_settings.h"
 
