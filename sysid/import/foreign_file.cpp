@@ -8,15 +8,9 @@
 #include "base/files.h"
 #include "base/sha256.h"
 #include "sysid/import/array_table.h"
-#include "sysid/import/hdf5_table.h"
-#include "sysid/import/lvm_text.h"
-#include "sysid/import/mat_elements.h"
-#include "sysid/import/mat_table.h"
 #include "sysid/import/mcap_table.h"
-#include "sysid/import/split_times.h"
-#include "sysid/import/tdms_table.h"
-#include "sysid/import/text_table.h"
-#include "sysid/import/xlsx_table.h"
+#include "sysid/import/moments.h"
+#include "sysid/import/table_readers.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -1,4 +1,4 @@
-#include "sysid/import/hdf5_table.h"
+#include "sysid/import/table_readers.h"
 
 #include <hdf5.h>
 

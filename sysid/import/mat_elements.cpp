@@ -1,4 +1,4 @@
-#include "sysid/import/mat_elements.h"
+#include "sysid/import/table_readers.h"
 
 #include <zlib.h>
 

@@ -1,4 +1,4 @@
-#include "sysid/import/mat_table.h"
+#include "sysid/import/table_readers.h"
 
 #include <matio.h>
 

@@ -13,7 +13,7 @@
 #include "sysid/import/byte_scanner.h"
 #include "sysid/import/cell_value.h"
 #include "sysid/import/mcap_topics.h"
-#include "sysid/import/split_times.h"
+#include "sysid/import/moments.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -1,10 +1,15 @@
 #pragma once
 // Parses dates and times of day in the formats that people and data loggers write.
+// Combines a time that is split into two columns, whole seconds and remaining nanoseconds, as in a ROS
+// message header.
 
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/time.h"
+#include "sysid/import/table.h"
 
 namespace softgrip::sysid {
 
@@ -25,5 +30,11 @@ struct Moment {
 /// 12:00:00 PM). Two fields alone are minutes and seconds (00:59.5). 05/31/2024 is not accepted, because the
 /// order of day and month is ambiguous.
 [[nodiscard]] std::optional<Moment> moment_of(std::string_view text);
+
+/// Adds the nanoseconds of one column to the seconds of another column if the column names differ only in
+/// their last word: "stamp.sec" and "stamp.nanosec", or "secs" and "nsecs". Both columns must contain whole
+/// numbers, and the nanoseconds must be from 0 to below 1e9. The column of the nanoseconds is marked as part
+/// of a time (TableColumn::is_part_of_time). A note is added to `notes` for each pair of combined columns.
+void combine_split_times(std::vector<TableColumn>& columns, std::vector<std::string>& notes);
 
 }  // namespace softgrip::sysid

@@ -47,7 +47,7 @@ struct TableColumn {
   Nanoseconds first_moment = 0;  ///< first date or time of day in the column, as Moment::time (moments.h)
   /// Number of times with two fields ("12:34"), which were read as minutes and seconds.
   std::size_t short_clocks = 0;
-  /// True if the nanoseconds in this column were added to the times of another column (split_times.h).
+  /// True if the nanoseconds in this column were added to the times of another column (moments.h).
   bool is_part_of_time = false;
   bool surely_minutes = false;  ///< true: one of the times with two fields cannot be hours and minutes
   std::vector<BadCell> bad;     ///< the first cells of the column that could not be read

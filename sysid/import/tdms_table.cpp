@@ -1,4 +1,4 @@
-#include "sysid/import/tdms_table.h"
+#include "sysid/import/table_readers.h"
 
 #include <algorithm>
 #include <cmath>

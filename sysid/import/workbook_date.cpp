@@ -1,4 +1,4 @@
-#include "sysid/import/workbook_date.h"
+#include "sysid/import/workbook_sheet.h"
 
 #include <algorithm>
 #include <array>

@@ -11,8 +11,7 @@
 #include "sysid/import/cell_value.h"
 #include "sysid/import/table.h"
 #include "sysid/import/units.h"
-#include "sysid/import/workbook_date.h"
-#include "sysid/import/workbook_xml.h"
+#include "sysid/import/workbook_package.h"
 #include "sysid/logs/csv_text.h"
 
 namespace softgrip::sysid {

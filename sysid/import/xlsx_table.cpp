@@ -1,4 +1,4 @@
-#include "sysid/import/xlsx_table.h"
+#include "sysid/import/table_readers.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -8,11 +8,8 @@
 
 #include "base/text.h"
 #include "sysid/import/cell_value.h"
-#include "sysid/import/text_table.h"
-#include "sysid/import/workbook_date.h"
 #include "sysid/import/workbook_package.h"
 #include "sysid/import/workbook_sheet.h"
-#include "sysid/import/workbook_xml.h"
 #include "sysid/logs/csv_text.h"
 
 namespace softgrip::sysid {

@@ -7,7 +7,7 @@
 #include "sysid/import/conversion.h"
 #include "sysid/import/foreign_file.h"
 #include "sysid/import/proposal.h"
-#include "sysid/import/xlsx_table.h"
+#include "sysid/import/table_readers.h"
 #include "sysid/logs/log.h"
 
 namespace softgrip::tools {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/numbers.h"
-#include "sysid/import/text_table.h"
+#include "sysid/import/table_readers.h"
 
 namespace softgrip::sysid::clock_test {
 namespace {

@@ -7,7 +7,7 @@
 #include "base/numbers.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/samples.h"
-#include "sysid/import/text_table.h"
+#include "sysid/import/table_readers.h"
 
 namespace softgrip::sysid::conversion_test {
 namespace {

@@ -7,8 +7,7 @@
 
 #include "base/files.h"
 #include "sysid/import/array_table.h"
-#include "sysid/import/hdf5_table.h"
-#include "sysid/import/mat_table.h"
+#include "sysid/import/table_readers.h"
 
 // tests/system/test_import.py tests the values that the import reads from MATLAB and HDF5 files.
 namespace softgrip::sysid::foreign_file_test {

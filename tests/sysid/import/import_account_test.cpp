@@ -13,7 +13,7 @@
 #include "base/numbers.h"
 #include "sysid/import/conversion.h"
 #include "sysid/import/proposal.h"
-#include "sysid/import/text_table.h"
+#include "sysid/import/table_readers.h"
 
 namespace softgrip::sysid::import_account_test {
 namespace {

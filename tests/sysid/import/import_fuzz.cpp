@@ -13,9 +13,7 @@
 #include "sysid/import/mapping_file.h"
 #include "sysid/import/mcap_table.h"
 #include "sysid/import/proposal.h"
-#include "sysid/import/tdms_table.h"
-#include "sysid/import/text_table.h"
-#include "sysid/import/xlsx_table.h"
+#include "sysid/import/table_readers.h"
 #include "sysid/logs/plausibility_warnings.h"
 
 namespace {

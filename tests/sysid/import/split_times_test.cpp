@@ -1,4 +1,4 @@
-#include "sysid/import/split_times.h"
+#include "sysid/import/moments.h"
 
 #include <gtest/gtest.h>
 

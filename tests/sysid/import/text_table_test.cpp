@@ -1,4 +1,4 @@
-#include "sysid/import/text_table.h"
+#include "sysid/import/table_readers.h"
 
 #include <gtest/gtest.h>
 

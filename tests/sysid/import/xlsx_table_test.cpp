@@ -1,4 +1,4 @@
-#include "sysid/import/xlsx_table.h"
+#include "sysid/import/table_readers.h"
 
 #include <gtest/gtest.h>
 #include <zip.h>
@@ -11,10 +11,8 @@
 
 #include "base/files.h"
 #include "base/numbers.h"
-#include "sysid/import/text_table.h"
 #include "sysid/import/workbook_package.h"
 #include "sysid/import/workbook_sheet.h"
-#include "sysid/import/workbook_xml.h"
 
 // tests/system/foreign_files.py tests the complete import of workbooks with dates and formulas.
 namespace softgrip::sysid::xlsx_table_test {
