@@ -9,7 +9,6 @@
 #include "sysid/import/text_encoding.h"
 #include "sysid/import/units.h"
 #include "sysid/logs/log_columns.h"
-#include "sysid/logs/log_reporter.h"
 
 namespace softgrip::sysid {
 namespace {

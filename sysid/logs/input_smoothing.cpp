@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/statistics.h"
-#include "sysid/logs/turning_points.h"
+#include "sysid/logs/excitation.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -1,12 +1,12 @@
-#include "sysid/logs/log_checks.h"
+#include "sysid/logs/log_header.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "base/numbers.h"
-#include "sysid/logs/extent.h"
 #include "sysid/logs/sensor_codes.h"
+#include "sysid/logs/unit_factors.h"
 
 namespace softgrip::sysid {
 namespace {

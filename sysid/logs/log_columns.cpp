@@ -4,6 +4,11 @@
 #include <map>
 
 namespace softgrip::sysid {
+namespace {
+
+constexpr int shown = 3;
+
+}  // namespace
 
 std::string_view column_name(const KnownColumn& known, const Log& log) {
   if (known.values != &Log::displacement_mm) return known.name;
@@ -21,6 +26,27 @@ std::string conversion(std::string_view unit) {
       {"in", "multiply by 25.4"},      {"k", "subtract 273.15"},   {"f", "(f - 32) / 1.8"}};
   const auto found = conversions.find(unit);
   return found == conversions.end() ? std::string() : ", " + std::string(found->second);
+}
+
+void LogReporter::add(const std::string& kind, document::Location at, std::string_view line,
+                      std::string message, std::string hint) {
+  if (int& count = counts_[kind]; ++count <= shown) {
+    problems_.add({file_, at, std::string(line.substr(0, 200)), std::move(message), std::move(hint)});
+  } else {
+    last_[kind] = {at, std::string(line.substr(0, 200))};
+  }
+}
+
+void LogReporter::finish() {
+  for (const auto& [kind, last] : last_) {
+    problems_.add({file_,
+                   last.first,
+                   last.second,
+                   kind + ": " + std::to_string(counts_[kind] - shown) +
+                       " more problems of this kind, the last one here",
+                   {}});
+  }
+  last_.clear();
 }
 
 }  // namespace softgrip::sysid

@@ -1,13 +1,18 @@
 #pragma once
 // Defines the columns of the log format: their names, their units, and the members of Log that store their
 // values.
+// Collects the problems of a log and shows only the first problems of each kind, so that a few lines report a
+// file with a million bad rows.
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "document/problem.h"
 #include "sysid/logs/log.h"
 
 namespace softgrip::sysid {
@@ -55,5 +60,23 @@ inline constexpr std::array<ReadingColumn, 3> reading_columns{{
 /// Returns the conversion of a unit to the unit of the log format as a text, such as ", divide by 1000".
 /// Returns "" for an unknown unit.
 [[nodiscard]] std::string conversion(std::string_view unit);
+
+/// Reports the first problems of each kind and counts the remaining problems of the same kind.
+class LogReporter {
+ public:
+  LogReporter(std::string file, document::Problems& problems) : file_(std::move(file)), problems_(problems) {}
+
+  void add(const std::string& kind, document::Location at, std::string_view line, std::string message,
+           std::string hint = {});
+  /// Adds, for each kind of problem, one problem that states how many problems of this kind are not shown.
+  void finish();
+  [[nodiscard]] bool any() const { return !counts_.empty(); }
+
+ private:
+  std::string file_;
+  document::Problems& problems_;
+  std::map<std::string, int> counts_;
+  std::map<std::string, std::pair<document::Location, std::string>> last_;
+};
 
 }  // namespace softgrip::sysid

@@ -10,7 +10,6 @@
 #include "base/text.h"
 #include "sysid/logs/csv_text.h"
 #include "sysid/logs/log.h"
-#include "sysid/logs/log_checks.h"
 #include "sysid/logs/log_header.h"
 
 namespace softgrip::sysid {

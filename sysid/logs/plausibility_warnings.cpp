@@ -8,7 +8,6 @@
 
 #include "base/numbers.h"
 #include "base/statistics.h"
-#include "sysid/logs/extent.h"
 #include "sysid/logs/unit_factors.h"
 
 namespace softgrip::sysid {

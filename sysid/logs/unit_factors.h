@@ -1,7 +1,10 @@
 #pragma once
 // Detects wrong units. If a unit is wrong, two values that should be equal differ by the ratio of two units.
+// Computes the range of the values in a column.
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "model/output_unit.h"
 
@@ -16,5 +19,22 @@ namespace softgrip::sysid {
 /// @param factor  above 0.
 /// @param unit  unit of the readings.
 [[nodiscard]] std::string mistaken_unit(double factor, model::OutputUnit unit);
+
+/// Limits for the largest value of a column. If the largest value is below its limit, the unit is probably
+/// not kPa, mm or deg. A soft finger moves by about 10 mm at 20 to 60 kPa and bends by more than 3 deg. A
+/// bending angle in rad never exceeds 3.
+inline constexpr double small_pressure_kpa = 2;
+[[nodiscard]] constexpr double small_reading(model::OutputUnit unit) {
+  return unit == model::OutputUnit::deg ? 3 : 0.1;
+}
+
+struct ColumnExtent {
+  double lowest = 0;
+  double highest = 0;
+  [[nodiscard]] double width() const { return highest - lowest; }
+};
+
+/// Returns the range of the finite values, or nullopt if no value is finite.
+[[nodiscard]] std::optional<ColumnExtent> extent_of(const std::vector<double>& values);
 
 }  // namespace softgrip::sysid

@@ -9,7 +9,6 @@
 #include "base/sha256.h"
 #include "sysid/logs/csv_text.h"
 #include "sysid/logs/log_columns.h"
-#include "sysid/logs/log_reporter.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -1,5 +1,8 @@
 #include "sysid/logs/unit_factors.h"
 
+#include <cmath>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace softgrip::sysid::unit_factors_test {
@@ -27,6 +30,27 @@ TEST(UnitFactors, SayWhichColumnWasProbablyMistaken) {
 TEST(UnitFactors, AFingerOfAnotherSizeIsNone) {
   for (const double factor : {0.3, 0.7, 1.0, 1.5, 3.0, 5.0, 15.0})
     EXPECT_EQ(mistaken_unit(factor, model::OutputUnit::mm), "");
+}
+
+TEST(ColumnExtent, IsFromTheLowestToTheHighestValue) {
+  const auto extent = extent_of({3, -1, 7, 0.5});
+  ASSERT_TRUE(extent);
+  EXPECT_EQ(extent->lowest, -1);
+  EXPECT_EQ(extent->highest, 7);
+  EXPECT_EQ(extent->width(), 8);
+}
+
+TEST(ColumnExtent, LooksOverWhatIsNoNumber) {
+  const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+  const auto extent = extent_of({nan, 2, infinity, 4, -infinity});
+  ASSERT_TRUE(extent);
+  EXPECT_EQ(extent->lowest, 2);
+  EXPECT_EQ(extent->highest, 4);
+}
+
+TEST(ColumnExtent, IsNoneWhereNoValueIsANumber) {
+  EXPECT_FALSE(extent_of({}));
+  EXPECT_FALSE(extent_of({std::nan(""), std::nan("")}));
 }
 
 }  // namespace
