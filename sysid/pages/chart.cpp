@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "base/numbers.h"
-#include "sysid/pages/axis_words.h"
 #include "sysid/pages/canvas.h"
 #include "sysid/pages/chart_path.h"
 #include "sysid/pages/chart_scale.h"

@@ -1,7 +1,9 @@
 #pragma once
 // Converts values to pixels, and computes the positions of the ticks of an axis.
+// Writes the units of axis labels in words, so that a figure can be read without the text of its report.
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sysid/pages/chart.h"
@@ -35,5 +37,9 @@ class Scale {
   double from_px_;
   double to_px_;
 };
+
+/// Replaces the unit of a label by words: "time [s]" becomes "time in seconds", and "[s]" becomes "seconds".
+/// A label with an unknown unit is returned unchanged.
+[[nodiscard]] std::string in_words(std::string_view label);
 
 }  // namespace softgrip::sysid

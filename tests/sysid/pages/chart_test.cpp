@@ -11,7 +11,6 @@
 
 #include <gtest/gtest.h>
 
-#include "sysid/pages/axis_words.h"
 #include "sysid/pages/canvas.h"
 #include "sysid/pages/chart_path.h"
 #include "sysid/pages/chart_scale.h"
