@@ -1,4 +1,4 @@
-#include "sysid/health/grip_parts.h"
+#include "sysid/health/grip_score.h"
 
 #include <algorithm>
 #include <cmath>

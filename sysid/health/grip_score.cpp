@@ -10,7 +10,6 @@
 #include "base/statistics.h"
 #include "sysid/fitting/fit_space.h"
 #include "sysid/fitting/trajectory.h"
-#include "sysid/health/grip_parts.h"
 #include "sysid/limits/limits.h"
 #include "sysid/logs/record.h"
 

@@ -24,7 +24,7 @@ namespace softgrip::sysid {
                                            double noise);
 
 /// Smooths a column in place if its noise exceeds 1e-4 of its range. Smaller noise is assumed to come from
-/// rounding. Then removes reversals that are smaller than five times the noise (turning_points.h). Returns
+/// rounding. Then removes reversals that are smaller than five times the noise (excitation.h). Returns
 /// the noise, or 0 if the column was not changed.
 double smooth_input(std::span<const double> time_s, std::vector<double>& values);
 

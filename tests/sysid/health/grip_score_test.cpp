@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "sysid/health/grip_parts.h"
 #include "tests/sysid/health/grip_fixture.h"
 #include "tests/sysid/simulated.h"
 
