@@ -13,8 +13,8 @@
 namespace softgrip::sysid {
 namespace {
 
-// Limits for plausible values. A value above its limit in this file, or below its limit in unit_factors.h, probably
-// has a wrong unit.
+// Limits for plausible values. A value above its limit in this file, or below its limit in unit_factors.h,
+// probably has a wrong unit.
 constexpr double large_pressure_kpa = 1000;
 /// If the pressure of a soft finger is in MPa, its largest value is below this limit.
 constexpr double small_as_mpa = 0.2;

@@ -14,7 +14,7 @@
 #include "base/numbers.h"
 #include "sysid/changes/baseline_folder.h"
 #include "sysid/diagnosis/report/report.h"
-#include "sysid/diagnosis/report/report_tables.h"
+#include "sysid/diagnosis/report/report_sections.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/options.h"

@@ -5,14 +5,7 @@
 
 #include "base/numbers.h"
 #include "base/text.h"
-#include "sysid/diagnosis/report/report_appendix.h"
-#include "sysid/diagnosis/report/report_budget.h"
-#include "sysid/diagnosis/report/report_chain.h"
-#include "sysid/diagnosis/report/report_figures.h"
-#include "sysid/diagnosis/report/report_forest.h"
-#include "sysid/diagnosis/report/report_reached.h"
-#include "sysid/diagnosis/report/report_tables.h"
-#include "sysid/diagnosis/report/report_valve.h"
+#include "sysid/diagnosis/report/report_sections.h"
 
 namespace softgrip::sysid {
 namespace {

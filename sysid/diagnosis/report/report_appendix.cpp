@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/report/report_appendix.h"
+#include "sysid/diagnosis/report/report_sections.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -11,8 +11,6 @@
 #include "model/catalogue.h"
 #include "model/file/model_file.h"
 #include "sysid/diagnosis/evidence/clear.h"
-#include "sysid/diagnosis/report/report_figures.h"
-#include "sysid/diagnosis/report/report_tables.h"
 #include "sysid/pages/provenance.h"
 
 namespace softgrip::sysid {

@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/report/report_budget.h"
+#include "sysid/diagnosis/report/report_sections.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/report/report_chain.h"
+#include "sysid/diagnosis/report/report_sections.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/report/report_forest.h"
+#include "sysid/diagnosis/report/report_sections.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/numbers.h"
-#include "sysid/diagnosis/report/report_tables.h"
 #include "sysid/diagnosis/verdict/naming.h"
 #include "sysid/pages/canvas.h"
 #include "sysid/pages/chart_scale.h"

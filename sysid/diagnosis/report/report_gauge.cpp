@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/report/report_gauge.h"
+#include "sysid/diagnosis/report/report_sections.h"
 
 #include <algorithm>
 #include <numeric>

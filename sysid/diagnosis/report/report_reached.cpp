@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/report/report_reached.h"
+#include "sysid/diagnosis/report/report_sections.h"
 
 #include <string>
 #include <vector>
@@ -7,10 +7,6 @@
 #include "model/catalogue.h"
 #include "sysid/diagnosis/causes/indistinguishable.h"
 #include "sysid/diagnosis/evidence/clear.h"
-#include "sysid/diagnosis/report/report_conditions.h"
-#include "sysid/diagnosis/report/report_figures.h"
-#include "sysid/diagnosis/report/report_gauge.h"
-#include "sysid/diagnosis/report/report_tables.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/report/report_conditions.h"
+#include "sysid/diagnosis/report/report_sections.h"
 
 #include <string>
 

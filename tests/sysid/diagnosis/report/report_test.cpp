@@ -7,14 +7,7 @@
 #include <vector>
 
 #include "model/catalogue.h"
-#include "sysid/diagnosis/report/report_appendix.h"
-#include "sysid/diagnosis/report/report_budget.h"
-#include "sysid/diagnosis/report/report_chain.h"
-#include "sysid/diagnosis/report/report_figures.h"
-#include "sysid/diagnosis/report/report_forest.h"
-#include "sysid/diagnosis/report/report_gauge.h"
-#include "sysid/diagnosis/report/report_reached.h"
-#include "sysid/diagnosis/report/report_tables.h"
+#include "sysid/diagnosis/report/report_sections.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/pages/canvas.h"
 #include "tests/sysid/diagnosis/campaign.h"

@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/report/report_valve.h"
+#include "sysid/diagnosis/report/report_sections.h"
 
 #include <gtest/gtest.h>
 
