@@ -4,7 +4,7 @@
 
 #include "base/numbers.h"
 #include "base/text.h"
-#include "sysid/diagnosis/residual/wrong_readings.h"
+#include "sysid/diagnosis/residual/outliers.h"
 #include "sysid/fitting/score.h"
 #include "sysid/identification/excitation_limits.h"
 #include "sysid/logs/plausibility_warnings.h"

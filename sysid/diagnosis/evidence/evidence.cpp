@@ -8,8 +8,6 @@
 
 #include "base/numbers.h"
 #include "base/statistics.h"
-#include "sysid/diagnosis/evidence/clear.h"
-#include "sysid/diagnosis/evidence/spectrum.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/limits/limits.h"
 

@@ -9,6 +9,8 @@
 // equally likely. The test preserves the correlation in a block and the variance of each block. The share of
 // the variance that a condition explains is cross-validated: the means that predict a block are computed from
 // the other blocks.
+// Defines when an effect counts as significant. All sentences, tables and figures use this definition.
+// Computes the spectrum of a residual and tests whether it contains a significant line.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,6 +20,7 @@
 #include "model/model.h"
 #include "sysid/diagnosis/evidence/conditions.h"
 #include "sysid/diagnosis/search/fit.h"
+#include "sysid/limits/limits.h"
 #include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
@@ -108,5 +111,23 @@ struct Evidence {
 /// Returns a sentence such as "The error depends on the rate of the pressure (41 %) and ...". If the error
 /// depends significantly on no condition, the sentence states this.
 [[nodiscard]] std::string dependence_sentence(const ResidualEvidence& evidence);
+
+/// Returns true if an effect is significant, so that it is drawn and described. Its p-value must be below
+/// 0.02, and it must explain at least 5 % of the unexplained error. For effects that are tested together,
+/// pass the adjusted p-value. The limit is stricter than the intended significance level of 5 %, because the
+/// tests reject too often in short logs whose residual has a long correlation time.
+[[nodiscard]] constexpr bool is_clear(double p_value, double share_percent) {
+  constexpr double once_in_fifty = 0.02;
+  return p_value < once_in_fifty && share_percent >= 100 * limits::form_error_share;
+}
+
+/// Sums periodograms with a Hann window over the records and returns the spectrum at about 100 frequencies,
+/// spaced evenly on a logarithmic scale. The power of a line is compared with the median power at the
+/// neighbouring frequencies. Slow model errors therefore do not count as lines.
+/// @param structural_mm2  part of the residual's variance that exceeds the noise; 0: no share of the variance
+/// is computed.
+[[nodiscard]] SpectrumEvidence spectrum_of(const std::vector<Record>& records,
+                                           const std::vector<std::vector<double>>& residual_mm,
+                                           double structural_mm2);
 
 }  // namespace softgrip::sysid

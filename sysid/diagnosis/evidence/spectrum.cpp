@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/evidence/spectrum.h"
+#include "sysid/diagnosis/evidence/evidence.h"
 
 #include <algorithm>
 #include <bit>

@@ -9,7 +9,7 @@
 #include "base/numbers.h"
 #include "model/catalogue.h"
 #include "sysid/diagnosis/causes/indistinguishable.h"
-#include "sysid/diagnosis/residual/unexplained_limit.h"
+#include "sysid/diagnosis/residual/noise.h"
 #include "sysid/limits/limits.h"
 
 namespace softgrip::sysid {

@@ -10,7 +10,7 @@
 #include "base/numbers.h"
 #include "model/catalogue.h"
 #include "model/file/model_file.h"
-#include "sysid/diagnosis/evidence/clear.h"
+#include "sysid/diagnosis/evidence/evidence.h"
 #include "sysid/pages/provenance.h"
 
 namespace softgrip::sysid {

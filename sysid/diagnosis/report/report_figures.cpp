@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/numbers.h"
-#include "sysid/diagnosis/evidence/clear.h"
+#include "sysid/diagnosis/evidence/evidence.h"
 #include "sysid/fitting/trajectory.h"
 
 namespace softgrip::sysid {

@@ -6,7 +6,7 @@
 #include "base/numbers.h"
 #include "model/catalogue.h"
 #include "sysid/diagnosis/causes/indistinguishable.h"
-#include "sysid/diagnosis/evidence/clear.h"
+#include "sysid/diagnosis/evidence/evidence.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 // Measures the noise of the readings without a model, and tests whether a residual exceeds the noise.
+// Defines the largest unexplained error with which a set of causes counts as complete.
 
 #include <vector>
 
@@ -23,5 +24,11 @@ struct UnexplainedError {
 /// @param residual_mm  one vector per record; NaN for samples without a reading.
 [[nodiscard]] UnexplainedError unexplained_error_of(const std::vector<std::vector<double>>& residual_mm,
                                                     double noise_mm);
+
+/// Returns true if the unexplained error `left` is too large for a complete set of causes. In this case, the
+/// data contain another effect, or the equation of a cause does not match the real effect.
+/// @param before  unexplained error of the refitted model without causes.
+[[nodiscard]] bool leaves_too_much(const UnexplainedError& left, const UnexplainedError& before,
+                                   double noise_mm);
 
 }  // namespace softgrip::sysid

@@ -1,10 +1,13 @@
 #pragma once
 // Finds wrong readings without a model, so that no fit uses them. Wrong readings are isolated or far from all
 // other readings.
+// Removes wrong readings from logs, so that they affect neither fits nor the errors of fits.
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
+#include "sysid/logs/log.h"
 #include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
@@ -43,5 +46,10 @@ struct OutlierEvidence {
 std::size_t hide_outliers_beside(std::vector<Record>& records,
                                  const std::vector<std::vector<double>>& residual_mm, double noise_mm,
                                  OutlierEvidence& evidence);
+
+/// Replaces the readings that hide_outliers() finds by NaN if they increase the error by at least a quarter
+/// of the noise. Returns a sentence for each log with removed readings. The sentence states the number of
+/// these readings and the first of them.
+[[nodiscard]] std::vector<std::string> take_out_wrong_readings(std::vector<Log>& logs);
 
 }  // namespace softgrip::sysid

@@ -1,7 +1,14 @@
 #include "sysid/diagnosis/search/holdout.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "sysid/fitting/jacobian.h"
+#include "sysid/fitting/residuals.h"
 #include "sysid/fitting/start_estimate.h"
 
 namespace softgrip::sysid {
@@ -11,6 +18,35 @@ namespace {
 /// If the first block of a log is held out, its initial state would otherwise be undetermined, and the
 /// simulation of the other blocks would start at an arbitrary state.
 constexpr FitEffort refit{.most_iterations = 8, .tolerance = 1e-6, .hold_starts = true};
+
+/// Damping of the Gauss-Newton step, as a share of the diagonal elements of the normal matrix.
+constexpr double block_damping = 1e-3;
+
+/// Rows of the Jacobian for the readings in a block, and for readings near the block that are also excluded
+/// from the fit.
+struct BlockRows {
+  Eigen::Index first, last, hidden_first, hidden_last;
+};
+
+std::vector<BlockRows> rows_of(const std::vector<Record>& records, const Division& division) {
+  // For each sample i, the number of readings before this sample.
+  std::vector<std::vector<Eigen::Index>> before(records.size());
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    before[k].reserve(records[k].size() + 1);
+    for (const double y : records[k].reading_mm) {
+      before[k].push_back(row);
+      if (std::isfinite(y)) ++row;
+    }
+    before[k].push_back(row);
+  }
+  std::vector<BlockRows> rows;
+  for (const Block& block : division.blocks) {
+    const std::vector<Eigen::Index>& at = before[block.record];
+    rows.push_back({at[block.first], at[block.last], at[block.hidden_first], at[block.hidden_last]});
+  }
+  return rows;
+}
 
 }  // namespace
 
@@ -39,6 +75,51 @@ BlockLosses left_out_losses(const std::vector<Record>& records, const Division& 
     }
     return point;
   });
+}
+
+BlockLosses linear_held_out_losses(const std::vector<Record>& records, const Division& division,
+                                   const StructureFit& fit) {
+  FitSpace space = structure_space(records, fit.point.model, fit.causes);
+  space.hold_starts(fit.point.starts);
+  const auto residuals = residuals_for(records, space);
+  const auto count = static_cast<Eigen::Index>(residuals->count());
+  const auto numbers = static_cast<Eigen::Index>(space.size());
+  Eigen::VectorXd r(count);
+  Jacobian jacobian(count, numbers);
+  BlockLosses losses(division.blocks.size(), std::numeric_limits<double>::infinity());
+  if (!residuals->evaluate(space.z(fit.point), {r.data(), residuals->count()},
+                           {jacobian.data(), residuals->count() * space.size()})) {
+    return losses;
+  }
+  const std::vector<BlockRows> rows = rows_of(records, division);
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(numbers, numbers);
+  whole.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
+  const Eigen::VectorXd gradient = jacobian.transpose() * r;
+  for (std::size_t fold = 0; fold < division.folds; ++fold) {
+    Eigen::MatrixXd normal = whole;
+    Eigen::VectorXd right = gradient;
+    // end of the rows that were removed for earlier blocks; the rows of two blocks may overlap
+    Eigen::Index done = 0;
+    for (std::size_t b = 0; b < rows.size(); ++b) {
+      if (division.blocks[b].fold != fold) continue;
+      const Eigen::Index from = std::max(rows[b].hidden_first, done), length = rows[b].hidden_last - from;
+      done = rows[b].hidden_last;
+      if (length <= 0) continue;
+      const auto part = jacobian.middleRows(from, length);
+      normal.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose(), -1);
+      right -= part.transpose() * r.segment(from, length);
+    }
+    normal.diagonal() += block_damping * whole.diagonal() + Eigen::VectorXd::Constant(numbers, 1e-12);
+    const Eigen::VectorXd step = -normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+    for (std::size_t b = 0; b < rows.size(); ++b) {
+      if (division.blocks[b].fold != fold) continue;
+      const Eigen::Index length = rows[b].last - rows[b].first;
+      const Eigen::VectorXd held =
+          r.segment(rows[b].first, length) + jacobian.middleRows(rows[b].first, length) * step;
+      losses[b] = length > 0 ? held.squaredNorm() / static_cast<double>(length) : 0;
+    }
+  }
+  return losses;
 }
 
 }  // namespace softgrip::sysid

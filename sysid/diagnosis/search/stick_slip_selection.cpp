@@ -5,8 +5,8 @@
 
 #include "model/named.h"
 #include "sysid/diagnosis/causes/valve_deadband.h"
+#include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
-#include "sysid/diagnosis/residual/unexplained_limit.h"
 #include "sysid/diagnosis/search/scored.h"
 #include "sysid/diagnosis/search/stick_slip.h"
 #include "sysid/limits/limits.h"

@@ -8,7 +8,6 @@
 #include "sysid/diagnosis/causes/asymmetric_hysteresis.h"
 #include "sysid/diagnosis/causes/hysteresis_shape.h"
 #include "sysid/diagnosis/residual/noise.h"
-#include "sysid/diagnosis/residual/unexplained_limit.h"
 #include "sysid/diagnosis/search/coherence.h"
 #include "sysid/diagnosis/verdict/naming.h"
 #include "sysid/limits/limits.h"

@@ -7,7 +7,7 @@
 
 #include "base/statistics.h"
 #include "model/named.h"
-#include "sysid/diagnosis/search/linear_holdout.h"
+#include "sysid/diagnosis/search/holdout.h"
 #include "sysid/diagnosis/search/linear_selection.h"
 #include "sysid/diagnosis/verdict/base_ingredients.h"
 #include "sysid/diagnosis/verdict/naming.h"

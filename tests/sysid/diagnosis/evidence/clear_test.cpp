@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/evidence/clear.h"
+#include "sysid/diagnosis/evidence/evidence.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/search/linear_fit.h"
+#include "sysid/diagnosis/search/linear_selection.h"
 
 #include <cmath>
 #include <vector>

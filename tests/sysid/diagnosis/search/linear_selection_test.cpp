@@ -9,7 +9,7 @@
 #include "model/blocks/stress_softening.h"
 #include "model/catalogue.h"
 #include "model/named.h"
-#include "sysid/diagnosis/search/linear_holdout.h"
+#include "sysid/diagnosis/search/holdout.h"
 #include "sysid/diagnosis/search/scored.h"
 #include "tests/sysid/simulated.h"
 
