@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "model/catalogue.h"
-#include "sysid/diagnosis/verdict/budget.h"
+#include "sysid/diagnosis/verdict/diagnosis.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "base/numbers.h"
-#include "sysid/diagnosis/verdict/budget.h"
+#include "sysid/diagnosis/verdict/diagnosis.h"
 #include "sysid/pages/canvas.h"
 
 namespace softgrip::sysid {

@@ -1,6 +1,6 @@
 #pragma once
-// Computes held-out losses of a structure with refits. linear_holdout.h computes them without refits.
-// Computes held-out losses without a refit per block. It is intended for structures with many parameters.
+// Computes held-out losses of a structure, with refits, or for structures with many parameters without a
+// refit per block.
 
 #include <vector>
 

@@ -1,6 +1,8 @@
 #pragma once
 // Searches for a richer base structure (sysid/structure) if no cause explains the data on the given base
 // structure. Names each component of the richer base structure that reduces the held-out error.
+// Removes each component of a richer base structure, measures how much the error increases, and names the
+// components whose removal increases the error.
 
 #include <cstddef>
 #include <cstdint>
@@ -76,5 +78,15 @@ void find_causes_upon(BaseFindings& found, const BaseSearch& search, const Cause
 /// @param plain_explains  true: the error of the selection is so small that its causes can be named.
 [[nodiscard]] bool has_lower_loss(const BaseFindings& found, const Selection& plain, double noise_mm,
                                   bool plain_explains);
+
+/// Returns the components that name_ingredients() can name. For each of them, name_ingredients() needs a fit
+/// without this component.
+[[nodiscard]] std::vector<Ingredient> named_ingredients();
+
+/// Tests the components of `found.chosen`. A component that reduces the error sufficiently becomes a named
+/// cause. A component whose error reduction is uncertain becomes a possible cause. `found.fit` must be the
+/// base structure fitted to all readings.
+void name_ingredients(BaseFindings& found, const std::vector<WithoutIngredient>& ablation,
+                      const BaseSearch& search);
 
 }  // namespace softgrip::sysid

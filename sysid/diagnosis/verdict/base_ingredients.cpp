@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/verdict/base_ingredients.h"
+#include "sysid/diagnosis/verdict/base_findings.h"
 
 #include <algorithm>
 #include <array>

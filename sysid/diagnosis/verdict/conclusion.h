@@ -1,11 +1,13 @@
 #pragma once
 // Writes the result of a search into a diagnosis: the errors and the models, the causes with their
 // parameters, and the verdict.
+// Computes the error of each run for the models that a diagnosis compares.
 
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "sysid/diagnosis/search/holdout.h"
 #include "sysid/diagnosis/search/selection.h"
 #include "sysid/diagnosis/verdict/base_findings.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
@@ -70,5 +72,12 @@ class Conclusion {
   Spread recalibration_gain_;
   std::vector<NamedCause> causes_;
 };
+
+/// Returns the RMSE of each run. If there is a single run, returns the RMSE of each half.
+/// @param by_unit  result of divide_by_unit() for the records. The losses must have been computed for its
+/// blocks.
+[[nodiscard]] std::vector<RunError> run_errors(const std::vector<Record>& records, const Division& by_unit,
+                                               const BlockLosses& given, const BlockLosses& recalibrated,
+                                               const BlockLosses& extended);
 
 }  // namespace softgrip::sysid

@@ -1,12 +1,17 @@
 #pragma once
 // Describes a cause by its parameters and their intervals.
+// Computes intervals of parameters over several plausible structures. The value of a parameter depends on the
+// other causes in the structure. If the data do not show whether a confounded cause is present, the interval
+// covers the values with and without this cause.
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "sysid/diagnosis/residual/outliers.h"
 #include "sysid/diagnosis/residual/sampling.h"
+#include "sysid/diagnosis/search/selection.h"
 #include "sysid/diagnosis/verdict/named_cause.h"
 #include "sysid/identification/uncertainty.h"
 
@@ -50,5 +55,12 @@ struct UncertainPoint {
 
 /// Returns true if any of the named causes has an alternative.
 [[nodiscard]] bool any_alternatives(const std::vector<NamedCause>& causes);
+
+/// Widens the intervals of `named`, the chosen causes of `selection`. Each interval then also covers the
+/// values of the parameter in other plausible structures: the undecided structures that the held-out blocks
+/// do not exclude. Returns a sentence for each widened interval.
+[[nodiscard]] std::vector<std::string> mix_intervals(std::vector<NamedCause>& named,
+                                                     const std::vector<Record>& records,
+                                                     const Selection& selection, std::uint64_t seed);
 
 }  // namespace softgrip::sysid

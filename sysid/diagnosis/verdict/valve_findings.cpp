@@ -25,7 +25,6 @@
 #include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/causes/valve_lag.h"
 #include "sysid/diagnosis/search/holdout.h"
-#include "sysid/diagnosis/verdict/lost_pressure.h"
 #include "sysid/diagnosis/verdict/measured_valve.h"
 #include "sysid/limits/limits.h"
 #include "sysid/logs/input_smoothing.h"

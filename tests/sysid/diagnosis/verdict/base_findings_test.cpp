@@ -17,7 +17,6 @@
 #include "sysid/diagnosis/causes/valve_lag.h"
 #include "sysid/diagnosis/search/fit.h"
 #include "sysid/diagnosis/search/slack.h"
-#include "sysid/diagnosis/verdict/base_ingredients.h"
 #include "tests/sysid/simulated.h"
 
 namespace softgrip::sysid::base_findings_test {
