@@ -7,7 +7,7 @@
 #include "base/files.h"
 #include "base/json.h"
 #include "base/numbers.h"
-#include "tools/client/json_fields.h"
+#include "tools/client/reply_check.h"
 
 namespace softgrip::tools {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "tools/client/daemon_text.h"
-#include "tools/client/json_fields.h"
 #include "tools/client/key_dialogue.h"
+#include "tools/client/reply_check.h"
 
 namespace softgrip::tools {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "control/elements/fault.h"
-#include "tools/client/json_fields.h"
+#include "tools/client/reply_check.h"
 
 namespace softgrip::tools {
 

@@ -6,6 +6,9 @@
 #include <optional>
 #include <span>
 
+#include "base/json.h"
+#include "document/problem.h"
+
 namespace softgrip::tools {
 namespace {
 
@@ -202,6 +205,24 @@ tl::expected<Json, std::string> parse_reply(std::string_view line) {
   if (!json.is_object()) return tl::unexpected<std::string>("a line is not a JSON object");
   if (auto wrong = reply_shape::fault_of_line(json)) return tl::unexpected(std::move(*wrong));
   return json;
+}
+
+using Json = nlohmann::ordered_json;
+
+std::string text_at(const Json& json, const char* key, std::size_t most) {
+  const Json& value = json_member(json, key);
+  return value.is_string() ? document::shown(value.get<std::string>(), most) : "-";
+}
+
+std::optional<double> number_at(const Json& json, const char* key) {
+  const Json& value = json_member(json, key);
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+}
+
+const Json& object_at(const Json& json, const char* key) {
+  static const Json empty = Json::object();
+  const Json& value = json_member(json, key);
+  return value.is_object() ? value : empty;
 }
 
 }  // namespace softgrip::tools

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "base/numbers.h"
-#include "tools/client/json_fields.h"
+#include "tools/client/reply_check.h"
 
 namespace softgrip::tools {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/client/trend.h"
+#include "tools/client/daemon_text.h"
 
 #include <algorithm>
 #include <array>

@@ -16,7 +16,7 @@
 #include "tools/command_line/input_files.h"
 #include "tools/command_line/options.h"
 #include "tools/commands/commands.h"
-#include "tools/commissioning/draft_facts.h"
+#include "tools/commissioning/rig_draft.h"
 #include "tools/commissioning/terminal_operator.h"
 
 namespace softgrip::tools {

@@ -1,4 +1,4 @@
-#include "tools/commissioning/draft_facts.h"
+#include "tools/commissioning/rig_draft.h"
 
 #include <arpa/inet.h>
 

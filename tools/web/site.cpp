@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "tools/web/access/origin.h"
+#include "tools/web/access/gate.h"
 #include "tools/web/commander.h"
 #include "tools/web/metrics/metrics.h"
 #include "tools/web/page/page_files.h"

@@ -11,7 +11,6 @@
 
 #include "rig/rig_comparison.h"
 #include "rig/rig_file.h"
-#include "tools/commissioning/draft_facts.h"
 #include "tools/commissioning/rig_template.h"
 
 namespace softgrip::tools::rig_draft_test {

@@ -4,8 +4,6 @@
 
 #include <string>
 
-#include "tools/web/access/origin.h"
-
 namespace softgrip::web::gate_test {
 namespace {
 
