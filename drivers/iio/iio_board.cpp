@@ -11,7 +11,7 @@
 #include "base/clock.h"
 #include "base/text.h"
 #include "base/time.h"
-#include "drivers/board/judged_input.h"
+#include "drivers/board/registers.h"
 #include "drivers/board/round_trip.h"
 #include "drivers/iio/iio_device.h"
 

@@ -12,8 +12,8 @@
 #include "drivers/board/board.h"
 #include "drivers/board/board_map.h"
 #include "drivers/board/channel_wiring.h"
-#include "drivers/board/judged_input.h"
 #include "drivers/board/read_back_history.h"
+#include "drivers/board/registers.h"
 #include "drivers/modbus/exchange_plan.h"
 #include "drivers/modbus/modbus_link.h"
 

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "base/clock.h"
-#include "drivers/board/judged_input.h"
 #include "drivers/board/registers.h"
 #include "drivers/modbus/big_endian.h"
 #include "drivers/modbus/exchange_plan.h"

@@ -14,7 +14,6 @@
 #include <span>
 #include <vector>
 
-#include "drivers/board/judged_input.h"
 #include "drivers/board/registers.h"
 #include "drivers/modbus/big_endian.h"
 #include "drivers/modbus/mbap.h"
