@@ -12,7 +12,6 @@
 #include "sysid/changes/change.h"
 #include "sysid/changes/change_page.h"
 #include "sysid/changes/change_result.h"
-#include "sysid/diagnosis/report/diagnosis_json.h"
 #include "sysid/diagnosis/report/report.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 

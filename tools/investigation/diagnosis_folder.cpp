@@ -13,7 +13,7 @@
 #include "base/result/result.h"
 #include "base/text.h"
 #include "model/file/model_file.h"
-#include "sysid/diagnosis/report/diagnosis_json.h"
+#include "sysid/diagnosis/report/report.h"
 #include "sysid/identification/log_report.h"
 #include "sysid/identification/start_points.h"
 #include "sysid/pages/page.h"

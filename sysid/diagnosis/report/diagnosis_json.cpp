@@ -1,4 +1,4 @@
-#include "sysid/diagnosis/report/diagnosis_json.h"
+#include "sysid/diagnosis/report/report.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -1,11 +1,14 @@
 #pragma once
 // Writes a diagnosis as an HTML page. Its first sentence is for technicians, and the rest is for readers who
 // check the result.
+// Writes diagnosis.json in the documented format.
 
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include "model/model.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
@@ -52,5 +55,8 @@ struct DiagnosisReport {
 
 /// Returns the page for report.html.
 [[nodiscard]] Page diagnosis_page(const DiagnosisReport& report);
+
+/// Returns the content of diagnosis.json. `next_experiment` is null until add_experiment() replaces it.
+[[nodiscard]] nlohmann::ordered_json json_of(const Diagnosis& diagnosis);
 
 }  // namespace softgrip::sysid

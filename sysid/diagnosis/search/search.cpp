@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "base/parallel.h"
 #include "model/catalogue.h"
@@ -222,6 +223,26 @@ SearchData make_search_data(std::vector<Record> records, const model::Model& giv
 std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit& current,
                                       const CandidateSearch& search) {
   return CandidateFitter(data, current, search).run();
+}
+
+std::vector<Confounded> fit_confounded(const SearchData& data, const StructureFit& structure,
+                                       const Division& division) {
+  std::vector<Cause> others;
+  for (const Cause& cause : structure.causes) {
+    for (const std::string_view id : cause.confounded_with) {
+      const Cause other = *find_cause(id);
+      if (std::find(others.begin(), others.end(), other) == others.end()) others.push_back(other);
+    }
+  }
+  std::vector<Confounded> list;
+  for (const Cause& other : others) {
+    for (Candidate& found : fit_candidates(data, structure, {.only = {other}})) {
+      if (!found.fit) continue;
+      BlockLosses losses = held_out_losses(data.records, division, *found.fit);
+      list.push_back({other, std::move(*found.fit), std::move(losses)});
+    }
+  }
+  return list;
 }
 
 }  // namespace softgrip::sysid

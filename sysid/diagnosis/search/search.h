@@ -1,5 +1,7 @@
 #pragma once
 // Searches for causes. Every candidate is fitted together with the base structure from several start points.
+// Fits causes that can absorb part of the effect of a selected cause (Cause::confounded_with), and tests
+// whether the data require each of these causes.
 
 #include <cstddef>
 #include <functional>
@@ -8,6 +10,7 @@
 
 #include "sysid/diagnosis/causes/cause.h"
 #include "sysid/diagnosis/search/fit.h"
+#include "sysid/diagnosis/search/holdout.h"
 
 namespace softgrip::sysid {
 
@@ -44,5 +47,19 @@ struct CandidateSearch {
 /// Fits the structure `current` with each cause that it does not contain, in the order of all_causes().
 [[nodiscard]] std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit& current,
                                                     const CandidateSearch& search = {});
+
+/// A structure to which one cause was added. The added cause is confounded with another cause of the
+/// structure.
+struct Confounded {
+  Cause cause;
+  StructureFit fit;
+  BlockLosses losses;  ///< losses on held-out blocks
+};
+
+/// Adds each cause that is confounded with a cause of the structure, one at a time, and fits the resulting
+/// structure. Each fit changes all parameters together. Causes that are already part of the structure are not
+/// added.
+[[nodiscard]] std::vector<Confounded> fit_confounded(const SearchData& data, const StructureFit& structure,
+                                                     const Division& division);
 
 }  // namespace softgrip::sysid

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "sysid/diagnosis/residual/noise.h"
-#include "sysid/diagnosis/search/confounded.h"
 #include "sysid/diagnosis/search/holdout.h"
 #include "sysid/diagnosis/search/search.h"
 

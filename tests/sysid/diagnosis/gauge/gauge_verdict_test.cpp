@@ -10,7 +10,7 @@
 
 #include "base/random.h"
 #include "sysid/diagnosis/experiments/experiment.h"
-#include "sysid/diagnosis/report/diagnosis_json.h"
+#include "sysid/diagnosis/report/report.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "tests/sysid/simulated.h"
 

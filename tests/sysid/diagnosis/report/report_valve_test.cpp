@@ -8,7 +8,7 @@
 #include "model/blocks/valve_deadband.h"
 #include "model/named.h"
 #include "sysid/diagnosis/causes/valve_deadband.h"
-#include "sysid/diagnosis/report/diagnosis_json.h"
+#include "sysid/diagnosis/report/report.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 
 namespace softgrip::sysid::report_valve_test {
