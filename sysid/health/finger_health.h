@@ -6,6 +6,11 @@
 // Changes within a day, mainly of the temperature, therefore do not count as random variation between grips.
 // A run without a known time is a point of its own. After a repair, all charts of the finger start without a
 // reference.
+// Reads the maintenance records from notes.yaml, for example:
+//
+//   notes:
+//     - {date: 2026-11-03, finger: left, action: finger replaced}
+//     - {date: 2026-11-20T14:30:00Z, action: "sensors clamped again"}
 
 #include <array>
 #include <cstddef>
@@ -13,11 +18,29 @@
 #include <string>
 #include <vector>
 
+#include <tl/expected.hpp>
+
+#include "document/problem.h"
 #include "sysid/health/control_chart.h"
 #include "sysid/health/grip_score.h"
-#include "sysid/health/notes_file.h"
 
 namespace softgrip::sysid::health {
+
+struct Note {
+  std::string date;    ///< date in UTC: "2026-11-03" (start of the day) or "2026-11-03T14:30:00Z"
+  std::string finger;  ///< name of the finger; empty: the note applies to all fingers
+  std::string action;  ///< maintenance action, in a few words
+};
+
+/// Returns the notes in order of their dates. Returns nullopt if the text has problems, and adds all of them
+/// to `problems`.
+[[nodiscard]] std::optional<std::vector<Note>> read_notes(const std::string& path, std::string text,
+                                                          document::Problems& problems);
+
+/// Reads the file and returns its notes. The error is a sentence if the file cannot be read. The error is
+/// empty if the text has problems, which are all added to `problems`.
+[[nodiscard]] tl::expected<std::vector<Note>, std::string> load_notes(const std::string& path,
+                                                                      document::Problems& problems);
 
 struct HealthOptions {
   /// Mean number of points of a healthy finger between two false alarms of any of its charts; at least 20.

@@ -1,4 +1,4 @@
-#include "sysid/health/notes_file.h"
+#include "sysid/health/finger_health.h"
 
 #include <algorithm>
 #include <utility>

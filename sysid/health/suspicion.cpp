@@ -1,4 +1,4 @@
-#include "sysid/health/suspicion.h"
+#include "sysid/health/health_page.h"
 
 #include <algorithm>
 #include <map>

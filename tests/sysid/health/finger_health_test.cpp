@@ -12,7 +12,6 @@
 #include "sysid/health/health_page.h"
 #include "sysid/health/health_result.h"
 #include "sysid/health/rig_health.h"
-#include "sysid/health/suspicion.h"
 
 namespace softgrip::sysid::health::finger_health_test {
 namespace {
