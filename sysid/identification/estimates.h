@@ -1,6 +1,9 @@
 #pragma once
 // Computes estimates of parameters and their intervals from the minimum of a fit and its covariance.
+// Computes intervals by profile likelihood: one parameter is changed in steps, and all other parameters are
+// fitted at each step.
 
+#include <functional>
 #include <vector>
 
 #include "sysid/fitting/residuals.h"
@@ -26,5 +29,12 @@ void name_the_sum(std::vector<Estimate>& parameters);
 /// propagation. If a combination is positive and has no typical value (Combination::scale is 0), the
 /// propagation applies to its logarithm.
 [[nodiscard]] std::vector<Estimate> combination_estimates(const FittedPoint& fit);
+
+/// Computes profile95 of every fitted model parameter in `estimates`, which has the order of
+/// parameter_estimates(). The threshold for the sum of squares is that of a likelihood-ratio test, multiplied
+/// by a factor for the correlation of the residuals. This factor is the increase of the variance of the
+/// parameter by the correlation.
+void add_profiles(const Residuals& residuals, const std::vector<double>& z, const Uncertainty& uncertainty,
+                  double huber_mm, unsigned threads, std::vector<Estimate>& estimates);
 
 }  // namespace softgrip::sysid

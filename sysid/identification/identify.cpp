@@ -15,7 +15,6 @@
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/combinations.h"
 #include "sysid/identification/estimates.h"
-#include "sysid/identification/profile.h"
 #include "sysid/identification/start_points.h"
 #include "sysid/limits/limits.h"
 #include "sysid/logs/division.h"
