@@ -11,9 +11,9 @@
 #include "library/log_parts.h"
 #include "library/model_parts.h"
 #include "sysid/import/conversion.h"
-#include "sysid/import/foreign_file.h"
 #include "sysid/import/mapping.h"
 #include "sysid/import/proposal.h"
+#include "sysid/import/table_readers.h"
 #include "sysid/logs/command_before.h"
 #include "sysid/logs/log.h"
 

@@ -9,7 +9,6 @@
 #include "sysid/import/clock.h"
 #include "sysid/import/role_sources.h"
 #include "sysid/import/samples.h"
-#include "sysid/import/unused_parts.h"
 #include "sysid/logs/log_columns.h"
 
 namespace softgrip::sysid {

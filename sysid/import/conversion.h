@@ -1,6 +1,7 @@
 #pragma once
 // Converts the table of an external file into a log. A mapping assigns the columns of the table to the
 // columns of the log.
+// Reports the columns of a table and the options of an import that have no effect on the log.
 
 #include <optional>
 #include <string>
@@ -9,6 +10,8 @@
 #include "document/problem.h"
 #include "sysid/import/account.h"
 #include "sysid/import/mapping.h"
+#include "sysid/import/role_sources.h"
+#include "sysid/import/samples.h"
 #include "sysid/import/table.h"
 #include "sysid/logs/log.h"
 
@@ -32,5 +35,10 @@ struct ImportedLog {
 /// `softgrip import`.
 [[nodiscard]] std::optional<ImportedLog> convert(const ForeignTable& table, const Mapping& mapping,
                                                  document::Problems& problems);
+
+/// Adds a note or a warning for each unused column and for each option without effect. It is a problem if an
+/// unused column of numbers identifies the finger of each row, and the rows belong to several fingers.
+void report_unused(const ForeignTable& table, const Mapping& mapping, const RoleSources& sources,
+                   ImportRemarks& remarks, document::Problems& problems);
 
 }  // namespace softgrip::sysid

@@ -1,4 +1,4 @@
-#include "sysid/import/foreign_file.h"
+#include "sysid/import/table_readers.h"
 
 #include <zlib.h>
 
@@ -10,7 +10,6 @@
 #include "sysid/import/array_table.h"
 #include "sysid/import/mcap_table.h"
 #include "sysid/import/moments.h"
-#include "sysid/import/table_readers.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -1,5 +1,7 @@
 #pragma once
 // Assigns the columns of an external file to the columns of a log and converts their units.
+// Writes and reads a mapping as YAML. Each imported log gets such a mapping file, and `softgrip import --map`
+// reads this file.
 
 #include <array>
 #include <cstddef>
@@ -10,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "document/problem.h"
 #include "sysid/import/units.h"
 #include "sysid/logs/log.h"
 
@@ -87,5 +90,24 @@ struct Mapping {
 [[nodiscard]] char separator_named(std::string_view word);
 /// Returns the name of a separator; the inverse of separator_named().
 [[nodiscard]] std::string_view word_of_separator(char separator);
+
+/// Data about the imported file. They are written to the mapping file for documentation only.
+struct ImportSource {
+  std::string file;
+  std::string sha256;
+  std::string format;
+};
+
+/// Returns the mapping as YAML text, which parse_mapping() converts back to the same mapping. `remarks` are
+/// written above the mapping as comments.
+[[nodiscard]] std::string mapping_yaml(const Mapping& mapping, const ImportSource& source,
+                                       const std::string& software, const std::vector<std::string>& remarks);
+
+/// Parses a mapping. Adds all problems to `problems`, and returns nullopt if there is a problem. `file` is
+/// the name of the text in messages.
+[[nodiscard]] std::optional<Mapping> parse_mapping(const std::string& file, const std::string& text,
+                                                   document::Problems& problems);
+/// Reads and parses a mapping file. A problem is added if the file cannot be read.
+[[nodiscard]] std::optional<Mapping> read_mapping(const std::string& path, document::Problems& problems);
 
 }  // namespace softgrip::sysid

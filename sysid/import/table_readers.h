@@ -2,11 +2,14 @@
 // Reads the tables of external files, with one function for each format: HDF5 and MATLAB 7.3 (libhdf5),
 // MATLAB 4, 5 and 7 (libmatio), LabVIEW measurement files as text (.lvm) and binary (.tdms), text with
 // separators, tabs or blanks, and spreadsheet workbooks (.xlsx).
+// Reads external files in all supported formats.
 
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include <tl/expected.hpp>
 
 #include "document/problem.h"
 #include "sysid/import/table.h"
@@ -78,5 +81,17 @@ inline constexpr std::string_view select_sheet_hint = "to select one sheet, use 
 /// cells. Arrays of numbers at the top level are not counted. In a damaged file, only the readable part is
 /// counted.
 [[nodiscard]] bool mat_elements_within(std::string_view file, std::size_t most_parts, std::size_t most_bytes);
+
+/// Reads text (plain or gzip), XLSX, TDMS, MCAP, MATLAB or HDF5. The first bytes of the file determine its
+/// format; the file name has no influence. If `path` is a folder, the function reads run.csv in this folder.
+/// The reasons for a refusal are added to `problems`. `unreadable` becomes true if the file could not be
+/// opened.
+[[nodiscard]] std::optional<ForeignTable> read_foreign_file(const std::string& path,
+                                                            const TableOptions& options,
+                                                            document::Problems& problems, bool& unreadable);
+
+/// Returns the decompressed gzip data if they have at most `bound` bytes. On failure, returns a sentence that
+/// describes the error.
+[[nodiscard]] tl::expected<std::string, std::string> gunzipped(std::string_view bytes, std::size_t bound);
 
 }  // namespace softgrip::sysid

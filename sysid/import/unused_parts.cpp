@@ -1,4 +1,4 @@
-#include "sysid/import/unused_parts.h"
+#include "sysid/import/conversion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 #include "base/numbers.h"
 #include "base/text.h"
 #include "sysid/import/clock.h"
-#include "sysid/import/conversion.h"
 #include "sysid/import/fingers.h"
 #include "sysid/import/proposal.h"
 

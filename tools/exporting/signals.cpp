@@ -7,7 +7,7 @@
 
 #include "base/numbers.h"
 #include "document/problem.h"
-#include "sysid/import/foreign_file.h"
+#include "sysid/import/table_readers.h"
 #include "sysid/logs/csv_text.h"
 #include "sysid/logs/log_columns.h"
 #include "sysid/recordings/recording.h"

@@ -5,7 +5,6 @@
 #include "base/files.h"
 #include "base/text.h"
 #include "sysid/import/conversion.h"
-#include "sysid/import/foreign_file.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/table_readers.h"
 #include "sysid/logs/log.h"

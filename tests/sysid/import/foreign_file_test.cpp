@@ -1,4 +1,4 @@
-#include "sysid/import/foreign_file.h"
+#include "sysid/import/table_readers.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -7,7 +7,6 @@
 
 #include "base/files.h"
 #include "sysid/import/array_table.h"
-#include "sysid/import/table_readers.h"
 
 // tests/system/test_import.py tests the values that the import reads from MATLAB and HDF5 files.
 namespace softgrip::sysid::foreign_file_test {

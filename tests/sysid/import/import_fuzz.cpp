@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "sysid/import/conversion.h"
-#include "sysid/import/mapping_file.h"
+#include "sysid/import/mapping.h"
 #include "sysid/import/mcap_table.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/table_readers.h"

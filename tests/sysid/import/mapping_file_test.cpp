@@ -1,4 +1,4 @@
-#include "sysid/import/mapping_file.h"
+#include "sysid/import/mapping.h"
 
 #include <gtest/gtest.h>
 

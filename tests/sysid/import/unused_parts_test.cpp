@@ -1,4 +1,4 @@
-#include "sysid/import/unused_parts.h"
+#include "sysid/import/conversion.h"
 
 #include <gtest/gtest.h>
 
