@@ -15,7 +15,6 @@
 #include "tools/figures/figure_files.h"
 #include "tools/log_input/log_input.h"
 #include "tools/recordings/recording_picture.h"
-#include "tools/recordings/recording_tracking.h"
 
 namespace softgrip::tools {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "tools/web/request_frame.h"
+#include "tools/web/client.h"
 
 namespace softgrip::web {
 

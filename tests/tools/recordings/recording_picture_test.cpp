@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "base/files.h"
-#include "tools/recordings/recording_tracking.h"
 
 namespace softgrip::tools::recording_picture_test {
 namespace {
