@@ -6,8 +6,8 @@
 
 #include "base/clock.h"
 #include "drivers/board/board.h"
+#include "library/control_parts.h"
 #include "library/model_parts.h"
-#include "library/readings.h"
 #include "simulation/plant/simulated_board.h"
 
 namespace softgrip {

@@ -13,9 +13,8 @@
 #include "control/feedforward/running_model.h"
 #include "control/tick/channel_controller.h"
 #include "control/tick/settings.h"
-#include "library/limit_settings.h"
+#include "library/control_parts.h"
 #include "library/model_parts.h"
-#include "library/readings.h"
 
 namespace softgrip {
 namespace {

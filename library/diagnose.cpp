@@ -8,7 +8,6 @@
 #include "library/cancellable.h"
 #include "library/log_parts.h"
 #include "library/model_parts.h"
-#include "library/predictions.h"
 #include "sysid/changes/change.h"
 #include "sysid/changes/change_page.h"
 #include "sysid/changes/change_result.h"

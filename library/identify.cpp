@@ -7,7 +7,6 @@
 #include "library/include/softgrip/validate.h"
 #include "library/log_parts.h"
 #include "library/model_parts.h"
-#include "library/predictions.h"
 #include "sysid/identification/identify_report.h"
 #include "sysid/identification/validate.h"
 #include "sysid/instrument/identified_logs.h"

@@ -1,11 +1,14 @@
 #pragma once
 // Checks public logs and converts them to the logs of sysid/.
+// Converts the scores and intervals of sysid/ to the structs of the public interface.
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "library/include/softgrip/identify.h"
 #include "library/include/softgrip/log.h"
+#include "sysid/fitting/interval.h"
 #include "sysid/fitting/score.h"
 #include "sysid/logs/log.h"
 #include "sysid/logs/record.h"
@@ -31,5 +34,9 @@ struct NeededUnit {
                                                    const std::optional<NeededUnit>& needed);
 
 [[nodiscard]] sysid::RecordOptions record_options(const LogUse& use);
+
+[[nodiscard]] std::vector<Prediction> predictions_of(const std::vector<sysid::Record>& records,
+                                                     const std::vector<sysid::Score>& scores);
+[[nodiscard]] std::optional<Interval> interval_of(const std::optional<sysid::Interval>& interval);
 
 }  // namespace softgrip::library
