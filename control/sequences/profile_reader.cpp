@@ -3,8 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "control/sequences/step_ranges.h"
-
 namespace softgrip::control {
 
 namespace {

@@ -8,7 +8,6 @@
 
 #include "control/sequences/parameters.h"
 #include "control/sequences/profile_reader.h"
-#include "control/sequences/step_ranges.h"
 #include "document/reader.h"
 
 namespace softgrip::control {

@@ -6,7 +6,7 @@
 #include "base/numbers.h"
 #include "sysid/changes/change_result.h"
 #include "sysid/changes/next_steps.h"
-#include "sysid/pages/provenance.h"
+#include "sysid/pages/page.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -12,7 +12,6 @@
 #include "sysid/fitting/interval.h"
 #include "sysid/fitting/score.h"
 #include "sysid/fitting/search.h"
-#include "sysid/identification/noise_model.h"
 #include "sysid/identification/uncertainty.h"
 #include "sysid/logs/log.h"
 #include "sysid/logs/record.h"

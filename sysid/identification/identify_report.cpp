@@ -7,7 +7,7 @@
 #include "model/file/model_file.h"
 #include "sysid/identification/combinations.h"
 #include "sysid/identification/log_report.h"
-#include "sysid/pages/provenance.h"
+#include "sysid/pages/page.h"
 
 namespace softgrip::sysid {
 namespace {

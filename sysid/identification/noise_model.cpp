@@ -1,4 +1,4 @@
-#include "sysid/identification/noise_model.h"
+#include "sysid/identification/uncertainty.h"
 
 #include <algorithm>
 #include <cmath>

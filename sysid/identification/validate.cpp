@@ -10,7 +10,7 @@
 #include "sysid/fitting/start_estimate.h"
 #include "sysid/identification/log_report.h"
 #include "sysid/logs/plausibility_warnings.h"
-#include "sysid/pages/provenance.h"
+#include "sysid/pages/page.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -9,7 +9,7 @@
 #include "base/numbers.h"
 #include "sysid/import/cell_value.h"
 #include "sysid/import/moments.h"
-#include "sysid/import/text_encoding.h"
+#include "sysid/import/text_dialect.h"
 #include "sysid/import/units.h"
 #include "sysid/logs/csv_text.h"
 

@@ -1,4 +1,4 @@
-#include "sysid/import/text_encoding.h"
+#include "sysid/import/text_dialect.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -6,7 +6,6 @@
 #include "sysid/import/cell_value.h"
 #include "sysid/import/fingers.h"
 #include "sysid/import/text_dialect.h"
-#include "sysid/import/text_encoding.h"
 #include "sysid/import/units.h"
 #include "sysid/logs/log_columns.h"
 

@@ -4,13 +4,17 @@
 // The page has no JavaScript and no references to other files. It can be printed. On a screen, it uses the
 // reader's colour scheme. Every text is escaped. Only pictures that the code in this folder draws are
 // inserted as markup. Figures are numbered in the order of the page.
+// States the provenance of a result: software, logs and models.
 
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/result/table.h"
+#include "model/model.h"
+#include "sysid/logs/log.h"
 #include "sysid/pages/figure.h"
 
 namespace softgrip::sysid {
@@ -68,5 +72,9 @@ class Page {
 
 /// Returns the common part of the names of a figure's files: "figure-2-error-over-time".
 [[nodiscard]] std::string figure_stem(std::size_t number, std::string_view name);
+
+/// Returns the entries for Page::provenance(): the software, each log and each named model with its hash.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> provenance_of(
+    const std::vector<Log>& logs, const std::vector<std::pair<std::string, const model::Model*>>& models);
 
 }  // namespace softgrip::sysid

@@ -30,7 +30,7 @@ constexpr std::array master_addresses{"10.0.0.1", "10.0.0.2"};
 constexpr Nanoseconds master_period = ns_per_s / 20;
 constexpr Nanoseconds wire_latency = ns_per_s / 500;
 constexpr Nanoseconds gateway_pause = ns_per_s;
-/// Pause between two attempts of the gateway to connect, as in tools/client/daemon_link.cpp.
+/// Pause between two attempts of the gateway to connect, as in tools/client/daemon_client.cpp.
 constexpr Nanoseconds retry_pause = ns_per_s / 4;
 constexpr const char* config_folder = SOFTGRIP_SOURCE_DIR "/config/";
 

@@ -4,7 +4,6 @@
 #include "model/file/model_file.h"
 #include "sysid/identification/log_report.h"
 #include "sysid/pages/page.h"
-#include "sysid/pages/provenance.h"
 
 namespace softgrip::tools {
 namespace {

@@ -10,7 +10,7 @@
 #include "base/net/listener.h"
 #include "base/net/poll_set.h"
 #include "drivers/modbus_server/connection.h"
-#include "tools/client/daemon_link.h"
+#include "tools/client/daemon_client.h"
 #include "tools/plc/gateway.h"
 
 namespace softgrip::plc {

@@ -11,7 +11,7 @@
 #include <tl/expected.hpp>
 
 #include "base/time.h"
-#include "tools/client/daemon_link.h"
+#include "tools/client/daemon_client.h"
 
 namespace softgrip::web {
 

@@ -3,7 +3,7 @@
 // of browsers.
 
 #include "base/time.h"
-#include "tools/client/daemon_link.h"
+#include "tools/client/daemon_client.h"
 #include "tools/web/live_state.h"
 
 namespace softgrip::web {

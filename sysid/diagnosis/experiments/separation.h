@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "sysid/diagnosis/search/fit.h"
-#include "sysid/identification/noise_model.h"
+#include "sysid/identification/uncertainty.h"
 
 namespace softgrip::sysid {
 

@@ -11,7 +11,7 @@
 #include "model/catalogue.h"
 #include "model/file/model_file.h"
 #include "sysid/diagnosis/evidence/evidence.h"
-#include "sysid/pages/provenance.h"
+#include "sysid/pages/page.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -12,7 +12,7 @@
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
 #include "sysid/diagnosis/search/selection.h"
-#include "sysid/identification/noise_model.h"
+#include "sysid/identification/uncertainty.h"
 
 namespace softgrip::sysid {
 namespace {

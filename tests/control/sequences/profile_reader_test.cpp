@@ -4,8 +4,6 @@
 
 #include <string>
 
-#include "control/sequences/step_ranges.h"
-
 namespace softgrip::control::profile_reader_test {
 namespace {
 

@@ -9,7 +9,6 @@
 #include "sysid/fitting/score.h"
 #include "sysid/fitting/start_estimate.h"
 #include "sysid/fitting/trajectory.h"
-#include "sysid/identification/noise_model.h"
 #include "sysid/identification/uncertainty.h"
 #include "sysid/identification/validate.h"
 #include "tests/sysid/simulated.h"

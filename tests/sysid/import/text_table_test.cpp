@@ -7,7 +7,6 @@
 
 #include "sysid/import/cell_value.h"
 #include "sysid/import/text_dialect.h"
-#include "sysid/import/text_encoding.h"
 
 namespace softgrip::sysid::text_table_test {
 namespace {
