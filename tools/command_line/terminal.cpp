@@ -11,8 +11,10 @@
 #include <cerrno>
 #include <clocale>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iostream>
 #include <string_view>
 
 namespace softgrip::tools {
@@ -81,6 +83,12 @@ std::size_t terminal_columns() {
 
 std::size_t terminal_rows() {
   return std::max<std::size_t>(window().ws_row, 1);
+}
+
+bool confirmed(const std::string& question) {
+  std::fprintf(stderr, "%s [y/N] ", question.c_str());
+  std::string answer;
+  return std::getline(std::cin, answer) && (answer == "y" || answer == "Y" || answer == "yes");
 }
 
 Descriptor take_signals(const std::vector<int>& signals) {

@@ -1,5 +1,5 @@
 #pragma once
-// Controls the terminal for a live view and restores it afterwards.
+// Controls the terminal for a live view and restores it afterwards. Asks the user to confirm an action.
 
 #include <chrono>
 #include <cstddef>
@@ -22,6 +22,10 @@ namespace softgrip::tools {
 /// 80 columns and 24 rows.
 [[nodiscard]] std::size_t terminal_columns();
 [[nodiscard]] std::size_t terminal_rows();
+
+/// Prints `question` and "[y/N]" to the standard error, and reads the answer from the standard input. Returns
+/// true if the answer is "y", "Y" or "yes".
+[[nodiscard]] bool confirmed(const std::string& question);
 
 /// Blocks the signals for the whole process, so that they have no default action. Returns a descriptor that
 /// reports the blocked signals.

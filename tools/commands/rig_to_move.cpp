@@ -3,12 +3,12 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <iostream>
 #include <utility>
 
 #include "daemon/service/daemon.h"
 #include "tools/client/daemon_client.h"
 #include "tools/command_line/input_files.h"
+#include "tools/command_line/terminal.h"
 
 namespace softgrip::tools {
 
@@ -36,12 +36,7 @@ calibrate::Expected<std::unique_ptr<ManualRig>> ManualRig::open(const rig::RigFi
 
 Consent consent_on_terminal(bool yes) {
   if (yes) return [](const std::string&) { return true; };
-  return [](const std::string& what) {
-    std::fprintf(stderr, "%s. Ctrl-C vents the rig. Continue? [y/N] ", what.c_str());
-    std::fflush(stderr);
-    std::string answer;
-    return std::getline(std::cin, answer) && (answer == "y" || answer == "Y" || answer == "yes");
-  };
+  return [](const std::string& what) { return confirmed(what + ". Ctrl-C vents the rig. Continue?"); };
 }
 
 tl::expected<ExperimentRig, ExitCode> rig_to_move(const std::string& path, const std::string& channel,

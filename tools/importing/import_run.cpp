@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -154,10 +153,7 @@ bool agreed(const std::vector<Job>& jobs, const ImportOptions& options) {
         stderr);
     return false;
   }
-  std::fprintf(stderr, "Write %s with this assignment? [y/N] ", options.out.c_str());
-  std::string answer;
-  std::getline(std::cin, answer);
-  if (answer == "y" || answer == "Y" || answer == "yes") return true;
+  if (confirmed("Write " + options.out + " with this assignment?")) return true;
   std::fputs("not written; change the options above and repeat the command\n", stderr);
   return false;
 }
