@@ -204,14 +204,22 @@ class Fitting {
     }
   }
 
+  struct Range {
+    double lowest = infinite;
+    double highest = -infinite;
+  };
+
+  void check_range(const Step& step, const ChannelSettings& channel, const Range& values,
+                   const Range& permitted, const std::string& unit) {
+    if (values.lowest >= permitted.lowest && values.highest <= permitted.highest) return;
+    const double wrong = values.lowest < permitted.lowest ? values.lowest : values.highest;
+    report(step, "goes to " + significant(wrong, 6) + unit + ", channel '" + channel.name + "' allows " +
+                     significant(permitted.lowest, 6) + " to " + significant(permitted.highest, 6) + unit);
+  }
+
   void check_displacement(const Step& step, const ChannelSettings& channel, double lowest, double highest) {
-    const LimitSettings& limits = channel.limits;
-    if (lowest < limits.displacement_min_mm || highest > limits.displacement_max_mm) {
-      report(step, "goes to " + significant(lowest < limits.displacement_min_mm ? lowest : highest, 6) +
-                       " mm, channel '" + channel.name + "' allows " +
-                       significant(limits.displacement_min_mm, 6) + " to " +
-                       significant(limits.displacement_max_mm, 6) + " mm");
-    }
+    check_range(step, channel, {lowest, highest},
+                {channel.limits.displacement_min_mm, channel.limits.displacement_max_mm}, " mm");
     if (!channel.displacement_used) {
       report(step, "channel '" + channel.name + "' does not use its displacement",
              "give the target in pressure_kpa");
@@ -224,13 +232,8 @@ class Fitting {
   }
 
   void check_pressure(const Step& step, const ChannelSettings& channel, double lowest, double highest) {
-    const LimitSettings& limits = channel.limits;
-    if (lowest < limits.pressure_min_kpa || highest > limits.pressure_max_kpa) {
-      report(step, "goes to " + significant(lowest < limits.pressure_min_kpa ? lowest : highest, 6) +
-                       " kPa, channel '" + channel.name + "' allows " +
-                       significant(limits.pressure_min_kpa, 6) + " to " +
-                       significant(limits.pressure_max_kpa, 6) + " kPa");
-    }
+    check_range(step, channel, {lowest, highest},
+                {channel.limits.pressure_min_kpa, channel.limits.pressure_max_kpa}, " kPa");
   }
 
   void check_track(const Step& step, const ChannelSettings& channel, double& follows) {
@@ -247,13 +250,8 @@ class Fitting {
     follows = start;
   }
 
-  struct ProfileRange {
-    double lowest = infinite;
-    double highest = -infinite;
-  };
-
-  static ProfileRange range_of(const Profile& profile) {
-    ProfileRange range;
+  static Range range_of(const Profile& profile) {
+    Range range;
     const auto see = [&](double value) {
       range.lowest = std::min(range.lowest, value);
       range.highest = std::max(range.highest, value);
@@ -267,7 +265,7 @@ class Fitting {
   }
 
   void check_profile(const Step& step, const ChannelSettings& channel) {
-    const ProfileRange range = range_of(step.profile);
+    const Range range = range_of(step.profile);
     check_pressure(step, channel, range.lowest, range.highest);
   }
 
