@@ -2,10 +2,10 @@
 // Models the oscillation of a spring-mass system: the mass of finger and load, and the stiffness of the
 // actuator.
 
-#include <cmath>
 #include <numbers>
 
 #include "model/block.h"
+#include "model/second_order.h"
 
 namespace softgrip::model {
 
@@ -27,62 +27,27 @@ class Inertia {
 
   Inertia(std::span<const T> values, const Preparation&)
       : passes_(!(value_of(values[0]) > 1e-6)),
-        omega_(passes_ ? T(1.0) : T(2.0 * std::numbers::pi / values[0])),
-        damping_(values[1]) {}
+        mode_(passes_ ? T(1.0) : T(2.0 * std::numbers::pi / values[0]), values[1]) {}
 
-  void reset(const T& input) {
-    output_ = input;
-    speed_ = T(0.0);
-  }
-  [[nodiscard]] T output() const { return output_; }
+  void reset(const T& input) { mode_.reset(input); }
+  [[nodiscard]] T output() const { return mode_.value(); }
 
   template <class Next>
   void step(const Segment<T>& in, const Surroundings&, Next&& next) {
     if (passes_) {
-      output_ = in.end;
+      mode_.reset(in.end);
       next(in);
       return;
     }
     if (!(value_of(in.duration_s) > 0.0)) return;  // a jump of the input does not move the mass
-    const T begin = output_;
-    const T speed = speed_;
-    advance(in);
-    // The mean of the output z follows from the integral of the differential equation over the segment.
-    const T left = (speed_ - speed) + 2.0 * damping_ * omega_ * (output_ - begin);
-    next(Segment<T>{in.duration_s, begin, output_, in.mean - left / (omega_ * omega_ * in.duration_s)});
+    const T begin = mode_.value();
+    const T mean = mode_.advance(in);
+    next(Segment<T>{in.duration_s, begin, mode_.value(), mean});
   }
 
  private:
-  // Computes the solution as the sum of a parabola a + b t + c t^2 (particular solution) and a decaying
-  // homogeneous solution.
-  void advance(const Segment<T>& in) {
-    using std::cos;
-    using std::exp;
-    using std::sin;
-    using std::sqrt;
-    const T& dt = in.duration_s;
-    const T bend = value_of(omega_) * value_of(dt) < 1e-6
-                       ? T(0.0)
-                       : in.bend();  // in short segments, the computed curvature is only rounding error
-    const T c = -bend / (dt * dt);
-    const T b = (in.end - in.begin + bend) / dt - 4.0 * damping_ * c / omega_;
-    const T a = in.begin - 2.0 * damping_ * b / omega_ - 2.0 * c / (omega_ * omega_);
-    const T decay = damping_ * omega_;
-    const T ringing = omega_ * sqrt(1.0 - damping_ * damping_);
-    const T envelope = exp(-decay * dt);
-    const T cosine = envelope * cos(ringing * dt);
-    const T sine = envelope * sin(ringing * dt) / ringing;
-    const T offset = output_ - a;
-    const T rate = speed_ - b;
-    output_ = a + b * dt + c * dt * dt + (cosine + decay * sine) * offset + sine * rate;
-    speed_ = b + 2.0 * c * dt - omega_ * omega_ * sine * offset + (cosine - decay * sine) * rate;
-  }
-
   bool passes_;
-  T omega_;
-  T damping_;
-  T output_{0.0};
-  T speed_{0.0};
+  SecondOrder<T> mode_;
 };
 
 }  // namespace softgrip::model

@@ -1,0 +1,98 @@
+#pragma once
+// Computes the response of a second-order linear system over one segment. The response is exact if the input
+// is a parabola in time.
+
+#include <cmath>
+
+#include "model/number.h"
+#include "model/segment.h"
+
+namespace softgrip::model {
+
+/// Solves z'' + 2 d w z' + w^2 z = w^2 y, where y is the input, z the output, w the angular frequency [rad/s]
+/// and d > 0 the damping ratio. A system with d < 1 oscillates. A system with d >= 1 has two real poles.
+template <class T>
+class SecondOrder {
+ public:
+  SecondOrder(const T& omega, const T& damping) : omega_(omega), damping_(damping) {}
+
+  /// Sets the state of rest for a constant input.
+  void reset(const T& input) {
+    value_ = input;
+    rate_ = T(0.0);
+  }
+  [[nodiscard]] const T& omega() const { return omega_; }
+  /// Returns z.
+  [[nodiscard]] const T& value() const { return value_; }
+  /// Returns z' [1/s].
+  [[nodiscard]] const T& rate() const { return rate_; }
+
+  /// Advances by a segment with a duration above 0. Returns the mean of z over the segment. The mean follows
+  /// from the integral of the differential equation over the segment.
+  T advance(const Segment<T>& in) {
+    const T begin = value_;
+    const T rate = rate_;
+    move(in);
+    const T left = (rate_ - rate) + 2.0 * damping_ * omega_ * (value_ - begin);
+    return in.mean - left / (omega_ * omega_ * in.duration_s);
+  }
+
+ private:
+  /// Parts of the homogeneous solution after a time t, with the poles -decay +- r: exp(-decay t) cosh(r t)
+  /// and exp(-decay t) sinh(r t) / r. For an oscillating system, r is imaginary.
+  struct Decay {
+    T cosine, sine;
+  };
+  /// Distance of d^2 from 1 below which the two poles are treated as one double pole.
+  static constexpr double double_pole = 1e-6;
+
+  [[nodiscard]] Decay decay_after(const T& dt) const {
+    using std::cos;
+    using std::exp;
+    using std::expm1;
+    using std::sin;
+    using std::sqrt;
+    const T distance = 1.0 - damping_ * damping_;
+    const T decay = damping_ * omega_;
+    if (std::abs(value_of(distance)) < double_pole) {
+      const T envelope = exp(-decay * dt);
+      const T square = omega_ * omega_ * distance * dt * dt;
+      return {envelope * (1.0 - square * 0.5), envelope * dt * (1.0 - square * (1.0 / 6.0))};
+    }
+    if (value_of(distance) < 0.0) {
+      const T root = sqrt(damping_ * damping_ - 1.0);
+      const T r = omega_ * root;
+      const T slow = exp(-omega_ * dt / (damping_ + root));
+      const T gone = -expm1(-2.0 * r * dt);
+      return {slow * (1.0 - 0.5 * gone), slow * gone / (2.0 * r)};
+    }
+    const T ringing = omega_ * sqrt(distance);
+    const T envelope = exp(-decay * dt);
+    return {envelope * cos(ringing * dt), envelope * sin(ringing * dt) / ringing};
+  }
+
+  // Computes the solution as the sum of a parabola a + b t + c t^2 (particular solution) and a decaying
+  // homogeneous solution.
+  void move(const Segment<T>& in) {
+    const T& dt = in.duration_s;
+    const T bend = value_of(omega_) * value_of(dt) < 1e-6
+                       ? T(0.0)
+                       : in.bend();  // in short segments, the computed curvature is only rounding error
+    const T c = -bend / (dt * dt);
+    const T b = (in.end - in.begin + bend) / dt - 4.0 * damping_ * c / omega_;
+    const T a = in.begin - 2.0 * damping_ * b / omega_ - 2.0 * c / (omega_ * omega_);
+    const T decay = damping_ * omega_;
+    const auto [cosine, sine] = decay_after(dt);
+    const T offset = value_ - a;
+    const T rate = rate_ - b;
+    value_ = a + b * dt + c * dt * dt + (cosine + decay * sine) * offset + sine * rate;
+    rate_ = b + 2.0 * c * dt - omega_ * omega_ * sine * offset + (cosine - decay * sine) * rate;
+  }
+
+  T omega_;
+  T damping_;
+  T value_{0.0};
+  T rate_{0.0};
+};
+
+}  // namespace softgrip::model
