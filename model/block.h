@@ -93,6 +93,7 @@ enum class Inverse : std::uint8_t {
   preview,   ///< inverted with the future value of the reference
   play,      ///< inverted by adding half the width of the band in the direction of motion
   bound,     ///< not inverted; the block sets a limit for the reference
+  none,      ///< not inverted, because an inverse may be unstable; feedforward `full_model` refuses the block
   ignored,   ///< not inverted, because the effect is random or small (noise, quantisation)
 };
 

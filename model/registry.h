@@ -21,6 +21,7 @@
 #include "model/blocks/inertia.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/leak.h"
+#include "model/blocks/linear_modes.h"
 #include "model/blocks/outliers.h"
 #include "model/blocks/periodic_disturbance.h"
 #include "model/blocks/prandtl_ishlinskii.h"
@@ -98,6 +99,7 @@ using Blocks = BlockList<TransportDelay,          //
                          PrandtlIshlinskii,       //
                          KelvinVoigt,             //
                          PressureDependentCreep,  //
+                         LinearModes,             //
                          SlowCreep,               //
                          DuhemHysteresis,         //
                          CrescentHysteresis,      //

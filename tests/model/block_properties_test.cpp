@@ -138,6 +138,7 @@ TEST(EveryBlock, StepsInHalvesAsInOne) {
                                              block_type<PseudoElasticSoftening>(),
                                              block_type<CrescentHysteresis>(),
                                              block_type<PressureDependentCreep>(),
+                                             block_type<LinearModes>(),
                                              block_type<RelaxingFriction>(),
                                              block_type<RateDependentWidth>(),
                                              block_type<RateDependentLevelling>(),

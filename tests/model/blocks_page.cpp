@@ -44,6 +44,9 @@ std::string_view how_undone(Inverse inverse) {
       return "The feedforward adds half of the band in the direction of motion.";
     case Inverse::bound:
       return "The block has no inverse, so the feedforward limits the reference.";
+    case Inverse::none:
+      return "The block has no inverse. The feedforward `planned` uses the block, and the feedforward "
+             "`full_model` refuses a model with it.";
     case Inverse::ignored:
       return "The feedforward does not compensate the block.";
   }

@@ -71,6 +71,7 @@ using NoCauses = List<model::AsymmetricValveLag<double>,      //
                       model::BoucWen<double>,                 //
                       model::KelvinVoigt<double>,             //
                       model::PressureDependentCreep<double>,  //
+                      model::LinearModes<double>,             //
                       model::Characteristic<double>,          //
                       model::SensorNoise<double>,             //
                       model::Quantisation<double>>;
