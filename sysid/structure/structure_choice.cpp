@@ -15,6 +15,7 @@
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/resonance.h"
 #include "sysid/structure/structure_fit.h"
+#include "sysid/structure/structure_judge.h"
 #include "sysid/structure/structure_model.h"
 
 namespace softgrip::sysid {
@@ -24,135 +25,6 @@ constexpr std::array ridges{1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
 /// Index of the ridge parameter with which the nonlinear parameters are searched from all start points. With
 /// every other ridge parameter, the search starts at the result of this search.
 constexpr std::size_t first_ridge = 2;
-/// Largest number of iterations in a fold. This number is small, because the nonlinear parameters of a fold
-/// differ little from the parameters that are fitted to all readings.
-constexpr int fold_iterations = 5;
-
-/// Value `yes`: the chain of creep branches has an additional time constant between each two neighbouring
-/// time constants.
-enum class RungsBetween { no, yes };
-
-std::vector<double> with_rungs_between(const std::vector<double>& ladder_s) {
-  std::vector<double> finer_s;
-  for (const double tau_s : ladder_s) {
-    if (!finer_s.empty()) finer_s.push_back(std::sqrt(finer_s.back() * tau_s));
-    finer_s.push_back(tau_s);
-  }
-  return finer_s;
-}
-
-class Judge {
- public:
-  Judge(const std::vector<Record>& records, const StructureChoiceOptions& options,
-        RungsBetween rungs = RungsBetween::no)
-      : records_(records),
-        options_(options),
-        grid_(grid_for(records)),
-        division_(divide_into_fifths(records)) {
-    if (options.slow_from_s > 0) grid_.slow_from_s = options.slow_from_s;
-    if (rungs == RungsBetween::yes) grid_.ladder_s = with_rungs_between(grid_.ladder_s);
-  }
-
-  [[nodiscard]] std::size_t blocks() const { return division_.blocks.size(); }
-
-  [[nodiscard]] FittedStructure fit(const BaseStructure& structure, double ridge,
-                                    const NonlinearNumbers* near = nullptr) const {
-    return fit_form(records_, structure, grid_, with(ridge), near);
-  }
-
-  /// Evaluates a structure. The fit starts from the nonlinear parameters of a similar structure.
-  [[nodiscard]] StructureTrial judge_near(const BaseStructure& structure, double ridge,
-                                          const NonlinearNumbers& numbers) const {
-    return judge(fit(structure, ridge, &numbers), ridge, fold_iterations);
-  }
-
-  /// Evaluates a structure with a regulator in place of the lag. The fit starts at the parameters of the
-  /// trial with the lag.
-  [[nodiscard]] StructureTrial judge_regulated(BaseStructure structure, const StructureTrial& lagging) const {
-    structure.regulator = true;
-    structure.second_lag = structure.rate_limit = false;
-    return judge_near(structure, lagging.ridge, with_usual_regulator(lagging.numbers, grid_));
-  }
-
-  /// Evaluates a trial with an additional resonance. The member `numbers` keeps the values of the trial
-  /// without the resonance.
-  [[nodiscard]] StructureTrial judge_resonant(const StructureTrial& still, ResonanceFit resonance_fit) const {
-    StructureTrial trial = still;
-    trial.structure.resonance = true;
-    const ResonantFit ringing = with_resonance(still.point, records_, resonance_fit);
-    trial.point = ringing.point;
-    trial.rmse_mm = ringing.rmse_mm;
-    StructureFitOptions options = with(still.ridge);
-    options.most_iterations = fold_iterations;
-    judge_held_out(trial, [&](const std::vector<Record>& rest) {
-      const FittedStructure fit = fit_form(rest, still.structure, grid_, options, &still.numbers);
-      return with_resonance_of(trial.point, point_of(fit, rest, options_.drive), rest, resonance_fit);
-    });
-    return trial;
-  }
-
-  [[nodiscard]] StructureTrial judge(const BaseStructure& structure, double ridge) const {
-    return structure.published ? judge_published(structure)
-                               : judge(fit(structure, ridge), ridge, fold_iterations);
-  }
-
-  /// Evaluates a fitted structure on held-out blocks.
-  /// @param iterations  maximum number of iterations in each fold, starting from the parameters of `whole`;
-  /// 0: the nonlinear parameters stay fixed.
-  [[nodiscard]] StructureTrial judge(const FittedStructure& whole, double ridge, int iterations) const {
-    StructureTrial trial = trial_of(whole.structure);
-    trial.ridge = ridge;
-    trial.numbers = whole.numbers;
-    trial.point = point_of(whole, records_, options_.drive);
-    trial.rmse_mm = std::sqrt(whole.mean_square_mm2);
-    trial.converged = whole.converged;
-    trial.start_rmse_mm = whole.start_rmse_mm;
-    StructureFitOptions options = with(ridge);
-    options.most_iterations = iterations;
-    judge_held_out(trial, [&](const std::vector<Record>& rest) {
-      const FittedStructure fit = fit_form(rest, trial.structure, grid_, options, &whole.numbers);
-      return point_of(fit, rest, options_.drive);
-    });
-    return trial;
-  }
-
- private:
-  static StructureFitOptions with(double ridge) {
-    StructureFitOptions options;
-    options.ridge = ridge;
-    return options;
-  }
-
-  [[nodiscard]] StructureTrial trial_of(const BaseStructure& structure) const {
-    StructureTrial trial;
-    trial.structure = structure;
-    return trial;
-  }
-
-  void judge_held_out(StructureTrial& trial, const Refit& refit) const {
-    trial.bounded = stays_bounded(trial.point, records_);
-    trial.block_losses_mm2 = held_out_losses(records_, division_, refit);
-    trial.heldout_rmse_mm = sysid::rmse_mm(trial.block_losses_mm2);
-  }
-
-  [[nodiscard]] StructureTrial judge_published(const BaseStructure& structure) const {
-    StructureTrial trial = trial_of(structure);
-    PublishedElement found = fit_published(records_, options_.drive, options_.starts, options_.seed);
-    trial.point = std::move(found.point);
-    trial.rmse_mm = found.rmse_mm;
-    trial.converged = found.converged;
-    trial.invertible = rises_everywhere(trial.point.model);
-    trial.start_rmse_mm = std::move(found.start_rmse_mm);
-    judge_held_out(trial,
-                   [&](const std::vector<Record>& rest) { return refit_published(rest, trial.point); });
-    return trial;
-  }
-
-  const std::vector<Record>& records_;
-  const StructureChoiceOptions& options_;
-  StructureGrid grid_;
-  Division division_;
-};
 
 /// Returns the candidate structures. The simplest structure comes first.
 std::vector<BaseStructure> candidates(const StructureChoiceOptions& options) {
@@ -254,14 +126,15 @@ std::vector<Record> with_simplest_start(const std::vector<Record>& records,
   const BaseStructure structure = candidates(options).back();
   std::array<std::vector<double>, 2> losses;
   parallel_for(losses.size(), options.threads, [&](std::size_t i) {
-    losses[i] =
-        Judge(i == 0 ? resting : records, options).judge(structure, ridges[first_ridge]).block_losses_mm2;
+    losses[i] = StructureJudge(i == 0 ? resting : records, options)
+                    .judge(structure, ridges[first_ridge])
+                    .block_losses_mm2;
   });
   return is_clearly_less(losses[1], losses[0]) ? records : resting;
 }
 
 StructureChoice choose_structure(const std::vector<Record>& records, const StructureChoiceOptions& options) {
-  const Judge judge(records, options);
+  const StructureJudge judge(records, options);
   const std::vector<BaseStructure> structures = candidates(options);
   const auto say = [&](const std::string& text) {
     if (options.progress) options.progress(text);
@@ -282,9 +155,9 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
   std::atomic<std::size_t> done{0};
   choice.trials.resize(structures.size());
   parallel_for(structures.size(), options.threads, [&](std::size_t i) {
-    choice.trials[i] = i + 1 == structures.size()
-                           ? judge.judge(fitted_with[best_ridge], choice.ridge, fold_iterations)
-                           : judge.judge(structures[i], choice.ridge);
+    choice.trials[i] = i + 1 == structures.size() ? judge.judge(fitted_with[best_ridge], choice.ridge,
+                                                                StructureJudge::fold_iterations)
+                                                  : judge.judge(structures[i], choice.ridge);
     say("structures: " + std::to_string(++done) + " of " + std::to_string(structures.size()) + " evaluated");
   });
   choice.chosen = simplest_of_the_best(choice.trials);
@@ -329,7 +202,8 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
 StructureTrial fitted_to(StructureTrial trial, const std::vector<Record>& records, Drive drive) {
   StructureTrial still = trial;
   const bool rings = std::exchange(still.structure.resonance, false);
-  FitPoint point = fit_from(&trial.numbers, still, records, drive, {.most_iterations = fold_iterations});
+  FitPoint point =
+      fit_from(&trial.numbers, still, records, drive, {.most_iterations = StructureJudge::fold_iterations});
   trial.point = rings ? with_resonance_of(trial.point, std::move(point), records, ResonanceFit::complete)
                       : std::move(point);
   trial.rmse_mm = rmse_of(trial.point.model, trial.point.starts, records);
@@ -348,13 +222,13 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
     ablation.push_back({ingredient, {}});
     ablation.back().trial.structure = without(chosen.structure, ingredient);
   }
-  const Judge judge(records, options);
-  const Judge among_more_rungs(records, options, RungsBetween::yes);
+  const StructureJudge judge(records, options);
+  const StructureJudge among_more_rungs(records, options, RungsBetween::yes);
   parallel_for(ablation.size(), options.threads, [&](std::size_t i) {
     // If slow creep is removed, the chain of creep branches gets intermediate time constants. Creep of the
     // finger whose time constant lies between two time constants of the chain is represented by both. The
     // larger one of the two may count as slow creep.
-    const Judge& fair = ablation[i].ingredient == Ingredient::slow_creep ? among_more_rungs : judge;
+    const StructureJudge& fair = ablation[i].ingredient == Ingredient::slow_creep ? among_more_rungs : judge;
     BaseStructure still = ablation[i].trial.structure;
     const bool rings = std::exchange(still.resonance, false);
     StructureTrial trial = still.lag && still.regulator ? fair.judge_near(still, choice.ridge, chosen.numbers)

@@ -1,0 +1,115 @@
+#include "sysid/structure/structure_judge.h"
+
+#include <cmath>
+#include <utility>
+
+#include "sysid/identification/combinations.h"
+#include "sysid/structure/bounded_answer.h"
+#include "sysid/structure/published_element.h"
+#include "sysid/structure/structure_model.h"
+
+namespace softgrip::sysid {
+namespace {
+
+std::vector<double> with_rungs_between(const std::vector<double>& ladder_s) {
+  std::vector<double> finer_s;
+  for (const double tau_s : ladder_s) {
+    if (!finer_s.empty()) finer_s.push_back(std::sqrt(finer_s.back() * tau_s));
+    finer_s.push_back(tau_s);
+  }
+  return finer_s;
+}
+
+StructureFitOptions with_ridge(double ridge) {
+  StructureFitOptions options;
+  options.ridge = ridge;
+  return options;
+}
+
+StructureTrial trial_of(const BaseStructure& structure) {
+  StructureTrial trial;
+  trial.structure = structure;
+  return trial;
+}
+
+}  // namespace
+
+StructureJudge::StructureJudge(const std::vector<Record>& records, const StructureChoiceOptions& options,
+                               RungsBetween rungs)
+    : records_(records), options_(options), grid_(grid_for(records)), division_(divide_into_fifths(records)) {
+  if (options.slow_from_s > 0) grid_.slow_from_s = options.slow_from_s;
+  if (rungs == RungsBetween::yes) grid_.ladder_s = with_rungs_between(grid_.ladder_s);
+}
+
+FittedStructure StructureJudge::fit(const BaseStructure& structure, double ridge,
+                                    const NonlinearNumbers* near) const {
+  return fit_form(records_, structure, grid_, with_ridge(ridge), near);
+}
+
+StructureTrial StructureJudge::judge(const BaseStructure& structure, double ridge) const {
+  return structure.published ? judge_published(structure)
+                             : judge(fit(structure, ridge), ridge, fold_iterations);
+}
+
+StructureTrial StructureJudge::judge(const FittedStructure& whole, double ridge, int iterations) const {
+  StructureTrial trial = trial_of(whole.structure);
+  trial.ridge = ridge;
+  trial.numbers = whole.numbers;
+  trial.point = point_of(whole, records_, options_.drive);
+  trial.rmse_mm = std::sqrt(whole.mean_square_mm2);
+  trial.converged = whole.converged;
+  trial.start_rmse_mm = whole.start_rmse_mm;
+  StructureFitOptions options = with_ridge(ridge);
+  options.most_iterations = iterations;
+  judge_held_out(trial, [&](const std::vector<Record>& rest) {
+    const FittedStructure fit = fit_form(rest, trial.structure, grid_, options, &whole.numbers);
+    return point_of(fit, rest, options_.drive);
+  });
+  return trial;
+}
+
+StructureTrial StructureJudge::judge_near(const BaseStructure& structure, double ridge,
+                                          const NonlinearNumbers& numbers) const {
+  return judge(fit(structure, ridge, &numbers), ridge, fold_iterations);
+}
+
+StructureTrial StructureJudge::judge_regulated(BaseStructure structure, const StructureTrial& lagging) const {
+  structure.regulator = true;
+  structure.second_lag = structure.rate_limit = false;
+  return judge_near(structure, lagging.ridge, with_usual_regulator(lagging.numbers, grid_));
+}
+
+StructureTrial StructureJudge::judge_resonant(const StructureTrial& still, ResonanceFit resonance_fit) const {
+  StructureTrial trial = still;
+  trial.structure.resonance = true;
+  const ResonantFit ringing = with_resonance(still.point, records_, resonance_fit);
+  trial.point = ringing.point;
+  trial.rmse_mm = ringing.rmse_mm;
+  StructureFitOptions options = with_ridge(still.ridge);
+  options.most_iterations = fold_iterations;
+  judge_held_out(trial, [&](const std::vector<Record>& rest) {
+    const FittedStructure fit = fit_form(rest, still.structure, grid_, options, &still.numbers);
+    return with_resonance_of(trial.point, point_of(fit, rest, options_.drive), rest, resonance_fit);
+  });
+  return trial;
+}
+
+StructureTrial StructureJudge::judge_published(const BaseStructure& structure) const {
+  StructureTrial trial = trial_of(structure);
+  PublishedElement found = fit_published(records_, options_.drive, options_.starts, options_.seed);
+  trial.point = std::move(found.point);
+  trial.rmse_mm = found.rmse_mm;
+  trial.converged = found.converged;
+  trial.invertible = rises_everywhere(trial.point.model);
+  trial.start_rmse_mm = std::move(found.start_rmse_mm);
+  judge_held_out(trial, [&](const std::vector<Record>& rest) { return refit_published(rest, trial.point); });
+  return trial;
+}
+
+void StructureJudge::judge_held_out(StructureTrial& trial, const Refit& refit) const {
+  trial.bounded = stays_bounded(trial.point, records_);
+  trial.block_losses_mm2 = held_out_losses(records_, division_, refit);
+  trial.heldout_rmse_mm = rmse_mm(trial.block_losses_mm2);
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,62 @@
+#pragma once
+// Fits single structures to records and evaluates them on held-out readings. The choice of the structure and
+// the removal of components use it.
+
+#include <cstddef>
+#include <vector>
+
+#include "sysid/fitting/held_out.h"
+#include "sysid/structure/resonance.h"
+#include "sysid/structure/structure_choice.h"
+#include "sysid/structure/structure_fit.h"
+
+namespace softgrip::sysid {
+
+/// Value `yes`: the chain of creep branches has an additional time constant between each two neighbouring
+/// time constants.
+enum class RungsBetween { no, yes };
+
+class StructureJudge {
+ public:
+  /// Largest number of iterations in a fold. This number is small, because the nonlinear parameters of a fold
+  /// differ little from the parameters that are fitted to all readings.
+  static constexpr int fold_iterations = 5;
+
+  /// `records` and `options` must outlive the object.
+  StructureJudge(const std::vector<Record>& records, const StructureChoiceOptions& options,
+                 RungsBetween rungs = RungsBetween::no);
+
+  [[nodiscard]] std::size_t blocks() const { return division_.blocks.size(); }
+
+  /// Fits a structure to all readings. The fit starts from the parameters `near`, or from the default start
+  /// points.
+  [[nodiscard]] FittedStructure fit(const BaseStructure& structure, double ridge,
+                                    const NonlinearNumbers* near = nullptr) const;
+
+  /// Evaluates a structure. The fit starts from the default start points.
+  [[nodiscard]] StructureTrial judge(const BaseStructure& structure, double ridge) const;
+  /// Evaluates a fitted structure on held-out blocks.
+  /// @param iterations  maximum number of iterations in each fold, starting from the parameters of `whole`;
+  /// 0: the nonlinear parameters stay fixed.
+  [[nodiscard]] StructureTrial judge(const FittedStructure& whole, double ridge, int iterations) const;
+  /// Evaluates a structure. The fit starts from the nonlinear parameters of a similar structure.
+  [[nodiscard]] StructureTrial judge_near(const BaseStructure& structure, double ridge,
+                                          const NonlinearNumbers& numbers) const;
+  /// Evaluates a structure with a regulator in place of the lag. The fit starts at the parameters of the
+  /// trial with the lag.
+  [[nodiscard]] StructureTrial judge_regulated(BaseStructure structure, const StructureTrial& lagging) const;
+  /// Evaluates a trial with an additional resonance. The member `numbers` keeps the values of the trial
+  /// without the resonance.
+  [[nodiscard]] StructureTrial judge_resonant(const StructureTrial& still, ResonanceFit resonance_fit) const;
+
+ private:
+  [[nodiscard]] StructureTrial judge_published(const BaseStructure& structure) const;
+  void judge_held_out(StructureTrial& trial, const Refit& refit) const;
+
+  const std::vector<Record>& records_;
+  const StructureChoiceOptions& options_;
+  StructureGrid grid_;
+  Division division_;
+};
+
+}  // namespace softgrip::sysid
