@@ -260,7 +260,7 @@ int main(void) {
   return 0;
 }
 """
-# A model that contains every block with C code. The parameters are chosen so that each block has an effect.
+# A model that contains every block with C code and an inverse. The parameters are chosen so that each block has an effect.
 EVERYTHING = """name: every thing
 source: "a test"
 valve:
@@ -275,6 +275,10 @@ actuator:
   - kelvin_voigt: {k0_kpa_per_mm: 300, k1_kpa_per_mm: 20, c1_kpa_s_per_mm: 100, k2_kpa_per_mm: 0, c2_kpa_s_per_mm: 900}
   - pressure_dependent_creep: {hinge1_kpa: 15, compliance1_mm_per_kpa: 0.04, time_constant1_s: 2}
   - characteristic: {curvature: 0.6, span_mm: 25}
+"""
+# The only block of the actuator that has C code and no inverse. Its modes have two complex poles, a double pole and two
+# real poles.
+LINEAR_MODES = """  - linear_modes: {direct_mm_per_kpa: 0.02, period1_s: 0.3, damping_ratio1: 0.1, gain1_mm_per_kpa: 0.05, lead1_mm_per_kpa: -0.04, period2_s: 0.8, damping_ratio2: 1, gain2_mm_per_kpa: -0.03, lead2_mm_per_kpa: 0.02, period3_s: 0.5, damping_ratio3: 2.5, gain3_mm_per_kpa: 0.04, lead3_mm_per_kpa: 0.06}
 """
 RATE_HZ, SECONDS = 1000, 60
 
@@ -361,7 +365,8 @@ class CModel(ExportedC):
         self.compare("config/models/soft_arm_play.yaml")
 
     def test_every_block_that_has_c(self):
-        self.compare(self.write("every.yaml", EVERYTHING))
+        before = EVERYTHING.index("  - characteristic")
+        self.compare(self.write("every.yaml", EVERYTHING[:before] + LINEAR_MODES + EVERYTHING[before:]))
 
     def test_a_lag_in_one_direction_follows_at_once_in_the_other(self):
         for filling_s, venting_s in ((0, 0.06), (0.03, 0)):

@@ -26,6 +26,8 @@ extern const std::string_view prandtl_ishlinskii;
 extern const std::string_view kelvin_voigt;
 /// Creep above a pressure, as in model/blocks/pressure_dependent_creep.h.
 extern const std::string_view pressure_dependent_creep;
+/// Second-order modes with gains of either sign, as in model/second_order.h and model/blocks/linear_modes.h.
+extern const std::string_view linear_modes;
 /// Characteristic map, as in model/characteristic_map.h and model/blocks/characteristic.h.
 extern const std::string_view characteristic;
 /// C function that computes the pressure at which the blocks behind the valve reach a given displacement one

@@ -16,6 +16,7 @@
 #include "model/blocks/chamber_lag.h"
 #include "model/blocks/characteristic.h"
 #include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/linear_modes.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_dependent_creep.h"
 #include "model/blocks/rate_limit.h"
@@ -114,6 +115,10 @@ const std::map<std::string_view, CBlock>& c_blocks() {
        {c_text::pressure_dependent_creep, "double block_#[PARTS_#];",
         "pressure_dependent_creep_reset(b->block_#, values_#, PARTS_#, input)",
         "pressure_dependent_creep_step(b->block_#, values_#, PARTS_#, in)", ""}},
+      {block_id<model::LinearModes>,
+       {c_text::linear_modes, "mode block_#[PARTS_# + 1];",
+        "linear_modes_reset(b->block_#, values_#, PARTS_#, input)",
+        "linear_modes_step(b->block_#, values_#, PARTS_#, in)", ""}},
       {block_id<model::Characteristic>,
        {c_text::characteristic, "double block_#;", "b->block_# = characteristic_of(values_#, output)",
         "characteristic_step(&b->block_#, values_#, sum)", ""}},
@@ -175,6 +180,7 @@ class Generator {
           model::is<model::KelvinVoigt>(spec) ? (values.size() - 1) / 2
           : model::is<model::PrandtlIshlinskii>(spec)
               ? (values.size() - model::PrandtlIshlinskii<double>::parameters.size()) / 2
+          : model::is<model::LinearModes>(spec)            ? (values.size() - 1) / 4
           : model::is<model::PressureDependentCreep>(spec) ? values.size() / 3
                                                            : 0;
       if (parts > 0) text_ += "#define PARTS_" + number + " " + std::to_string(parts) + "\n";
