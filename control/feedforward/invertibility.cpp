@@ -151,17 +151,28 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
   return check_gain(part, limits, tick_s, 0, "");
 }
 
-/// Checks that a plan can be computed for the model. The model must have an element that moves the finger,
-/// and the gain of the model must be positive.
-tl::expected<void, Refusal> check_planned(const model::Model& model, const LimitSettings& limits) {
-  const auto elements = model::only(model, [](const BlockInfo& info) { return info.kind == Kind::element; });
-  if (elements.blocks.empty())
-    return tl::unexpected(Refusal{"the model has no element that moves the finger"});
+bool has_element(const model::Model& model) {
+  return std::any_of(model.blocks.begin(), model.blocks.end(), [](const model::BlockSpec& block) {
+    return model::catalogue()[block.type].info.kind == Kind::element;
+  });
+}
+
+/// Checks that the settled displacement rises with the command. Otherwise the PID controller has a positive
+/// feedback, and a plan has no solution.
+tl::expected<void, Refusal> check_settled_gain(const model::Model& model, const LimitSettings& limits) {
   const double gain = settled_line(model, limits).gain_mm_per_kpa;
   if (gain > 0) return {};
-  return tl::unexpected(
-      Refusal{"the model's settled gain between the lowest and the highest command is " + significant(gain) +
-              model::in_unit(" mm/kPa: feedforward `planned` requires a gain above 0", model.output_unit)});
+  return tl::unexpected(Refusal{
+      "the model's settled gain between the lowest and the highest command is " + significant(gain) +
+          model::in_unit(" mm/kPa, but a controller requires a gain above 0", model.output_unit),
+      "if the finger moves in the negative direction, turn the sign of the sensor's calibration and of the "
+      "logs (`softgrip import --scale displacement=-1`), and identify the model again"});
+}
+
+/// Checks that the model has an element that moves the finger. Only then can a plan be computed.
+tl::expected<void, Refusal> check_planned(const model::Model& model) {
+  if (has_element(model)) return {};
+  return tl::unexpected(Refusal{"the model has no element that moves the finger"});
 }
 
 tl::expected<void, Refusal> check_full_model(const model::Model& model, const LimitSettings& limits,
@@ -174,13 +185,27 @@ tl::expected<void, Refusal> check_full_model(const model::Model& model, const Li
                                   ", which has no inverse; use feedforward `none` with this model"});
   }
   const model::Model body = body_of(model);
-  const auto elements = model::only(body, [](const BlockInfo& info) { return info.kind == Kind::element; });
-  if (elements.blocks.empty())
-    return tl::unexpected(Refusal{"the model has no element that moves the finger"});
+  if (!has_element(body)) return tl::unexpected(Refusal{"the model has no element that moves the finger"});
   const model::Chain<double> chain(body);
   const auto* spring = chain.find<model::KelvinVoigt<double>>();
   return check_gain(body, limits, tick_s, spring != nullptr ? spring->instantaneous_mm_per_kpa() : 0,
                     spring != nullptr ? " + 1/k0" : "");
+}
+
+/// Checks that the feedforward of this kind can be computed for the model.
+tl::expected<void, Refusal> check_kind(const model::Model& model, FeedforwardKind kind,
+                                       const LimitSettings& limits, double tick_s) {
+  switch (kind) {
+    case FeedforwardKind::none:
+      break;
+    case FeedforwardKind::bouc_wen:
+      return check_bouc_wen(model, limits, tick_s);
+    case FeedforwardKind::full_model:
+      return check_full_model(model, limits, tick_s);
+    case FeedforwardKind::planned:
+      return check_planned(model);
+  }
+  return {};
 }
 
 }  // namespace
@@ -202,17 +227,9 @@ tl::expected<void, Refusal> check_feedforward(const model::Model& model, const F
   if (!(settings.extra_latency_s >= 0 && settings.extra_latency_s <= 1)) {
     return tl::unexpected(Refusal{"extra_latency_s must be between 0 and 1 s"});
   }
-  switch (settings.kind) {
-    case FeedforwardKind::none:
-      break;
-    case FeedforwardKind::bouc_wen:
-      return check_bouc_wen(model, limits, tick_s);
-    case FeedforwardKind::full_model:
-      return check_full_model(model, limits, tick_s);
-    case FeedforwardKind::planned:
-      return check_planned(model, limits);
-  }
-  return {};
+  const auto possible = check_kind(model, settings.kind, limits, tick_s);
+  if (!possible || !has_element(model)) return possible;
+  return check_settled_gain(model, limits);
 }
 
 }  // namespace softgrip::control

@@ -27,13 +27,13 @@ struct Refusal {
 /// Checks that `settings.kind` can be computed for `model` over the working range, in every hysteresis state
 /// that the model can reach. The working range goes from 0 kPa to pressure_max_kpa. If pressure_min_kpa is
 /// below 0, the working range starts at pressure_min_kpa. A refusal names the block or the parameter values
-/// that prevent the feedforward.
+/// that prevent the feedforward. With every kind, the settled displacement of a model with an element must
+/// rise with the command, because the feedback of the controller would be unstable otherwise.
 [[nodiscard]] tl::expected<void, Refusal> check_feedforward(const model::Model& model,
                                                             const FeedforwardSettings& settings,
                                                             const LimitSettings& limits, double tick_s);
 
-/// Returns the names of the blocks that the kind full_model cannot invert, as the text "`a`, `b`". At
-/// present, full_model can invert all blocks, so the text is empty.
+/// Returns the names of the blocks that the kind full_model cannot invert, as the text "`a`, `b`".
 [[nodiscard]] std::string not_undone(std::span<const model::BlockInfo> blocks);
 
 struct InvertiblePart {

@@ -403,6 +403,31 @@ TEST(RigFile, AModelWithALagOrAGainBeyondTheLimitsOfAControllerIsRefused) {
       << soft;
 }
 
+// A PID controller raises the pressure if the displacement is too small. With a negative gain of the finger,
+// it would run to the largest pressure.
+TEST(RigFile, AModelWithoutAPositiveSettledGainIsRefusedWithAnyFeedforward) {
+  const ScratchFolder folder;
+  const auto problems_with = [&](const std::string& gain, const std::string& feedforward) {
+    std::ofstream(folder.path() + "/modes.yaml")
+        << "name: modes\nsource: test\nactuator:\n  - linear_modes: {direct_mm_per_kpa: "
+           "0, "
+           "period1_s: 0.2, damping_ratio1: 0.5, gain1_mm_per_kpa: "
+        << gain << ", lead1_mm_per_kpa: 0}\n";
+    Problems problems;
+    const std::pair<std::string, std::string> model{"models/bench_twin.yaml", folder.path() + "/modes.yaml"};
+    const std::pair<std::string, std::string> kind{"feedforward: full_model", "feedforward: " + feedforward};
+    edited("rig.yaml", {model, model, model, kind}, problems);
+    return problems.format();
+  };
+  const std::string refused = "but a controller requires a gain above 0";
+  EXPECT_NE(problems_with("-0.3", "none").find(refused), std::string::npos) << problems_with("-0.3", "none");
+  EXPECT_NE(problems_with("-0.3", "planned").find(refused), std::string::npos);
+  EXPECT_NE(problems_with("0", "none").find(refused), std::string::npos);
+  EXPECT_EQ(problems_with("0.3", "none").find(refused), std::string::npos) << problems_with("0.3", "none");
+  EXPECT_NE(problems_with("0.3", "full_model").find("`linear_modes`, which has no inverse"),
+            std::string::npos);
+}
+
 TEST(RigFile, PathsAreRelativeToTheFile) {
   std::filesystem::current_path("/");
   const rig::RigFile rig = loaded("rig.yaml");
