@@ -70,7 +70,7 @@ struct IdentifyOptions {
 struct StructureEvidence {
   /// A model structure that was compared with other structures.
   struct Candidate {
-    std::string structure;  ///< name of the structure: "bouc_wen" or "prandtl_ishlinskii"
+    std::string structure;  ///< "bouc_wen", "prandtl_ishlinskii" or "linear_modes"
     std::string description;
     double rmse_mm = 0;          ///< RMSE on the readings to which the structure was fitted
     double heldout_rmse_mm = 0;  ///< RMSE of held-out blocks, each predicted by a fit without this block

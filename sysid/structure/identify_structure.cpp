@@ -30,8 +30,8 @@ StructureEvidence evidence_of(const StructureChoice& choice, const std::vector<W
   evidence.blocks = choice.blocks;
   for (std::size_t i = 0; i < choice.trials.size(); ++i) {
     const StructureTrial& t = choice.trials[i];
-    evidence.candidates.push_back({std::string(name_of(t.structure.hysteresis)), description_of(t.structure),
-                                   t.rmse_mm, t.heldout_rmse_mm, i == choice.chosen});
+    evidence.candidates.push_back({std::string(name_of(t.structure)), description_of(t.structure), t.rmse_mm,
+                                   t.heldout_rmse_mm, i == choice.chosen});
   }
   for (const WithoutIngredient& w : ablation)
     evidence.ablation.push_back(

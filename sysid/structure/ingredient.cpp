@@ -18,6 +18,7 @@ std::string_view name_of(Ingredient ingredient) {
       "a separate time constant for venting",
       "nonlinear characteristic and envelopes",
       "a resonance",
+      "linear modes",
       "nonlinear envelopes"};
   return names[static_cast<std::size_t>(ingredient)];
 }
@@ -28,6 +29,7 @@ BaseStructure without(BaseStructure s, Ingredient ingredient) {
       s.hysteretic = s.envelopes = false;
       break;
     case Ingredient::play_operators:
+      if (!s.hysteretic) break;
       s.hysteresis = HysteresisForm::bouc_wen;
       s.envelopes = false;
       break;
@@ -66,6 +68,9 @@ BaseStructure without(BaseStructure s, Ingredient ingredient) {
       break;
     case Ingredient::resonance:
       s.resonance = false;
+      break;
+    case Ingredient::linear_modes:
+      s.modes = 0;
       break;
     case Ingredient::envelopes:
       s.envelopes = false;

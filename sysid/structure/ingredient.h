@@ -25,6 +25,7 @@ enum class Ingredient {
   /// Characteristic and envelopes together, because one of them can largely replace the other.
   characteristic,
   resonance,
+  linear_modes,
   envelopes  ///< generalised play operators; a structure without them has ordinary play operators
 };
 inline constexpr std::array all_ingredients{Ingredient::hysteresis,
@@ -41,6 +42,7 @@ inline constexpr std::array all_ingredients{Ingredient::hysteresis,
                                             Ingredient::venting_lag,
                                             Ingredient::characteristic,
                                             Ingredient::resonance,
+                                            Ingredient::linear_modes,
                                             Ingredient::envelopes};
 [[nodiscard]] std::string_view name_of(Ingredient ingredient);
 

@@ -7,7 +7,7 @@
 // hysteresis consists of play operators, sum_i w_i play_(r_i)(q) (Prandtl-Ishlinskii; Kuhnen, European
 // Journal of Control 9, 2003), or is the Bouc-Wen element with exponent 1. g is the block `characteristic`.
 // The weights are not negative, so that each fitted model is monotonic in the current pressure and has an
-// inverse.
+// inverse. Linear modes are the exception: they add weights of either sign to z (model::LinearModes).
 
 #include <cstddef>
 #include <string>
@@ -36,7 +36,13 @@ struct BaseStructure {
   bool resonance = false;      ///< true: a second-order mode follows this map (with_resonance())
   bool envelopes = false;      ///< true: the play operators are generalised ones with nonlinear envelopes
   bool hinged_creep =
-      false;                ///< pressure-dependent creep: a short chain above each threshold pressure (hinge)
+      false;  ///< pressure-dependent creep: a short chain above each threshold pressure (hinge)
+  /// Number of linear modes (model::LinearModes). They are added to the other operators, before the
+  /// characteristic. Their gains have either sign.
+  std::size_t modes = 0;
+  /// True: the elastic gain may have either sign too. Such a structure has no hysteresis, lag or
+  /// characteristic.
+  bool linear = false;
   bool zero_drift = false;  ///< a piecewise linear drift of the zero offset of each record, which is not a
                             ///< part of the finger
   /// The published element: one lag, Bouc-Wen, and two Kelvin-Voigt branches with fitted time constants.
@@ -47,6 +53,9 @@ struct BaseStructure {
 
 /// Returns the name of a form in `softgrip identify --structure`: "prandtl_ishlinskii" or "bouc_wen".
 [[nodiscard]] std::string_view name_of(HysteresisForm form);
+/// Returns the name of the element with the largest part in a structure: that of its form of hysteresis, or
+/// "linear_modes" for a linear structure.
+[[nodiscard]] std::string_view name_of(const BaseStructure& structure);
 /// Returns a description such as "play operators, creep ladder, delay, lag (filling and venting),
 /// characteristic".
 [[nodiscard]] std::string description_of(const BaseStructure& structure);
@@ -64,6 +73,15 @@ struct StructureGrid {
   double slow_from_s = 0;
   std::vector<double> hinges_kpa;  ///< threshold pressures of pressure-dependent creep, in increasing order
   std::vector<double> hinge_ladder_s;  ///< time constants of the creep branches that belong to the hinges
+  double shortest_period_s = 0;        ///< shortest period of a linear mode
+};
+
+/// The two parameters of a linear mode that affect the displacement nonlinearly, as in model::LinearModes.
+struct ModeNumbers {
+  double period_s = 0;
+  double damping_ratio = 0;
+
+  bool operator==(const ModeNumbers&) const = default;
 };
 
 /// The parameters of a structure that affect the displacement nonlinearly.
@@ -88,6 +106,7 @@ struct NonlinearNumbers {
   double envelope_skew = 0;
   /// For each record, the last peak of the pressure before its start (StartState); 0 for a start from rest.
   std::vector<double> peak_before_kpa;
+  std::vector<ModeNumbers> modes = {};  ///< linear modes
 
   bool operator==(const NonlinearNumbers&) const = default;
 };

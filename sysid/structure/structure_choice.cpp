@@ -25,6 +25,8 @@ constexpr std::array ridges{1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
 /// Index of the ridge parameter with which the nonlinear parameters are searched from all start points. With
 /// every other ridge parameter, the search starts at the result of this search.
 constexpr std::size_t first_ridge = 2;
+/// Largest number of linear modes. A linear output-error model of order 6 has as many poles.
+constexpr std::size_t most_modes = 3;
 
 /// Returns the candidate structures. The simplest structure comes first.
 std::vector<BaseStructure> candidates(const StructureChoiceOptions& options) {
@@ -104,6 +106,83 @@ void offer_extended(const std::function<StructureTrial(const BaseStructure&, con
   offer(std::move(extended[simplest_of_the_best(extended)]), choice);
 }
 
+/// Tries the extensions of the chosen structure, one after the other.
+void offer_extensions(const StructureJudge& judge, const StructureChoiceOptions& options,
+                      StructureChoice& choice) {
+  const auto say = [&](const std::string& text) {
+    if (options.progress) options.progress(text);
+  };
+  const auto slower = [&](BaseStructure structure, const StructureTrial& chosen) {
+    structure.second_lag = true;
+    return judge.judge_near(structure, chosen.ridge, chosen.numbers);
+  };
+  const auto limited = [&](BaseStructure structure, const StructureTrial& chosen) {
+    structure.second_lag = false;
+    structure.rate_limit = true;
+    return judge.judge_near(structure, chosen.ridge, chosen.numbers);
+  };
+  const auto regulated = [&](const BaseStructure& structure, const StructureTrial& chosen) {
+    return judge.judge_regulated(structure, chosen);
+  };
+  if (options.drive == Drive::command && options.dynamics) {
+    say("trying a second lag");
+    offer_extended(slower, options.threads, choice);
+    say("trying a rate limit");
+    offer_extended(limited, options.threads, choice);
+  }
+  if (options.drive == Drive::command) {
+    say("trying a regulator instead of the lag");
+    offer_extended(regulated, options.threads, choice);
+  }
+  if (options.dynamics) {
+    say("trying a resonance");
+    // The complete fit takes as long as all other trials, so the fast fit decides whether it is needed.
+    const StructureTrial still = choice.trials[choice.chosen];
+    const StructureTrial screening = judge.judge_resonant(still, ResonanceFit::dynamics);
+    if (is_clearly_less(screening.block_losses_mm2, still.block_losses_mm2))
+      offer(judge.judge_resonant(still, ResonanceFit::complete), choice);
+  }
+}
+
+/// Adds linear modes to a structure, one after the other, while the held-out loss becomes significantly
+/// lower. Offers each extended structure.
+/// @param form  trial of the structure without modes. Its losses are those that the first mode must improve.
+void offer_modes(const StructureJudge& judge, StructureTrial form, StructureChoice& choice) {
+  for (std::size_t modes = 1; modes <= most_modes; ++modes) {
+    BaseStructure structure = form.structure;
+    structure.modes = modes;
+    StructureTrial extended = judge.judge_near(structure, choice.ridge, form.numbers);
+    const bool enough = modes > 1 && !is_clearly_less(extended.block_losses_mm2, form.block_losses_mm2);
+    offer(extended, choice);
+    if (enough) return;
+    form = std::move(extended);
+  }
+}
+
+/// Tries linear modes in two forms. The modes alone are fitted fast. The modes in parallel with the chosen
+/// structure are tried only if a fast test shows that linear dynamics are missing.
+void offer_linear_modes(const StructureJudge& judge, const StructureChoiceOptions& options,
+                        StructureChoice& choice) {
+  if (options.progress) options.progress("trying linear modes");
+  const std::vector<StructureTrial>& trials = choice.trials;
+  StructureTrial still = trials[choice.chosen];
+  if (still.structure.published)
+    still = *std::find_if(trials.begin(), trials.end(),
+                          [](const StructureTrial& t) { return !t.structure.published; });
+  still.structure.resonance = false;
+  const bool lacks_modes = judge.lacks_linear_dynamics(trials[choice.chosen]);
+  const std::size_t count = trials.size();
+  StructureTrial alone = still;
+  alone.structure = {.hysteretic = false,
+                     .delay = still.structure.delay,
+                     .lag = false,
+                     .two_way = false,
+                     .characteristic = false,
+                     .linear = true};
+  offer_modes(judge, std::move(alone), choice);
+  if (lacks_modes || trials.size() > count) offer_modes(judge, std::move(still), choice);
+}
+
 /// Fits the structure of a trial.
 /// @param near  start point of the nonlinear parameters; nullptr: the search starts from all default start
 /// points.
@@ -165,37 +244,8 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
   if (simplest.structure.published && choice.trials[best_of(choice.trials)].heldout_rmse_mm <
                                           options.published_yields_below * simplest.heldout_rmse_mm)
     choice.chosen = simplest_of_the_best(choice.trials, choice.chosen + 1);
-  if (choice.trials[choice.chosen].structure.published) return choice;
-  const auto slower = [&](BaseStructure structure, const StructureTrial& chosen) {
-    structure.second_lag = true;
-    return judge.judge_near(structure, chosen.ridge, chosen.numbers);
-  };
-  const auto limited = [&](BaseStructure structure, const StructureTrial& chosen) {
-    structure.second_lag = false;
-    structure.rate_limit = true;
-    return judge.judge_near(structure, chosen.ridge, chosen.numbers);
-  };
-  const auto regulated = [&](const BaseStructure& structure, const StructureTrial& chosen) {
-    return judge.judge_regulated(structure, chosen);
-  };
-  if (options.drive == Drive::command && options.dynamics) {
-    say("trying a second lag");
-    offer_extended(slower, options.threads, choice);
-    say("trying a rate limit");
-    offer_extended(limited, options.threads, choice);
-  }
-  if (options.drive == Drive::command) {
-    say("trying a regulator instead of the lag");
-    offer_extended(regulated, options.threads, choice);
-  }
-  if (options.dynamics) {
-    say("trying a resonance");
-    // The complete fit takes as long as all other trials, so the fast fit decides whether it is needed.
-    const StructureTrial still = choice.trials[choice.chosen];
-    const StructureTrial screening = judge.judge_resonant(still, ResonanceFit::dynamics);
-    if (is_clearly_less(screening.block_losses_mm2, still.block_losses_mm2))
-      offer(judge.judge_resonant(still, ResonanceFit::complete), choice);
-  }
+  if (!choice.trials[choice.chosen].structure.published) offer_extensions(judge, options, choice);
+  if (options.dynamics) offer_linear_modes(judge, options, choice);
   return choice;
 }
 
@@ -231,8 +281,9 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
     const StructureJudge& fair = ablation[i].ingredient == Ingredient::slow_creep ? among_more_rungs : judge;
     BaseStructure still = ablation[i].trial.structure;
     const bool rings = std::exchange(still.resonance, false);
-    StructureTrial trial = still.lag && still.regulator ? fair.judge_near(still, choice.ridge, chosen.numbers)
-                                                        : fair.judge(still, choice.ridge);
+    StructureTrial trial = (still.lag && still.regulator) || still.modes > 0
+                               ? fair.judge_near(still, choice.ridge, chosen.numbers)
+                               : fair.judge(still, choice.ridge);
     ablation[i].trial = rings ? fair.judge_resonant(trial, ResonanceFit::complete) : std::move(trial);
   });
   return ablation;

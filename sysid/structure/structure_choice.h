@@ -80,8 +80,8 @@ struct WithoutIngredient {
 /// the simplest structure is chosen whose held-out loss is within one standard error of the lowest one
 /// (Breiman et al. 1984, section 3.4.3). The standard error is that of the paired difference over blocks.
 /// Finally, extensions are tried. With Drive::command, these are a second lag (with `dynamics` only) and a
-/// regulator instead of the lags; with `dynamics`, a resonance is tried as well. An extension is chosen if
-/// its held-out loss is significantly lower.
+/// regulator instead of the lags; with `dynamics`, a resonance and linear modes are tried as well. An
+/// extension is chosen if its held-out loss is significantly lower.
 [[nodiscard]] StructureChoice choose_structure(const std::vector<Record>& records,
                                                const StructureChoiceOptions& options);
 

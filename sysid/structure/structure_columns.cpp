@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "model/envelope_map.h"
 #include "model/exponential.h"
+#include "model/second_order.h"
 #include "model/segment.h"
 #include "sysid/fitting/hysteresis_step.h"
 #include "sysid/logs/each_record.h"
@@ -164,7 +166,9 @@ ColumnLayout::ColumnLayout(const BaseStructure& structure, const StructureGrid& 
                                                                      : grid.thresholds_kpa.size()),
       branches_(branches_of(structure, grid)),
       hinges_(structure.hinged_creep ? grid.hinges_kpa.size() : 0),
-      hinge_branches_(structure.hinged_creep ? grid.hinge_ladder_s.size() : 0) {
+      hinge_branches_(structure.hinged_creep ? grid.hinge_ladder_s.size() : 0),
+      modes_(structure.modes),
+      linear_(structure.linear) {
   count_ = own();
   for (const Record& record : records) {
     offset_.push_back(record.offset_free ? count_++ : -1);
@@ -204,14 +208,19 @@ const Eigen::MatrixXd& StructureColumns::at(const NonlinearNumbers& numbers) {
   NonlinearNumbers same = numbers;
   same.curvature = numbers_.curvature;  // the columns do not depend on the curvature
   if (driven_alike && same == numbers_) return columns_;
-  numbers_ = numbers;
+  const std::vector<ModeNumbers> modes = std::exchange(same.modes, numbers_.modes);
+  const bool alike_except_modes = driven_alike && same == numbers_;
+  const std::vector<ModeNumbers> last_modes = std::exchange(numbers_, numbers).modes;
   driven_.resize(records_.size());
   for_each_record(records_, [&](std::size_t r) {
     if (!driven_alike) {
       drive(records_[r], structure_, numbers, driven_[r]);
       write_driven(r);
     }
-    if (layout_.hysteretic() > 0) write_hysteresis(r);
+    for (std::size_t k = 0; k < layout_.modes(); ++k) {
+      if (!driven_alike || k >= last_modes.size() || last_modes[k] != modes[k]) write_mode(r, k);
+    }
+    if (layout_.hysteretic() > 0 && !alike_except_modes) write_hysteresis(r);
   });
   return columns_;
 }
@@ -238,6 +247,25 @@ void StructureColumns::write_driven(std::size_t r) {
       for (std::size_t b = 0; b < layout_.hinge_branches(); ++b)
         columns_(row, layout_.hinged(h, b)) = hinged[h].value(b);
     }
+    ++row;
+  }
+}
+
+/// Writes the two columns of a linear mode.
+void StructureColumns::write_mode(std::size_t r, std::size_t k) {
+  const DrivenPressure& driven = driven_[r];
+  const ModeNumbers& mode = numbers_.modes[k];
+  model::SecondOrder<double> system(2 * std::numbers::pi / mode.period_s, mode.damping_ratio);
+  system.reset(driven.first_kpa);
+  auto row = static_cast<Eigen::Index>(first_row_[r]);
+  std::size_t segment = 0;
+  for (std::size_t i = 0; i < driven.until.size(); ++i) {
+    for (; segment < driven.until[i]; ++segment) {
+      if (driven.segments[segment].duration_s > 0) system.advance(driven.segments[segment]);
+    }
+    if (!std::isfinite(records_[r].reading_mm[i])) continue;
+    columns_(row, layout_.mode(k)) = system.value();
+    columns_(row, layout_.mode(k) + 1) = system.rate() / system.omega();
     ++row;
   }
 }

@@ -13,9 +13,11 @@
 
 namespace softgrip::sysid {
 
-/// Column indices of a structure. The columns before own() have weights that are not negative, and their
-/// weighted sum is the input of the characteristic. The columns of each record (offset, unsettled creep,
-/// drift of the zero offset) are added after the characteristic, and their weights may have either sign.
+/// Column indices of a structure. The columns before mode(0) have weights that are not negative, except the
+/// elastic gain of a linear structure. The columns of the linear modes have weights of either sign. The
+/// weighted sum of all columns before own() is the input of the characteristic. The columns of each record
+/// (offset, unsettled creep, drift of the zero offset) are added after the characteristic, and their weights
+/// may have either sign.
 class ColumnLayout {
  public:
   ColumnLayout(const BaseStructure& structure, const StructureGrid& grid, const std::vector<Record>& records);
@@ -32,7 +34,12 @@ class ColumnLayout {
   [[nodiscard]] Eigen::Index hinged(std::size_t hinge, std::size_t branch) const {
     return creep(branches_) + static_cast<Eigen::Index>(hinge * hinge_branches_ + branch);
   }
-  [[nodiscard]] Eigen::Index own() const { return hinged(hinges_, 0); }
+  /// Returns the first of the two columns of a linear mode. They are the output of the mode, and its rate of
+  /// change divided by the angular frequency.
+  [[nodiscard]] Eigen::Index mode(std::size_t mode) const {
+    return hinged(hinges_, 0) + 2 * static_cast<Eigen::Index>(mode);
+  }
+  [[nodiscard]] Eigen::Index own() const { return mode(modes_); }
   /// Returns the column of a record's offset, or -1 if the offset of the record is not fitted.
   [[nodiscard]] Eigen::Index offset(std::size_t record) const { return offset_[record]; }
   [[nodiscard]] Eigen::Index unsettled(std::size_t record) const { return unsettled_[record]; }
@@ -49,9 +56,13 @@ class ColumnLayout {
   [[nodiscard]] std::size_t branches() const { return branches_; }
   [[nodiscard]] std::size_t hinges() const { return hinges_; }
   [[nodiscard]] std::size_t hinge_branches() const { return hinge_branches_; }
+  [[nodiscard]] std::size_t modes() const { return modes_; }
+  /// Returns true if the weight of the column elastic() may have either sign.
+  [[nodiscard]] bool linear() const { return linear_; }
 
  private:
-  std::size_t hysteretic_, branches_, hinges_, hinge_branches_;
+  std::size_t hysteretic_, branches_, hinges_, hinge_branches_, modes_;
+  bool linear_;
   std::vector<Eigen::Index> offset_, unsettled_, zero_drift_;
   std::vector<std::size_t> knots_;
   Eigen::Index count_ = 0;
@@ -85,6 +96,7 @@ class StructureColumns {
 
  private:
   void write_driven(std::size_t record);
+  void write_mode(std::size_t record, std::size_t mode);
   void write_hysteresis(std::size_t record);
   void write_own();
 

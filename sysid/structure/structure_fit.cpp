@@ -11,6 +11,7 @@
 #include "sysid/fitting/descent.h"
 #include "sysid/fitting/score.h"
 #include "sysid/logs/resampled_record.h"
+#include "sysid/structure/linear_modes.h"
 #include "sysid/structure/structure_columns.h"
 #include "sysid/structure/structure_projection.h"
 
@@ -29,6 +30,13 @@ constexpr double widest_of_a_regulator = 0.03;
 constexpr double usual_bend = 0.05;
 /// Ratio of consecutive time constants of the creep branches.
 constexpr double ladder_ratio = 3;
+/// Prior width of the logarithms of a linear mode.
+constexpr double mode_width = 3;
+/// Shortest period of a linear mode, in sampling intervals. The Nyquist period is 2.
+constexpr double shortest_mode_in_intervals = 4;
+/// Longest period of a linear mode, in units of time_unit_s(). A mode with two real poles contains a time
+/// constant of up to this period.
+constexpr double longest_mode_in_units = 10;
 
 /// A nonlinear parameter and its coordinate t in the search. The coordinate has a magnitude of about 1.
 struct Coordinate {
@@ -82,12 +90,9 @@ class Search {
   [[nodiscard]] State at(const NonlinearNumbers& numbers, const Eigen::VectorXd* near = nullptr) {
     State state;
     state.numbers = numbers;
-    const ProjectionProblem problem{columns_.at(numbers),
-                                    layout_,
-                                    readings_,
-                                    grid_.largest_kpa,
-                                    least_elastic_share * grid_.span_mm / grid_.largest_kpa,
-                                    options_.ridge};
+    const ProjectionProblem problem{
+        columns_.at(numbers), layout_, readings_, grid_.largest_kpa, least_elastic_mm_per_kpa(grid_),
+        options_.ridge};
     state.projection =
         project(problem, {structure_.characteristic ? numbers.curvature : 0, grid_.span_mm}, near);
     const Projection& p = state.projection;
@@ -198,6 +203,7 @@ class Search {
       add_driving(logarithmic(&N::integral_s, 1.5, 0.5 * unit_s, 0.02 * unit_s, 100 * unit_s));
       add_driving(logarithmic(&N::full_open_kpa, 1.5, 15, 1, 1000));
     }
+    for (std::size_t k = 0; k < structure_.modes; ++k) add_mode(k);
     if (structure_.characteristic) coordinates_.push_back(straight(&N::curvature, 1, 0, -4, 4));
     if (structure_.envelopes) {
       using Envelope = model::EnvelopeMap<double>;
@@ -219,6 +225,19 @@ class Search {
                               [=](N& n, double t) { n.peak_before_kpa[r] = t * width; }, first / width,
                               first / width, 1});
     }
+  }
+
+  /// Adds the logarithms of period and damping ratio of a mode, with wide priors.
+  void add_mode(std::size_t k) {
+    const auto add = [&](double ModeNumbers::*member, double centre, double lower, double upper) {
+      coordinates_.push_back(
+          {[=](const NonlinearNumbers& n) { return std::log(n.modes[k].*member) / mode_width; },
+           [=](NonlinearNumbers& n, double t) { n.modes[k].*member = std::exp(t * mode_width); },
+           std::log(centre) / mode_width, std::log(lower) / mode_width, std::log(upper) / mode_width});
+    };
+    const double from_s = grid_.shortest_period_s, to_s = std::max(longest_mode_s(grid_), 2 * from_s);
+    add(&ModeNumbers::period_s, std::sqrt(from_s * to_s), from_s, to_s);
+    add(&ModeNumbers::damping_ratio, 0.5, 0.005, 100);
   }
 
   const std::vector<Record>& records_;
@@ -269,6 +288,14 @@ std::vector<NonlinearNumbers> with_rate_limits(const std::vector<NonlinearNumber
 
 }  // namespace
 
+double least_elastic_mm_per_kpa(const StructureGrid& grid) {
+  return least_elastic_share * grid.span_mm / grid.largest_kpa;
+}
+
+double longest_mode_s(const StructureGrid& grid) {
+  return longest_mode_in_units * grid.time_unit_s;
+}
+
 NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureGrid& grid) {
   const double unit_s = grid.time_unit_s;
   numbers.filling_s = std::clamp(numbers.filling_s, 1e-3 * unit_s, 0.03 * unit_s);
@@ -283,9 +310,10 @@ NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureG
 StructureGrid grid_for(const std::vector<Record>& records) {
   StructureGrid grid;
   grid.time_unit_s = time_unit_s(records);
-  double longest_s = 0;
+  double longest_s = 0, shortest_interval_s = std::numeric_limits<double>::infinity();
   std::size_t cycles = 0;
   for (const Record& record : records) {
+    shortest_interval_s = std::min(shortest_interval_s, record.mean_interval_s());
     grid.largest_kpa = std::max(grid.largest_kpa, record.largest_kpa);
     grid.span_mm = std::max(grid.span_mm, record.span_mm);
     longest_s = std::max(longest_s, record.length_s());
@@ -298,6 +326,7 @@ StructureGrid grid_for(const std::vector<Record>& records) {
        tau *= ladder_ratio)
     grid.ladder_s.push_back(tau);
   grid.slow_from_s = longest_s / 10;
+  grid.shortest_period_s = shortest_mode_in_intervals * shortest_interval_s;
   grid.hinges_kpa = {0.25 * grid.largest_kpa, 0.5 * grid.largest_kpa, 0.75 * grid.largest_kpa};
   for (double tau = 0.25 * grid.time_unit_s; tau < longest_s && grid.hinge_ladder_s.size() < 5; tau *= 5)
     grid.hinge_ladder_s.push_back(tau);
@@ -312,6 +341,15 @@ FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure
   double best = std::numeric_limits<double>::infinity();
   std::vector<NonlinearNumbers> starts = near != nullptr ? std::vector{*near} : starts_for(records, grid);
   if (structure.rate_limit) starts = with_rate_limits(starts, grid);
+  if (const std::size_t modes = starts.front().modes.size(); modes < structure.modes) {
+    NonlinearNumbers fewer = starts.front();
+    if (modes + 1 < structure.modes) {
+      BaseStructure simpler = structure;
+      --simpler.modes;
+      fewer = fit_form(records, simpler, grid, options, near).numbers;
+    }
+    starts = starts_of_next_mode(few, structure, grid, fewer, options);
+  }
   std::vector<Descent<Search::State>> runs(starts.size());
   parallel_for_idle(starts.size(), [&](std::size_t i) {
     NonlinearNumbers start = starts[i];

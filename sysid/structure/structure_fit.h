@@ -35,12 +35,18 @@ struct FittedStructure {
 /// there are fewer play operators.
 [[nodiscard]] StructureGrid grid_for(const std::vector<Record>& records);
 
+/// Returns the smallest instantaneous elastic gain of a structure that has an inverse [mm/kPa].
+[[nodiscard]] double least_elastic_mm_per_kpa(const StructureGrid& grid);
+/// Returns the longest period of a linear mode in a fit [s].
+[[nodiscard]] double longest_mode_s(const StructureGrid& grid);
+
 /// Returns start parameters for the search of a regulator. They replace the parameters of the lag. The
 /// overlap of the regulator, and its error with a fully open port, are proportional to the largest pressure.
 [[nodiscard]] NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureGrid& grid);
 
 /// Fits a structure from several default start points, or from the parameters `near` if they are given. A
-/// structure with a regulator requires `near`; see with_usual_regulator().
+/// structure with a regulator requires `near`; see with_usual_regulator(). If the structure has more linear
+/// modes than the start points, the start values of the next mode are searched; see starts_of_next_mode().
 [[nodiscard]] FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure& structure,
                                        const StructureGrid& grid, const StructureFitOptions& options,
                                        const NonlinearNumbers* near = nullptr);

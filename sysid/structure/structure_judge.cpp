@@ -5,6 +5,7 @@
 
 #include "sysid/identification/combinations.h"
 #include "sysid/structure/bounded_answer.h"
+#include "sysid/structure/linear_modes.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_model.h"
 
@@ -77,6 +78,10 @@ StructureTrial StructureJudge::judge_regulated(BaseStructure structure, const St
   structure.regulator = true;
   structure.second_lag = structure.rate_limit = false;
   return judge_near(structure, lagging.ridge, with_usual_regulator(lagging.numbers, grid_));
+}
+
+bool StructureJudge::lacks_linear_dynamics(const StructureTrial& trial) const {
+  return sysid::lacks_linear_dynamics(trial.point, records_, grid_, division_, trial.block_losses_mm2);
 }
 
 StructureTrial StructureJudge::judge_resonant(const StructureTrial& still, ResonanceFit resonance_fit) const {

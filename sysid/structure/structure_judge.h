@@ -45,6 +45,8 @@ class StructureJudge {
   /// Evaluates a structure with a regulator in place of the lag. The fit starts at the parameters of the
   /// trial with the lag.
   [[nodiscard]] StructureTrial judge_regulated(BaseStructure structure, const StructureTrial& lagging) const;
+  /// Returns the result of lacks_linear_dynamics() for a trial.
+  [[nodiscard]] bool lacks_linear_dynamics(const StructureTrial& trial) const;
   /// Evaluates a trial with an additional resonance. The member `numbers` keeps the values of the trial
   /// without the resonance.
   [[nodiscard]] StructureTrial judge_resonant(const StructureTrial& still, ResonanceFit resonance_fit) const;

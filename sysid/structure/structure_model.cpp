@@ -7,6 +7,7 @@
 #include "model/blocks/chamber_lag.h"
 #include "model/blocks/characteristic.h"
 #include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/linear_modes.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_dependent_creep.h"
 #include "model/blocks/pressure_regulator.h"
@@ -38,9 +39,10 @@ class Builder {
     const NonlinearNumbers& n = fit_.numbers;
     if (fit_.structure.delay && n.delay_s > 0) add<model::TransportDelay>({n.delay_s});
     if (fit_.structure.lag) add_lag(drive);
-    add_hysteresis();
+    if (!fit_.structure.linear) add_hysteresis();
     add_creep();
     add_hinged_creep();
+    add_modes();
     if (fit_.structure.characteristic && n.curvature != 0)
       add<model::Characteristic>({n.curvature, fit_.grid.span_mm});
     return std::move(model_);
@@ -113,6 +115,16 @@ class Builder {
       }
     }
     if (!parts.empty()) add<model::PressureDependentCreep>(std::move(parts));
+  }
+
+  void add_modes() {
+    std::vector<double> values{fit_.structure.linear ? weight(ColumnLayout::elastic()) : 0};
+    for (std::size_t k = 0; k < layout_.modes(); ++k) {
+      const ModeNumbers& mode = fit_.numbers.modes[k];
+      values.insert(values.end(), {mode.period_s, mode.damping_ratio, weight(layout_.mode(k)),
+                                   weight(layout_.mode(k) + 1)});
+    }
+    if (fit_.structure.linear || values.size() > 1) add<model::LinearModes>(std::move(values));
   }
 
   const FittedStructure& fit_;

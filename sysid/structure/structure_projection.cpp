@@ -10,6 +10,8 @@ namespace {
 
 constexpr int most_steps = 20;
 constexpr double settled_share = 1e-8;
+/// Factor of the ridge penalty of weights that may have either sign.
+constexpr double least_ridge = 1e-9;
 
 class Projector {
  public:
@@ -26,9 +28,17 @@ class Projector {
     for (std::size_t r = 0; r < p_.layout.records(); ++r) {
       if (p_.layout.offset(r) >= 0) ridge_(p_.layout.offset(r)) = 0;
     }
-    lower_(ColumnLayout::elastic()) = p_.least_elastic;
     fitted_ = std::max(1.0, static_cast<double>(p_.columns.rows()));
     ridge_ *= p_.ridge * fitted_;
+    lower_(ColumnLayout::elastic()) = p_.least_elastic;
+    // Zeros near the poles require large gains of opposite sign, so the ridge penalty of the modes only
+    // excludes gains that the readings do not determine.
+    const auto free_sign = [&](Eigen::Index first, Eigen::Index count) {
+      lower_.segment(first, count).setConstant(-std::numeric_limits<double>::infinity());
+      ridge_.segment(first, count).setConstant(least_ridge * p_.largest_kpa * p_.largest_kpa * fitted_);
+    };
+    free_sign(p_.layout.mode(0), own - p_.layout.mode(0));
+    if (p_.layout.linear()) free_sign(ColumnLayout::elastic(), 1);
   }
 
   Projection run(const Eigen::VectorXd* near) {

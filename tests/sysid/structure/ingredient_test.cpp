@@ -14,7 +14,8 @@ BaseStructure complete() {
           .regulator = true,
           .resonance = true,
           .envelopes = true,
-          .hinged_creep = true};
+          .hinged_creep = true,
+          .modes = 2};
 }
 
 TEST(Ingredient, EachIsRemovedOnceAndHasAName) {

@@ -8,6 +8,7 @@
 #include "model/blocks/characteristic.h"
 #include "model/blocks/inertia.h"
 #include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/linear_modes.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_regulator.h"
 #include "model/blocks/rate_limit.h"
@@ -261,6 +262,7 @@ TEST(IdentifyStructure, FindsAFingerOfPlays) {
   EXPECT_FALSE(model::position_of<model::RateLimit>(found->model))
       << "the simulated finger has no rate limit";
   EXPECT_FALSE(model::position_of<model::Inertia>(found->model)) << "the simulated finger has no resonance";
+  EXPECT_FALSE(model::position_of<model::LinearModes>(found->model)) << "play operators describe this finger";
   ASSERT_FALSE(found->structure->ablation.empty());
   for (const auto& without : found->structure->ablation) {
     if (without.without != "hysteresis" && without.without != "creep") continue;

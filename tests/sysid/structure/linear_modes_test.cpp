@@ -1,0 +1,104 @@
+#include "sysid/structure/linear_modes.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "model/blocks/linear_modes.h"
+#include "model/blocks/transport_delay.h"
+#include "model/chain.h"
+#include "model/named.h"
+#include "sysid/fitting/trajectory.h"
+#include "sysid/structure/structure_choice.h"
+#include "sysid/structure/structure_columns.h"
+#include "sysid/structure/structure_model.h"
+
+namespace softgrip::sysid::linear_modes_test {
+namespace {
+
+constexpr double noise_mm = 0.02;
+
+model::Model with_modes(std::vector<double> values) {
+  const model::Model delayed = model::with_block({}, {model::block_type<model::TransportDelay>(), {0.06}});
+  return model::with_block(delayed, {model::block_type<model::LinearModes>(), std::move(values)});
+}
+
+/// Returns a log of 24 s with pressures between 0 and 60 kPa. Each pressure is held for 0.2 to 1 s. The
+/// readings are the prediction of the model plus noise.
+Record random_steps(const model::Model& model, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> noise(0, noise_mm);
+  Log log;
+  log.name = "random steps";
+  double level_kpa = 0;
+  std::size_t until = 25;
+  for (std::size_t i = 0; i <= 1200; ++i) {
+    if (i == until) {
+      level_kpa = static_cast<double>(generator() % 61);
+      until = i + 10 + generator() % 41;
+    }
+    log.time_s.push_back(0.02 * static_cast<double>(i));
+    log.pressure_command_kpa.push_back(level_kpa);
+  }
+  log.displacement_mm.assign(log.size(), 0);
+  log.displacement_mm = predict(model, make_records({log}, {})[0], {});
+  for (double& y : log.displacement_mm) y += noise(generator);
+  return make_records({log}, {})[0];
+}
+
+StructureTrial chosen_for(const std::vector<Record>& records) {
+  StructureChoiceOptions options;
+  options.question = StructureQuestion::prandtl_ishlinskii;
+  options.dynamics = true;
+  const StructureChoice choice = choose_structure(records, options);
+  return choice.trials[choice.chosen];
+}
+
+/// Returns the static gain of a model [mm/kPa].
+double static_gain(const model::Model& model) {
+  model::Chain<double> chain(model);
+  chain.reset(50);
+  const double high = chain.reading_mm();
+  chain.reset(0);
+  return (high - chain.reading_mm()) / 50;
+}
+
+/// Checks that the chosen structure has linear modes, that its error is the noise, and that it predicts
+/// another log of the same model.
+StructureTrial expect_found(const model::Model& truth) {
+  const std::vector<Record> records{random_steps(truth, 1)};
+  StructureTrial found = chosen_for(records);
+  EXPECT_GE(found.structure.modes, 1U) << description_of(found.structure);
+  EXPECT_LT(found.rmse_mm, 1.1 * noise_mm);
+  const Record other = random_steps(truth, 2);
+  EXPECT_LT(rms(residual(other, predict(found.point.model, other, {}))), 1.3 * noise_mm);
+  return found;
+}
+
+TEST(LinearModes, ASecondModeIsFound) {
+  const StructureTrial found = expect_found(with_modes({0, 1.2, 0.1, 0.2, 0, 0.31, 0.05, -0.05, 0.03}));
+  EXPECT_GE(found.structure.modes, 2U);
+  EXPECT_NEAR(static_gain(found.point.model), 0.15, 0.01);
+}
+
+TEST(LinearModes, AnInverseResponseIsFound) {
+  // The rate gain of this mode has the opposite sign of its static gain.
+  expect_found(with_modes({0, 1.5, 1.4, 0.3, -0.4}));
+}
+
+TEST(LinearModes, ANegativeGainIsFound) {
+  const StructureTrial found = expect_found(with_modes({0, 0.9, 0.7, -0.25, 0}));
+  EXPECT_NEAR(static_gain(found.point.model), -0.25, 0.01);
+}
+
+TEST(LinearModes, TheColumnsOfAStructureAreWhatTheBlockDoes) {
+  const std::vector<Record> records{random_steps(with_modes({0, 0.9, 0.2, 0.25, 0}), 3)};
+  const BaseStructure structure{.characteristic = false, .modes = 1};
+  const FittedStructure fit = fit_form(records, structure, grid_for(records), {});
+  const FitPoint point = point_of(fit, records, Drive::command);
+  ASSERT_TRUE(model::find_block<model::LinearModes>(point.model) != nullptr);
+  EXPECT_NEAR(rmse_of(point.model, point.starts, records), std::sqrt(fit.mean_square_mm2), 2e-5);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::linear_modes_test
