@@ -10,7 +10,7 @@
 #include "model/named.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/structure/structure_choice.h"
-#include "sysid/structure/structure_columns.h"
+#include "sysid/structure/structure_judge.h"
 #include "sysid/structure/structure_model.h"
 
 namespace softgrip::sysid::linear_modes_test {
@@ -89,6 +89,21 @@ TEST(LinearModes, AnInverseResponseIsFound) {
 TEST(LinearModes, ANegativeGainIsFound) {
   const StructureTrial found = expect_found(with_modes({0, 0.9, 0.7, -0.25, 0}));
   EXPECT_NEAR(static_gain(found.point.model), -0.25, 0.01);
+}
+
+TEST(LinearModes, TheFastTestFindsWhatTheStructureLacks) {
+  const std::vector<Record> records{random_steps(with_modes({0.3, 1.2, 0.1, -0.1, 0.2}), 4)};
+  const StructureChoiceOptions options;
+  const StructureJudge judge(records, options);
+  const StructureTrial still = judge.judge(BaseStructure{.characteristic = false}, 1e-5);
+  EXPECT_TRUE(judge.lacks_linear_dynamics(still));
+  const BaseStructure extended{.hysteretic = false,
+                               .lag = false,
+                               .two_way = false,
+                               .characteristic = false,
+                               .modes = 1,
+                               .linear = true};
+  EXPECT_FALSE(judge.lacks_linear_dynamics(judge.judge_near(extended, 1e-5, still.numbers)));
 }
 
 TEST(LinearModes, TheColumnsOfAStructureAreWhatTheBlockDoes) {
