@@ -122,6 +122,13 @@ void FitSpace::hold_starts(const std::vector<StartState>& starts) {
   base_starts_ = starts;
 }
 
+void FitSpace::hold_arrivals(const std::vector<StartState>& starts) {
+  for (std::size_t r = 0; r < starts.size(); ++r) {
+    base_starts_[r].valley_before_kpa = starts[r].valley_before_kpa;
+    base_starts_[r].arrival_kpa_per_s = starts[r].arrival_kpa_per_s;
+  }
+}
+
 void FitSpace::bound(std::size_t index, double lower, double upper) {
   free_[index].lower = std::max(free_[index].lower, lower);
   free_[index].upper = std::min(free_[index].upper, upper);

@@ -62,9 +62,10 @@ class Valve {
 
 }  // namespace
 
-void drive(const Record& record, const BaseStructure& structure, const NonlinearNumbers& numbers,
-           DrivenPressure& driven) {
-  driven.first_kpa = record.drive_kpa.front();
+void drive(const Record& record, std::size_t index, const BaseStructure& structure,
+           const NonlinearNumbers& numbers, DrivenPressure& driven) {
+  const bool jumps = structure.linear && index < numbers.jumped_from_kpa.size();
+  driven.first_kpa = jumps ? numbers.jumped_from_kpa[index] : record.drive_kpa.front();
   driven.segments.clear();
   driven.until.clear();
   driven.segments.reserve(3 * record.size());
@@ -74,7 +75,8 @@ void drive(const Record& record, const BaseStructure& structure, const Nonlinear
     valve.step(Segment::straight(duration_s, from_kpa, to_kpa),
                [&](const Segment& q) { driven.segments.push_back(q); });
   };
-  driven.until.push_back(0);
+  if (jumps) step(0, driven.first_kpa, record.drive_kpa.front());
+  driven.until.push_back(driven.segments.size());
   for (std::size_t i = 1; i < record.size(); ++i) {
     const double end = record.held ? record.drive_kpa[i - 1] : record.drive_kpa[i];
     const double begin = i > 1 && record.held ? record.drive_kpa[i - 2] : record.drive_kpa[i - 1];

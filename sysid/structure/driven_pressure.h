@@ -26,9 +26,10 @@ struct DrivenPressure {
 
 /// Computes the pressure and stores it in `driven`. The function reuses the memory of `driven`, because a
 /// search calls it thousands of times.
+/// @param index  index of the record in `numbers.jumped_from_kpa`.
 /// @param numbers  nonlinear parameters. Only the parameters of components that `structure` contains (delay,
 /// lag, regulator) are used.
-void drive(const Record& record, const BaseStructure& structure, const NonlinearNumbers& numbers,
-           DrivenPressure& driven);
+void drive(const Record& record, std::size_t index, const BaseStructure& structure,
+           const NonlinearNumbers& numbers, DrivenPressure& driven);
 
 }  // namespace softgrip::sysid

@@ -50,8 +50,9 @@ std::string chosen_by_means(const std::vector<Record>& averaged) {
 /// Adds the estimates of the free parameters to the result. A parameter that is 0 or at a bound has no
 /// interval.
 void add_estimates(const StructureTrial& trial, Identification& result) {
-  const auto residuals = residuals_for(
-      result.records, FitSpace(trial.point.model, result.records, free_numbers(trial.point.model)));
+  FitSpace space(trial.point.model, result.records, free_numbers(trial.point.model));
+  space.hold_arrivals(trial.point.starts);
+  const auto residuals = residuals_for(result.records, space);
   const std::vector<double> z = residuals->space().z(trial.point);
   const Uncertainty uncertainty = uncertainty_at(*residuals, z, std::numeric_limits<double>::infinity());
   const FittedPoint fit{*residuals, z, uncertainty};

@@ -107,6 +107,10 @@ struct NonlinearNumbers {
   /// For each record, the last peak of the pressure before its start (StartState); 0 for a start from rest.
   std::vector<double> peak_before_kpa;
   std::vector<ModeNumbers> modes = {};  ///< linear modes
+  /// For each record of a linear structure, the pressure at which the finger was at rest before the record.
+  /// It jumped to the first pressure at the first sample. Empty: the records begin at rest at the first
+  /// pressure.
+  std::vector<double> jumped_from_kpa = {};
 
   bool operator==(const NonlinearNumbers&) const = default;
 };

@@ -23,7 +23,8 @@ bool drive_alike(const NonlinearNumbers& a, const NonlinearNumbers& b) {
   return a.delay_s == b.delay_s && a.filling_s == b.filling_s && a.venting_s == b.venting_s &&
          a.second_s == b.second_s && a.filling_s_per_kpa == b.filling_s_per_kpa &&
          a.venting_s_per_kpa == b.venting_s_per_kpa && a.pilot_band_kpa == b.pilot_band_kpa &&
-         a.overlap_kpa == b.overlap_kpa && a.integral_s == b.integral_s && a.full_open_kpa == b.full_open_kpa;
+         a.jumped_from_kpa == b.jumped_from_kpa && a.overlap_kpa == b.overlap_kpa &&
+         a.integral_s == b.integral_s && a.full_open_kpa == b.full_open_kpa;
 }
 
 /// Creep branches that have the same input signal. Two branches are computed at a time.
@@ -214,7 +215,7 @@ const Eigen::MatrixXd& StructureColumns::at(const NonlinearNumbers& numbers) {
   driven_.resize(records_.size());
   for_each_record(records_, [&](std::size_t r) {
     if (!driven_alike) {
-      drive(records_[r], structure_, numbers, driven_[r]);
+      drive(records_[r], r, structure_, numbers, driven_[r]);
       write_driven(r);
     }
     for (std::size_t k = 0; k < layout_.modes(); ++k) {

@@ -30,13 +30,9 @@ constexpr double widest_of_a_regulator = 0.03;
 constexpr double usual_bend = 0.05;
 /// Ratio of consecutive time constants of the creep branches.
 constexpr double ladder_ratio = 3;
-/// Prior width of the logarithms of a linear mode.
-constexpr double mode_width = 3;
-/// Shortest period of a linear mode, in sampling intervals. The Nyquist period is 2.
-constexpr double shortest_mode_in_intervals = 4;
-/// Longest period of a linear mode, in units of time_unit_s(). A mode with two real poles contains a time
-/// constant of up to this period.
-constexpr double longest_mode_in_units = 10;
+/// Prior width of the logarithms of a mode's parameters; its shortest period in sampling intervals (the
+/// Nyquist period is 2); and its longest period in units of time_unit_s().
+constexpr double mode_width = 3, shortest_mode_in_intervals = 4, longest_mode_in_units = 10;
 
 /// A nonlinear parameter and its coordinate t in the search. The coordinate has a magnitude of about 1.
 struct Coordinate {
@@ -218,13 +214,19 @@ class Search {
     }
     if (structure_.hysteretic && structure_.hysteresis == HysteresisForm::play)
       coordinates_.push_back(straight(&N::trained_kpa, grid_.largest_kpa, 0, 0, 2 * grid_.largest_kpa));
-    for (std::size_t r = 0; r < records_.size(); ++r) {
-      if (!records_[r].start_unknown) continue;
-      const double width = grid_.largest_kpa, first = records_[r].drive_kpa.front();
-      coordinates_.push_back({[=](const N& n) { return n.peak_before_kpa[r] / width; },
-                              [=](N& n, double t) { n.peak_before_kpa[r] = t * width; }, first / width,
-                              first / width, 1});
-    }
+    for (std::size_t r = 0; r < records_.size(); ++r) add_start(r);
+  }
+
+  /// Adds the pressure before a record, if it is unknown: the last peak, or that before a jump.
+  void add_start(std::size_t r) {
+    const bool linear = structure_.linear;
+    if (linear ? records_[r].start == Start::rest : !records_[r].start_unknown) return;
+    std::vector<double> NonlinearNumbers::*before =
+        linear ? &NonlinearNumbers::jumped_from_kpa : &NonlinearNumbers::peak_before_kpa;
+    const double width = grid_.largest_kpa, first = records_[r].drive_kpa.front() / width;
+    coordinates_.push_back({[=](const NonlinearNumbers& n) { return (n.*before)[r] / width; },
+                            [=](NonlinearNumbers& n, double t) { (n.*before)[r] = t * width; }, first,
+                            linear ? first - 2 : first, linear ? first + 2 : 1, linear});
   }
 
   /// Adds the logarithms of period and damping ratio of a mode, with wide priors.
@@ -310,10 +312,12 @@ NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureG
 StructureGrid grid_for(const std::vector<Record>& records) {
   StructureGrid grid;
   grid.time_unit_s = time_unit_s(records);
-  double longest_s = 0, shortest_interval_s = std::numeric_limits<double>::infinity();
+  grid.shortest_period_s = std::numeric_limits<double>::infinity();
+  double longest_s = 0;
   std::size_t cycles = 0;
   for (const Record& record : records) {
-    shortest_interval_s = std::min(shortest_interval_s, record.mean_interval_s());
+    grid.shortest_period_s =
+        std::min(grid.shortest_period_s, shortest_mode_in_intervals * record.mean_interval_s());
     grid.largest_kpa = std::max(grid.largest_kpa, record.largest_kpa);
     grid.span_mm = std::max(grid.span_mm, record.span_mm);
     longest_s = std::max(longest_s, record.length_s());
@@ -326,7 +330,6 @@ StructureGrid grid_for(const std::vector<Record>& records) {
        tau *= ladder_ratio)
     grid.ladder_s.push_back(tau);
   grid.slow_from_s = longest_s / 10;
-  grid.shortest_period_s = shortest_mode_in_intervals * shortest_interval_s;
   grid.hinges_kpa = {0.25 * grid.largest_kpa, 0.5 * grid.largest_kpa, 0.75 * grid.largest_kpa};
   for (double tau = 0.25 * grid.time_unit_s; tau < longest_s && grid.hinge_ladder_s.size() < 5; tau *= 5)
     grid.hinge_ladder_s.push_back(tau);
@@ -341,13 +344,16 @@ FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure
   double best = std::numeric_limits<double>::infinity();
   std::vector<NonlinearNumbers> starts = near != nullptr ? std::vector{*near} : starts_for(records, grid);
   if (structure.rate_limit) starts = with_rate_limits(starts, grid);
+  for (NonlinearNumbers& start : starts) {
+    for (std::size_t r = start.jumped_from_kpa.size(); structure.linear && r < records.size(); ++r)
+      start.jumped_from_kpa.push_back(records[r].drive_kpa.front());
+  }
   if (const std::size_t modes = starts.front().modes.size(); modes < structure.modes) {
-    NonlinearNumbers fewer = starts.front();
-    if (modes + 1 < structure.modes) {
-      BaseStructure simpler = structure;
-      --simpler.modes;
-      fewer = fit_form(records, simpler, grid, options, near).numbers;
-    }
+    BaseStructure simpler = structure;
+    --simpler.modes;
+    const bool is_next = modes == simpler.modes;
+    const NonlinearNumbers fewer =
+        is_next ? starts.front() : fit_form(records, simpler, grid, options, near).numbers;
     starts = starts_of_next_mode(few, structure, grid, fewer, options);
   }
   std::vector<Descent<Search::State>> runs(starts.size());
@@ -355,6 +361,7 @@ FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure
     NonlinearNumbers start = starts[i];
     if (!structure.delay) start.delay_s = 0;
     if (!structure.lag) start.filling_s = start.venting_s = 0;
+    if (!structure.linear) start.jumped_from_kpa.clear();
     if (structure.second_lag && start.second_s == 0) start.second_s = start.filling_s / 2;
     Search look(few, structure, grid, options);
     runs[i] = look.run(start);

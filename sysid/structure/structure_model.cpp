@@ -132,6 +132,16 @@ class Builder {
   model::Model model_;
 };
 
+/// Duration of a jump of the pressure at the first sample [s].
+constexpr double jump_s = 1e-6;
+
+/// Sets a start at rest at `from_kpa` with a jump to `first_kpa`.
+void jump(StartState& start, double from_kpa, double first_kpa) {
+  if (from_kpa == first_kpa) return;
+  (from_kpa < first_kpa ? start.valley_before_kpa : start.peak_before_kpa) = from_kpa;
+  start.arrival_kpa_per_s = (first_kpa - from_kpa) / jump_s;
+}
+
 }  // namespace
 
 FitPoint point_of(const FittedStructure& fit, const std::vector<Record>& records, Drive drive) {
@@ -141,7 +151,10 @@ FitPoint point_of(const FittedStructure& fit, const std::vector<Record>& records
   for (std::size_t r = 0; r < records.size(); ++r) {
     StartState start;
     if (layout.offset(r) >= 0) start.offset_mm = fit.weights(layout.offset(r));
-    if (records[r].start_unknown) start.peak_before_kpa = fit.numbers.peak_before_kpa[r];
+    if (fit.structure.linear && !fit.numbers.jumped_from_kpa.empty())
+      jump(start, fit.numbers.jumped_from_kpa[r], records[r].drive_kpa.front());
+    else if (records[r].start_unknown)
+      start.peak_before_kpa = fit.numbers.peak_before_kpa[r];
     for (std::size_t b = 0; layout.unsettled(r) >= 0 && b < layout.branches(); ++b)
       start.unsettled_mm.push_back(fit.weights(layout.unsettled(r) + static_cast<Eigen::Index>(b)));
     point.starts.push_back(std::move(start));

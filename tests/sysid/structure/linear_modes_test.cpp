@@ -9,6 +9,7 @@
 #include "model/chain.h"
 #include "model/named.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_choice.h"
 #include "sysid/structure/structure_judge.h"
 #include "sysid/structure/structure_model.h"
@@ -19,13 +20,17 @@ namespace {
 constexpr double noise_mm = 0.02;
 
 model::Model with_modes(std::vector<double> values) {
-  const model::Model delayed = model::with_block({}, {model::block_type<model::TransportDelay>(), {0.06}});
+  const model::Model delayed = model::with_block({}, {model::block_type<model::TransportDelay>(), {0.07}});
   return model::with_block(delayed, {model::block_type<model::LinearModes>(), std::move(values)});
 }
 
 /// Returns a log of 24 s with pressures between 0 and 60 kPa. Each pressure is held for 0.2 to 1 s. The
 /// readings are the prediction of the model plus noise.
-Record random_steps(const model::Model& model, unsigned seed) {
+/// @param skipped  number of samples at the beginning that the log does not contain. If it is not 0, each
+/// pressure jumps at its sample.
+Record random_steps(const model::Model& model, unsigned seed, std::ptrdiff_t skipped = 0) {
+  RecordOptions options;
+  options.held = skipped > 0;
   std::mt19937 generator(seed);
   std::normal_distribution<double> noise(0, noise_mm);
   Log log;
@@ -41,9 +46,11 @@ Record random_steps(const model::Model& model, unsigned seed) {
     log.pressure_command_kpa.push_back(level_kpa);
   }
   log.displacement_mm.assign(log.size(), 0);
-  log.displacement_mm = predict(model, make_records({log}, {})[0], {});
+  log.displacement_mm = predict(model, make_records({log}, options)[0], {});
   for (double& y : log.displacement_mm) y += noise(generator);
-  return make_records({log}, {})[0];
+  for (auto* column : {&log.time_s, &log.pressure_command_kpa, &log.displacement_mm})
+    column->erase(column->begin(), column->begin() + skipped);
+  return make_records({log}, options)[0];
 }
 
 StructureTrial chosen_for(const std::vector<Record>& records) {
@@ -91,6 +98,21 @@ TEST(LinearModes, ANegativeGainIsFound) {
   EXPECT_NEAR(static_gain(found.point.model), -0.25, 0.01);
 }
 
+// The log begins at the first step, so the mode is not at rest at the first pressure.
+TEST(LinearModes, AStartDuringTheMotionIsEstimated) {
+  const model::Model truth = with_modes({0, 1.5, 0.05, 0.25, 0});
+  const std::vector<Record> records{random_steps(truth, 5, 25)};
+  ASSERT_GT(records[0].drive_kpa.front(), 10);
+  const StructureTrial found = chosen_for(records);
+  EXPECT_TRUE(found.structure.linear) << description_of(found.structure);
+  EXPECT_LT(found.rmse_mm, 1.1 * noise_mm);
+  EXPECT_NEAR(rmse_of(found.point.model, found.point.starts, records), found.rmse_mm, 2e-4);
+  FitSpace space(found.point.model, records, free_numbers(found.point.model));
+  space.hold_arrivals(found.point.starts);
+  const FitPoint again = space.point(space.z(found.point));
+  EXPECT_NEAR(rmse_of(again.model, again.starts, records), found.rmse_mm, 1e-3);
+}
+
 TEST(LinearModes, TheFastTestFindsWhatTheStructureLacks) {
   const std::vector<Record> records{random_steps(with_modes({0.3, 1.2, 0.1, -0.1, 0.2}), 4)};
   const StructureChoiceOptions options;
@@ -103,7 +125,9 @@ TEST(LinearModes, TheFastTestFindsWhatTheStructureLacks) {
                                .characteristic = false,
                                .modes = 1,
                                .linear = true};
-  EXPECT_FALSE(judge.lacks_linear_dynamics(judge.judge_near(extended, 1e-5, still.numbers)));
+  const StructureTrial complete = judge.judge_near(extended, 1e-5, still.numbers);
+  EXPECT_LT(complete.rmse_mm, 1.1 * noise_mm);
+  EXPECT_FALSE(judge.lacks_linear_dynamics(complete));
 }
 
 TEST(LinearModes, TheColumnsOfAStructureAreWhatTheBlockDoes) {
