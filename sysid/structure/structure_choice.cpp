@@ -165,6 +165,7 @@ void offer_linear_modes(const StructureJudge& judge, const StructureChoiceOption
                         StructureChoice& choice) {
   if (options.progress) options.progress("trying linear modes");
   const std::vector<StructureTrial>& trials = choice.trials;
+  if (judge.is_noise(trials[choice.chosen])) return;
   StructureTrial still = trials[choice.chosen];
   if (still.structure.published)
     still = *std::find_if(trials.begin(), trials.end(),

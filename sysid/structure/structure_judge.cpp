@@ -1,6 +1,8 @@
 #include "sysid/structure/structure_judge.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "sysid/identification/combinations.h"
@@ -78,6 +80,13 @@ StructureTrial StructureJudge::judge_regulated(BaseStructure structure, const St
   structure.regulator = true;
   structure.second_lag = structure.rate_limit = false;
   return judge_near(structure, lagging.ridge, with_usual_regulator(lagging.numbers, grid_));
+}
+
+bool StructureJudge::is_noise(const StructureTrial& trial) const {
+  constexpr double most = 1.1;
+  double noise_mm = std::numeric_limits<double>::infinity();
+  for (const Record& record : records_) noise_mm = std::min(noise_mm, fast_noise_mm(record));
+  return trial.heldout_rmse_mm <= most * noise_mm;
 }
 
 bool StructureJudge::lacks_linear_dynamics(const StructureTrial& trial) const {

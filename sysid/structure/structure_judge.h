@@ -45,6 +45,9 @@ class StructureJudge {
   /// Evaluates a structure with a regulator in place of the lag. The fit starts at the parameters of the
   /// trial with the lag.
   [[nodiscard]] StructureTrial judge_regulated(BaseStructure structure, const StructureTrial& lagging) const;
+  /// Returns true if the held-out error of a trial is at most 1.1 times the noise of the readings. No further
+  /// component can then reduce it significantly.
+  [[nodiscard]] bool is_noise(const StructureTrial& trial) const;
   /// Returns the result of lacks_linear_dynamics() for a trial.
   [[nodiscard]] bool lacks_linear_dynamics(const StructureTrial& trial) const;
   /// Evaluates a trial with an additional resonance. The member `numbers` keeps the values of the trial

@@ -119,6 +119,7 @@ TEST(LinearModes, TheFastTestFindsWhatTheStructureLacks) {
   const StructureJudge judge(records, options);
   const StructureTrial still = judge.judge(BaseStructure{.characteristic = false}, 1e-5);
   EXPECT_TRUE(judge.lacks_linear_dynamics(still));
+  EXPECT_FALSE(judge.is_noise(still));
   const BaseStructure extended{.hysteretic = false,
                                .lag = false,
                                .two_way = false,
@@ -128,6 +129,7 @@ TEST(LinearModes, TheFastTestFindsWhatTheStructureLacks) {
   const StructureTrial complete = judge.judge_near(extended, 1e-5, still.numbers);
   EXPECT_LT(complete.rmse_mm, 1.1 * noise_mm);
   EXPECT_FALSE(judge.lacks_linear_dynamics(complete));
+  EXPECT_TRUE(judge.is_noise(complete));
 }
 
 TEST(LinearModes, TheColumnsOfAStructureAreWhatTheBlockDoes) {
