@@ -177,24 +177,27 @@ void choose(Base& base, const std::vector<Candidate>& all, const std::vector<Rec
                                                  base.bin_s, base.largest_kpa, left, options.seed);
     for (std::size_t i = 0; i < group.size(); ++i) fits[group[i] * kinds.size() + k] = std::move(own[i]);
   });
+  std::vector<HealthyModel> models;
+  std::size_t best = 0;
   for (std::size_t c = 0; c < all.size(); ++c) {
     for (std::size_t k = 0; k < kinds.size(); ++k) {
       FittedFilters& filters = fits[c * kinds.size() + k];
       if (!std::isfinite(filters.left_mm)) continue;
-      const bool is_first = !std::isfinite(base.left_mm);
-      if (!is_first &&
-          !is_better(compare(losses_of(base.left, filters.left, base.units, base.bin_s), 0, options.seed)))
-        continue;
-      base.model = fitted[c].model;
-      base.regulator = all[c].regulator;
-      base.description = all[c].description;
-      base.kind = kinds[k];
-      base.filter_weights = std::move(filters.weights);
-      base.left_mm = filters.left_mm;
-      base.left = std::move(filters.left);
+      models.push_back({all[c].description, fitted[c].model, kinds[k], all[c].regulator,
+                        std::move(filters.weights), filters.left_mm, std::move(filters.left)});
+      if (is_better(compare(losses_of(models[best].left, models.back().left, base.units, base.bin_s), 0,
+                            options.seed)))
+        best = models.size() - 1;
     }
     if (options.progress) options.progress(all[c].description);
   }
+  if (models.empty()) return;
+  static_cast<HealthyModel&>(base) = std::move(models[best]);
+  models.erase(models.begin() + static_cast<std::ptrdiff_t>(best));
+  std::erase_if(models, [&](const HealthyModel& each) {
+    return each.left_mm > limits::comparable_ratio * base.left_mm;
+  });
+  base.alternatives = std::move(models);
 }
 
 std::size_t order_for(const Base& base) {
@@ -276,7 +279,6 @@ Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive, co
     base.noise_mm = std::max(base.noise_mm, fast_noise_mm(record));
   }
   base.units = Units(records);
-  base.left_mm = std::numeric_limits<double>::infinity();
   choose(base, candidates(records, base, options), records, options);
   Binned peak_rate;
   for (const Record& record : records) peak_rate.push_back(peak_rate_of(record, base.bin_s));

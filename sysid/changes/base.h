@@ -32,21 +32,27 @@ enum class Judged { displacement, pressure };
   return judged == Judged::pressure ? "kPa" : std::string(model::name_of(output_unit));
 }
 
-struct Base {
-  Judged judged = Judged::displacement;
-  Drive drive = Drive::command;
-  std::string description;  ///< description of the selected model
+/// A model of the healthy finger: a structure with an optional regulator and an optional filter bank.
+struct HealthyModel {
+  std::string description;  ///< description of the model
   /// Model of the finger; if it has no blocks, the baseline consists of a regulator or a filter bank only.
   model::Model model;
   FilterKind kind = FilterKind::finger;
   std::optional<Regulator> regulator;  ///< regulator between the command and the model; empty: none
-  double largest_kpa = 0;
   Eigen::VectorXd filter_weights;
+  double left_mm = 0;  ///< RMS residual of left-out units after subtraction of the mean of each unit
+  Binned left;         ///< residual of each unit, predicted by a fit to the other units
+};
+
+/// The baseline model: the selected model of the healthy finger and its uncertainty.
+struct Base : HealthyModel {
+  Judged judged = Judged::displacement;
+  Drive drive = Drive::command;
+  double largest_kpa = 0;
   double temperature_c = 20;  ///< mean temperature in the healthy logs
   double gain_per_c = 0;      ///< temperature coefficient of the gain in the healthy logs
   double noise_mm = 0;        ///< standard deviation of the noise between consecutive readings
   Units units;                ///< division of the healthy records into units for cross-validation
-  double left_mm = 0;         ///< RMS residual of left-out units after subtraction of the mean of each unit
   double span_mm = 0;
   double gain_spread = 0;  ///< relative spread of the gain between units of the healthy logs
   double zero_mm = 0;      ///< mean difference between the healthy readings and the predictions
@@ -54,7 +60,9 @@ struct Base {
   double bin_s = 0.05;
   Whitener whitener;
   std::vector<Record> records;  ///< thinned healthy records
-  Binned left;                  ///< residual of each unit, predicted by a fit to the other units
+  /// Other models that predict the left-out units about equally well. Where their predictions differ from
+  /// those of the selected model, the healthy logs do not determine the response of the finger.
+  std::vector<HealthyModel> alternatives;
 };
 
 struct BaseOptions {

@@ -81,6 +81,8 @@ struct JudgedChange {
   std::size_t healthy_runs = 0;
   double healthy_mm = 0;  ///< RMS error of the baseline model in left-out healthy units
   double allowed_mm = 0;  ///< largest RMS error that is expected in another healthy run
+  /// Factor by which an input unlike the healthy inputs increases the permitted mean square error, >= 1.
+  double input_factor = 1;
   /// RMS error of the baseline model in the later logs, after a fit of zero and gain.
   double later_mm = 0;
   double explained_mm = 0;  ///< RMS error in the later logs if the model includes the causes

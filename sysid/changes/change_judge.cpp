@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/numbers.h"
 #include "base/statistics.h"
 #include "sysid/changes/base_prediction.h"
 #include "sysid/changes/causes_without_block.h"
@@ -14,6 +15,7 @@
 #include "sysid/changes/change_size.h"
 #include "sysid/changes/filter_fit.h"
 #include "sysid/changes/healthy_runs.h"
+#include "sysid/changes/unfamiliar_input.h"
 #include "sysid/diagnosis/causes/ageing.h"
 #include "sysid/diagnosis/causes/thermal_gain.h"
 #include "sysid/evidence/veto.h"
@@ -62,6 +64,13 @@ std::string other_start(const std::string& record) {
          "log is not evaluated. Record a healthy log that begins in the same way";
 }
 
+std::string unfamiliar_input(double factor) {
+  return "The input of the later logs is unlike the inputs of the healthy logs: models that predict the "
+         "healthy logs equally well disagree about the later logs. The permitted error and the tolerances "
+         "are therefore larger by a factor of up to " +
+         significant(factor, 2) + " (mean square). Record a healthy log with such an input";
+}
+
 /// Evaluates the displacement or the pressure: fits the baseline model to the healthy records and finds the
 /// causes of a change in the later records.
 class Judge {
@@ -70,11 +79,12 @@ class Judge {
       : base_(std::move(base)), options_(options), pressure_is_judged_(pressure_is_judged) {}
 
   void judge(const std::vector<Record>& later, ChangeDiagnosis& diagnosis) {
+    const Disagreement more = added_disagreement(base_, later);
     learn_temperature();
     say("search for changes in each left-out healthy run");
     healthy_ = healthy_fits(base_, pressure_is_judged_, options_.threads);
-    spread_ = RunSpread(healthy_, base_.units.runs());
-    const Tolerance tolerance = tolerance_of(healthy_, base_.units.runs());
+    spread_ = RunSpread(healthy_, base_.units.runs(), more);
+    const Tolerance tolerance = tolerance_of(healthy_, base_.units.runs(), more.loss);
     const std::vector<std::vector<double>> residuals = residuals_of(base_, later);
     const LaterReadings readings = readings_of(base_, later, residuals);
     const std::vector<Effect> effects =
@@ -86,6 +96,9 @@ class Judge {
     judged.noise_mm = base_.noise_mm;
     judged.healthy_mm = spread_.usual_rms();
     judged.allowed_mm = spread_.allowed_rms();
+    judged.input_factor = spread_.input_factor();
+    if (judged.input_factor > limits::unfamiliar_factor)
+      diagnosis.warnings.push_back(unfamiliar_input(judged.input_factor));
     const std::vector<std::string> other_starts = readings.other_starts();
     for (const std::string& name : other_starts) diagnosis.warnings.push_back(other_start(name));
     std::vector<FittedEffect> found;

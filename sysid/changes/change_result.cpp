@@ -81,6 +81,8 @@ Fields fields_of(const JudgedChange& judged) {
       {"healthy_runs", "healthy logs", judged.healthy_runs},
       {"healthy_heldout_rms", "error of left-out healthy runs", number(judged.healthy_mm, 3, unit)},
       {"allowed_rms", "largest error that another healthy run may have", number(judged.allowed_mm, 3, unit)},
+      {"input_factor", "increase of the permitted mean square error by an unfamiliar input",
+       number(judged.input_factor, 3)},
       {"later_rms", "error of the later logs", number(judged.later_mm, 3, unit)},
       {"explained_rms", "with the causes", number(judged.explained_mm, 3, unit)},
       {"whitened_loss", loss},

@@ -24,23 +24,25 @@ std::vector<HealthyFits> healthy_fits(const Base& base, bool pressure_is_judged,
   return units;
 }
 
-Tolerance tolerance_of(const std::vector<HealthyFits>& healthy, std::size_t runs) {
+Tolerance tolerance_of(const std::vector<HealthyFits>& healthy, std::size_t runs, double more) {
   std::vector<NullGains> gains;
   for (const HealthyFits& unit : healthy) {
     gains.emplace_back();
     for (const ScoredEffect& each : unit.ranked) gains.back()[each.fit.fitted.effect.id] = each.gain;
   }
-  return {gains, runs};
+  return {gains, runs, more};
 }
 
-RunSpread::RunSpread(const std::vector<HealthyFits>& healthy, std::size_t runs)
-    : factor_(run_to_run_factor(runs)), are_runs_(runs > 1) {
+RunSpread::RunSpread(const std::vector<HealthyFits>& healthy, std::size_t runs, const Disagreement& more)
+    : factor_(run_to_run_factor(runs)), more_(more), are_runs_(runs > 1) {
   for (const HealthyFits& unit : healthy) {
     const double rms = unit.readings.plain_rms({});
     mean_square_ += square(rms) / static_cast<double>(healthy.size());
     worst_rms_ = std::max(worst_rms_, rms);
     worst_loss_ = std::max(worst_loss_, per_bin(unit.readings, unit.readings.white({})));
   }
+  worst_rms_ = std::sqrt(square(worst_rms_) + more.mean_square);
+  worst_loss_ += more.loss;
 }
 
 }  // namespace softgrip::sysid

@@ -1,6 +1,7 @@
 #pragma once
 // Errors and fits in the healthy runs. The search for a change compares the later readings with them.
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -14,6 +15,13 @@
 
 namespace softgrip::sysid {
 
+/// Mean squared difference between the predictions of the baseline model and those of an alternative model. A
+/// difference of the zero offset and a small difference of the gain are subtracted, as for a change.
+struct Disagreement {
+  double mean_square = 0;  ///< without whitening [mm^2]
+  double loss = 0;         ///< of the whitened rows, per row
+};
+
 /// Returns the mean square of whitened readings over the bins; about 1 for healthy readings.
 [[nodiscard]] double per_bin(const LaterReadings& readings, const Eigen::VectorXd& white);
 
@@ -22,21 +30,29 @@ namespace softgrip::sysid {
                                                     unsigned threads);
 
 /// Returns the tolerance of the search from the error reductions in the healthy units.
-[[nodiscard]] Tolerance tolerance_of(const std::vector<HealthyFits>& healthy, std::size_t runs);
+/// @param more  increase of the expected loss per row that an unfamiliar input causes.
+[[nodiscard]] Tolerance tolerance_of(const std::vector<HealthyFits>& healthy, std::size_t runs,
+                                     double more = 0);
 
 /// Errors of healthy units, each predicted by a fit to all other healthy units, and the largest permitted
 /// error of another healthy run.
 class RunSpread {
  public:
   RunSpread() = default;
-  RunSpread(const std::vector<HealthyFits>& healthy, std::size_t runs);
+  /// @param more  increase of the expected squared error that an unfamiliar input causes.
+  RunSpread(const std::vector<HealthyFits>& healthy, std::size_t runs, const Disagreement& more = {});
   [[nodiscard]] double usual_rms() const { return std::sqrt(mean_square_); }
-  [[nodiscard]] double allowed_rms() const { return std::sqrt(factor_ * mean_square_); }
+  [[nodiscard]] double allowed_rms() const { return std::sqrt(factor_ * (mean_square_ + more_.mean_square)); }
+  /// Returns the factor by which an unfamiliar input increases the permitted mean square error. It is the
+  /// larger one of the factors with and without whitening, >= 1.
+  [[nodiscard]] double input_factor() const {
+    return 1 + std::max(more_.loss, mean_square_ > 0 ? more_.mean_square / mean_square_ : 0.0);
+  }
   /// Returns true if the error exceeds the largest error that is expected in another healthy run.
   /// @param rms  RMS error of the readings without whitening.
   /// @param loss  mean square of the whitened readings; 1 for healthy units.
   [[nodiscard]] bool is_exceeded(double rms, double loss) const {
-    return rms > allowed_rms() || loss > factor_;
+    return rms > allowed_rms() || loss > factor_ * (1 + more_.loss);
   }
   /// Returns true if the error is large enough for a search for a change. If there are several healthy runs,
   /// the tolerance of the search is known. The error then only has to exceed that of each healthy run.
@@ -46,6 +62,7 @@ class RunSpread {
 
  private:
   double factor_ = 1, mean_square_ = 0, worst_rms_ = 0, worst_loss_ = 0;
+  Disagreement more_;
   bool are_runs_ = false;
 };
 

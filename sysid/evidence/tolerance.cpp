@@ -14,8 +14,8 @@ double run_to_run_factor(std::size_t runs) {
   return f_quantile(limits::probability, directions, directions * (n - 1)) * (1 - 1 / (n * n));
 }
 
-Tolerance::Tolerance(const std::vector<NullGains>& units, std::size_t runs)
-    : factor_(run_to_run_factor(runs)) {
+Tolerance::Tolerance(const std::vector<NullGains>& units, std::size_t runs, double more)
+    : factor_(run_to_run_factor(runs)), more_(more) {
   for (const NullGains& unit : units) {
     for (const auto& [cause, gain] : unit)
       usual_[cause] += std::max(gain, 0.0) / static_cast<double>(units.size());
@@ -29,7 +29,7 @@ double Tolerance::usual(std::string_view cause) const {
 }
 
 double Tolerance::of(std::string_view cause) const {
-  return factor_ * std::max(usual(cause), average_);
+  return factor_ * (std::max(usual(cause), average_) + more_);
 }
 
 }  // namespace softgrip::sysid

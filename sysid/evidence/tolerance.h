@@ -28,7 +28,8 @@ class Tolerance {
   Tolerance() = default;
   /// @param units  error reductions in each unit; at least one unit. @param runs  number of runs in all units
   /// together.
-  Tolerance(const std::vector<NullGains>& units, std::size_t runs);
+  /// @param more  increase of the expected loss per row because of an unfamiliar input.
+  Tolerance(const std::vector<NullGains>& units, std::size_t runs, double more = 0);
 
   /// Returns the mean error reduction by a cause in units without a change, >= 0.
   [[nodiscard]] double usual(std::string_view cause) const;
@@ -38,7 +39,7 @@ class Tolerance {
 
  private:
   NullGains usual_;
-  double average_ = 0, factor_ = 1;
+  double average_ = 0, factor_ = 1, more_ = 0;
 };
 
 }  // namespace softgrip::sysid

@@ -59,6 +59,8 @@ inline constexpr double form_error_share = 0.05;
 inline constexpr double equal_error_share = 0.1;
 /// Candidates are compared further while their error is at most this multiple of the smallest error.
 inline constexpr double comparable_ratio = 1.25;
+/// An input is unfamiliar if it increases the permitted mean square error by more than this factor.
+inline constexpr double unfamiliar_factor = 1 + equal_error_share;
 /// Smallest share of the remaining error that a hypothesis must explain to count as an explanation.
 inline constexpr double least_explained_share = 0.2;
 /// Smallest share of a quantity to which a hypothesis applies that counts as most of this quantity.

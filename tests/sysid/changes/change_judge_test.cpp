@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sysid/changes/unfamiliar_input.h"
 #include "tests/sysid/changes/pressure_base.h"
 
 namespace softgrip::sysid::change_judge_test {
@@ -12,10 +13,24 @@ namespace {
 class ChangeJudge : public test::PressureBase {
  protected:
   [[nodiscard]] ChangeDiagnosis judged(const test::Finger& later) const {
+    return judged_logs(test::logs_of(later, 5, true));
+  }
+  [[nodiscard]] ChangeDiagnosis judged_logs(const std::vector<Log>& later) const {
     ChangeDiagnosis diagnosis;
     const ChangeOptions options;
-    judge_change(base_, true, pressure_records(test::logs_of(later, 5, true), false), options, diagnosis);
+    judge_change(base_, true, pressure_records(later, false), options, diagnosis);
     return diagnosis;
+  }
+
+  /// Replaces the baseline model by a model with the same predictions for the slow ramps of the healthy logs
+  /// but wrong predictions for steps.
+  void make_wrong_for_steps() {
+    // Two columns of the filter bank limit the difference between the command and the lagged command to 13 %
+    // and 33 % of the largest pressure. They differ only if the command changes fast.
+    constexpr Eigen::Index lags = 9, narrow = 10 * lags, wide = 11 * lags;
+    ASSERT_GT(base_.filter_weights.size(), wide);
+    base_.filter_weights(narrow) -= 0.2;
+    base_.filter_weights(wide) += 0.2;
   }
 };
 
@@ -32,6 +47,63 @@ TEST_F(ChangeJudge, FindsADelay) {
   ASSERT_EQ(diagnosis.causes.size(), 1U);
   EXPECT_EQ(diagnosis.causes.front().id, "transport_delay");
   EXPECT_EQ(diagnosis.causes.front().judged, Judged::pressure);
+}
+
+/// Returns logs with steps of the command. The pressure is the prediction of `base` with noise.
+std::vector<Log> logs_with_steps(const Base& base) {
+  std::vector<Log> logs = test::logs_of({}, 5, true);
+  for (Log& log : logs) {
+    std::vector<double> noise_kpa = log.pressure_kpa;
+    for (std::size_t i = 0; i < log.size(); ++i) {
+      noise_kpa[i] -= log.pressure_command_kpa[i];
+      log.pressure_command_kpa[i] = i / 50 % 2 == 0 ? 0 : 50;
+    }
+    const std::vector<double> predicted_kpa =
+        predict_base(base, pressure_records({log}, false).front(), Extension{});
+    for (std::size_t i = 0; i < log.size(); ++i) log.pressure_kpa[i] = predicted_kpa[i] + noise_kpa[i];
+  }
+  return logs;
+}
+
+/// A model that predicts the healthy logs equally well disagrees about the steps, so the error of the steps
+/// is no evidence of a change.
+TEST_F(ChangeJudge, AnErrorUnderAnUnfamiliarInputIsNoChange) {
+  const HealthyModel right = base_;
+  const std::vector<Log> steps = logs_with_steps(base_);
+  make_wrong_for_steps();
+  base_.alternatives = {};
+  EXPECT_TRUE(judged_logs(steps).readings.front().left_over || !judged_logs(steps).causes.empty());
+  base_.alternatives = {right};
+  const ChangeDiagnosis diagnosis = judged_logs(steps);
+  EXPECT_TRUE(diagnosis.causes.empty()) << change_sentence(diagnosis);
+  EXPECT_FALSE(diagnosis.readings.front().left_over);
+  EXPECT_GT(diagnosis.readings.front().input_factor, 2);
+  ASSERT_EQ(diagnosis.warnings.size(), 1U);
+  EXPECT_NE(diagnosis.warnings.front().find("unlike the inputs of the healthy logs"), std::string::npos);
+}
+
+/// The permitted error for an input like the healthy inputs does not depend on the alternatives to the model.
+TEST_F(ChangeJudge, AChangeUnderAFamiliarInputIsFoundDespiteAlternatives) {
+  const HealthyModel right = base_;
+  base_.alternatives = {};
+  const double allowed_mm = judged({.delay_s = 0.06}).readings.front().allowed_mm;
+  make_wrong_for_steps();
+  base_.alternatives = {right};
+  const ChangeDiagnosis diagnosis = judged({.delay_s = 0.06});
+  ASSERT_EQ(diagnosis.causes.size(), 1U) << change_sentence(diagnosis);
+  EXPECT_EQ(diagnosis.causes.front().id, "transport_delay");
+  EXPECT_NEAR(diagnosis.readings.front().allowed_mm, allowed_mm, 1e-3 * allowed_mm);
+  EXPECT_TRUE(diagnosis.warnings.empty());
+}
+
+TEST_F(ChangeJudge, ModelsDisagreeMoreOnlyUnderAnUnfamiliarInput) {
+  base_.alternatives = {base_};
+  const std::vector<Record> steps = pressure_records(logs_with_steps(base_), false);
+  const std::vector<Record> ramps = pressure_records(test::logs_of({}, 5, true), false);
+  EXPECT_EQ(added_disagreement(base_, steps).loss, 0);
+  make_wrong_for_steps();
+  EXPECT_GT(added_disagreement(base_, steps).loss, 1);
+  EXPECT_LT(added_disagreement(base_, ramps).loss, 1e-3);
 }
 
 }  // namespace

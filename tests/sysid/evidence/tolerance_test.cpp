@@ -63,5 +63,10 @@ TEST(Tolerance, ACauseThatImprovesNothingHealthyIsComparedWithTheAverageCause) {
   EXPECT_DOUBLE_EQ(tolerance.of("a cause that was not searched"), 0.15 * run_to_run_factor(2));
 }
 
+TEST(Tolerance, GrowsByTheErrorOfAnUnfamiliarInput) {
+  const std::vector<NullGains> units{{{"ageing", 0.04}}, {{"ageing", 0.02}}};
+  EXPECT_NEAR(Tolerance(units, 2, 0.5).of("ageing"), 0.53 * run_to_run_factor(2), 1e-12);
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::tolerance_test

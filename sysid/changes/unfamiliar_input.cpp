@@ -1,0 +1,62 @@
+#include "sysid/changes/unfamiliar_input.h"
+
+#include <algorithm>
+
+#include "base/statistics.h"
+#include "sysid/changes/base_prediction.h"
+
+namespace softgrip::sysid {
+namespace {
+
+using Residuals = std::vector<std::vector<double>>;
+
+Residuals difference(Residuals from, const Residuals& what) {
+  for (std::size_t r = 0; r < from.size(); ++r) {
+    for (std::size_t i = 0; i < from[r].size(); ++i) from[r][i] -= what[r][i];
+  }
+  return from;
+}
+
+/// @param differing  readings whose residual is the difference between two predictions.
+Disagreement disagreement(const LaterReadings& differing) {
+  return {square(differing.plain_rms({})), per_bin(differing, differing.white({}))};
+}
+
+Base with_model(Base base, const HealthyModel& model) {
+  static_cast<HealthyModel&>(base) = model;
+  return base;
+}
+
+/// Returns the largest disagreement that is expected about another healthy run, from the mean disagreement
+/// about the healthy units.
+Disagreement expected_disagreement(const Base& base, const HealthyModel& other) {
+  const LaterReadings all(base, base.records, difference(base.left, other.left));
+  const double share = run_to_run_factor(base.units.runs()) /
+                       static_cast<double>(std::max<std::size_t>(1, base.units.count()));
+  Disagreement expected;
+  for (std::size_t unit = 0; unit < base.units.count(); ++unit) {
+    const LaterReadings own = all.only(base.units, unit);
+    if (own.records().empty()) continue;
+    const auto [mean_square, loss] = disagreement(own);
+    expected.mean_square += share * mean_square;
+    expected.loss += share * loss;
+  }
+  return expected;
+}
+
+}  // namespace
+
+Disagreement added_disagreement(const Base& base, const std::vector<Record>& later) {
+  const Residuals own = residuals_of(base, later);
+  Disagreement most;
+  for (const HealthyModel& other : base.alternatives) {
+    const Disagreement healthy = expected_disagreement(base, other);
+    const Residuals differing = difference(own, residuals_of(with_model(base, other), later));
+    const Disagreement now = disagreement(readings_of(base, later, differing));
+    most.mean_square = std::max(most.mean_square, now.mean_square - healthy.mean_square);
+    most.loss = std::max(most.loss, now.loss - healthy.loss);
+  }
+  return most;
+}
+
+}  // namespace softgrip::sysid

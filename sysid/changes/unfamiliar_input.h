@@ -1,0 +1,19 @@
+#pragma once
+// Measures how much less the healthy logs determine the response to the input of the later logs. Models that
+// predict the healthy runs about equally well can give different predictions for an input unlike the healthy
+// ones. The predictions depend on the input and not on a change of the finger.
+
+#include <vector>
+
+#include "sysid/changes/base.h"
+#include "sysid/changes/healthy_runs.h"
+
+namespace softgrip::sysid {
+
+/// Returns the disagreement about the later records beyond the largest one that is expected about another
+/// healthy run (run_to_run_factor()). If there are several alternatives, the largest value is returned. It is
+/// zero for an input like the healthy inputs, so this input permits no larger error.
+/// @param later  later records at the full sampling rate.
+[[nodiscard]] Disagreement added_disagreement(const Base& base, const std::vector<Record>& later);
+
+}  // namespace softgrip::sysid
