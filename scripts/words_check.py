@@ -254,7 +254,7 @@ def cpp_texts(source):
     """Yields the texts of a C++ file: comment blocks, joined string literals, and code."""
     source = DIRECTIVE.sub(lambda m: " " * len(m.group(0)), source)
     comments, strings, texts, code, last = Joiner(COMMENT), Joiner(STRING), [], [], 0
-    previous_comment_line = -2
+    previous_line, previous_column = -2, None  # of the last comment; a comment alone in its line has column None
     for token in TOKEN.finditer(source):
         body, line = token.group(0), source.count("\n", 0, token.start()) + 1
         between = source[last:token.start()]
@@ -262,14 +262,20 @@ def cpp_texts(source):
         last = token.end()
         if body.startswith(("//", "/*")):
             texts += strings.take()
-            alone = not source[source.rfind("\n", 0, token.start()) + 1:token.start()].strip()
-            if not (alone and line == previous_comment_line + 1):
+            line_start = source.rfind("\n", 0, token.start()) + 1
+            alone = not source[line_start:token.start()].strip()
+            # A comment after code continues in the next line at the same column.
+            column = token.start() - line_start
+            continues = line == previous_line + 1 and previous_column in (None, column)
+            if not (alone and continues):
                 texts += comments.take()
             for k, row in enumerate(body.splitlines()):
-                row = re.sub(r"@(param|return|tparam)\b\s*\w*", ". ", MARKUP.sub("", row)).strip()
+                row = re.sub(r"@(param|return|tparam)\b\s*", ". ", MARKUP.sub("", row)).strip()
                 if row:
                     comments.add(row, line + k)
-            previous_comment_line = line + body.count("\n") if alone else -2
+            previous_line = line + body.count("\n")
+            if not (alone and continues):
+                previous_column = None if alone else column
         elif body.startswith("'"):
             continue
         else:
@@ -450,6 +456,9 @@ def self_test():
         wrong.append(f"joined strings: {found}")
     if [t.line(len(t.text) - 1) for t in joined if t.channel == STRING] != [2]:
         wrong.append("line of a joined string")
+    comments = [t.text for t in cpp_texts("int a;  ///< number\n        ///< of grips\n// another\n") if t.channel == COMMENT]
+    if comments != ["number of grips", "another"]:
+        wrong.append(f"joined comments: {comments}")
     rooms = [sentence.split(":")[0] for sentence in against_budgets({"a": 1, "b": 1, "c": 3}, {"a": 1, "c": 2, "d": 1})]
     if rooms != ["b", "c", "d"]:
         wrong.append(f"rooms that differ from their budgets: {rooms}")
