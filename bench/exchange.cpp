@@ -1,16 +1,16 @@
 // Compares the durations of an exchange over loopback for two clients: the client of this project, and
-// libmodbus. Both clients send the same requests to the same server. Blocks of exchanges of the two clients
-// alternate, and each client begins equally many rounds. The program prints percentiles of the durations of
-// each client.
+// libmodbus. Both clients send the same requests to the same server. Blocks of exchanges of one client
+// alternate with blocks of the other client. Each client begins half of the rounds. The program prints
+// percentiles of the durations of each client.
 //
 // An exchange takes longer if server and client run on different processors, because each request and each
 // response must then wake a processor. Without the second argument, the kernel chooses the processor of each
-// thread. The kernel often keeps this choice for many blocks. A comparison of p50 may then compare processors
-// and not clients. The columns "1 cpu" and "2 cpus" contain the medians of the exchanges on one and on two
-// processors. The argument "one" keeps all threads on one processor, and "two" keeps servers and clients on
-// different processors.
+// thread. The kernel often keeps this choice for many blocks. A difference between the medians (p50) may then
+// be a difference between processors and not between clients. The columns "1 cpu" and "2 cpus" contain the
+// medians of the exchanges on one and on two processors. The argument "one" keeps all threads on one
+// processor, and "two" keeps servers and clients on different processors.
 //
-//   build/release/bench/exchange_bench [exchanges, default 20000] [any|one|two]
+//   Usage: build/release/bench/exchange_bench [exchanges, default 20000] [any|one|two]
 
 #include <modbus/modbus.h>
 #include <netinet/in.h>

@@ -6,9 +6,9 @@
 // clock, which is fast to read but includes these interruptions.
 //
 // After these measurements, the program runs the whole daemon (board, control loop, bus, recorder and disk)
-// in virtual time. It measures the ratio of simulated time to elapsed time.
+// in virtual time. The program then measures the ratio of simulated time to elapsed time.
 //
-//   loop_tick [TICKS]
+//   Usage: loop_tick [TICKS]
 
 #include <algorithm>
 #include <cstdint>
@@ -118,8 +118,10 @@ Times time_ticks(double rate_hz, clockid_t clock, std::uint64_t ticks) {
 void print(double rate_hz, const char* name, clockid_t clock, std::uint64_t ticks) {
   const Times nothing = time_nothing(clock);
   const Times times = time_ticks(rate_hz, clock, ticks);
-  std::printf("%4.0f Hz  %-14s  p50 %6ld  p99 %6ld  p99.9 %6ld  max %8ld  (of it the clock: p50 %ld)\n",
-              rate_hz, name, times.at(0.5), times.at(0.99), times.at(0.999), times.at(1), nothing.at(0.5));
+  std::printf(
+      "%4.0f Hz  %-14s  p50 %6ld  p99 %6ld  p99.9 %6ld  max %8ld  (time to read the clock, included: p50 "
+      "%ld)\n",
+      rate_hz, name, times.at(0.5), times.at(0.99), times.at(0.999), times.at(1), nothing.at(0.5));
 }
 
 /// Prints the number of seconds of rig time that the daemon simulates and records per second of elapsed time.
@@ -146,7 +148,7 @@ void print_speed(double rate_hz) {
     bytes = std::filesystem::file_size(folder + "/run.csv");
     std::filesystem::remove_all(folder);
   }
-  std::printf("%4.0f Hz  virtual time, %lu MB recorded a run, %d runs\n", rate_hz,
+  std::printf("%4.0f Hz  virtual time, %lu MB recorded in each run, %d runs\n", rate_hz,
               static_cast<unsigned long>(bytes >> 20), runs);
   for (auto [name, factors] : {std::pair{"clock", by_clock}, std::pair{"processor time", by_processor}}) {
     std::sort(factors.begin(), factors.end());

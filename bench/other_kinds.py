@@ -108,8 +108,9 @@ def drives(rng, kind, change=None):
     return time_s, voltage, np.round(speed / 0.005) * 0.005
 
 
-# For each rig: the function, and the admissible causes of each change. A shifted clock equals a delay. Without a thermometer,
-# a gain that follows the temperature equals a permanent one. A lower resonance is a larger ratio of mass to stiffness.
+# For each rig: the function, and the admissible causes of each change. In the logs, a shifted clock looks like a delay.
+# Without a thermometer, a gain that follows the temperature looks like a permanent change of the gain. A lower resonance is
+# caused by a larger ratio of mass to stiffness.
 RIGS = {"dryer": (dryer, {"delay": ["transport_delay", "clock_offset"], "gain": ["ageing", "thermal_gain"]}),
         "exchanger": (exchanger, {"fouling": ["ageing", "thermal_gain"]}),
         "drives": (drives, {"slack": ["inertia"]})}

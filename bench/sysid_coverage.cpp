@@ -1,18 +1,18 @@
 // Measures how often the 95 % intervals of identified parameters cover the true values. The logs are
 // simulated with randomly changed models and with white or correlated noise.
 //
-//   bench_sysid_coverage [LOGS [RATE_HZ [FIRST_SEED]]]
+//   Usage: bench_sysid_coverage [LOGS [RATE_HZ [FIRST_SEED]]]
 //
 // Each fit uses one log of the signal tp1. Each true parameter deviates from the start value by 5 % (standard
 // deviation).
 //
 // The RMSE of a fit is smaller than the standard deviation of the added noise, because the fit follows a part
-// of the noise. The expected RMSE of a correct fit follows from H = J (J'J)^-1 J' and the correlation matrix
-// R of the noise, where J is the Jacobian of the fit. The expected sum of squared residuals is s^2 (n - tr(H
-// R)) for n samples and noise of standard deviation s. For white noise, tr(H R) is the number of parameters.
-// Correlated noise resembles the slow responses of the model, so the fit absorbs a larger part of correlated
-// noise. Therefore, the program prints two ratios: the RMSE divided by the added noise, and the RMSE divided
-// by the RMSE that is expected of a correct fit.
+// of the noise. The expected RMSE of a correct fit is computed from H = J (J'J)^-1 J' and the correlation
+// matrix R of the noise, where J is the Jacobian of the fit. The expected sum of squared residuals is s^2 (n
+// - tr(H R)) for n samples and noise of standard deviation s. For white noise, tr(H R) is the number of
+// parameters. Correlated noise resembles the slow responses of the model, so the fit absorbs a larger part of
+// correlated noise. Therefore, the program prints two ratios: the RMSE divided by the added noise, and the
+// RMSE divided by the RMSE that is expected of a correct fit.
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +57,7 @@ struct Trial {
   double expected_over_noise = 0;   ///< expected RMSE of a correct fit divided by the standard deviation of
                                     ///< the added noise
   double estimated_over_noise = 0;  ///< standard deviation of the noise that the fit estimated, divided by
-                                    ///< that of the added noise
+                                    ///< the standard deviation of the added noise
   bool failed = true;
 };
 

@@ -1,11 +1,13 @@
 #!/bin/bash
 # Fits the same three logs from the same start points with softgrip, with scipy's least_squares and with
-# Octave's lsqcurvefit, and prints the ratios. The last two use a compiled simulator that is as exact as softgrip's.
+# Octave's lsqcurvefit, and prints the ratios. The fits with scipy and
+# Octave use a compiled simulator that is as exact as softgrip's.
 #
 #   bench/sysid_peers.sh [BUILD_FOLDER [STARTS [PEER_STARTS [SAMPLES]]]]
 #
 # Needs the packages python3-scipy, octave, octave-optim, octave-dev (scripts/packages.txt, section bench).
-# The other programs take minutes for twenty starts. They use only the first PEER_STARTS starts if this number is given.
+# The fits with scipy and Octave take minutes for twenty starts. They use only the first PEER_STARTS starts if this
+# number is given.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 build=${1:-$here/../build/release}

@@ -1,7 +1,7 @@
 // Runs the fits of softgrip for the comparison in bench/sysid_peers.sh. Creates three logs and the start
 // points, fits the logs from each start point, and prints the durations of the fits.
 //
-//   sysid_starts FOLDER [STARTS [SAMPLES]]
+//   Usage: sysid_starts FOLDER [STARTS [SAMPLES]]
 //
 // The program writes log1.csv to log3.csv, starts.txt and ours.txt into FOLDER. starts.txt has one start
 // point per line: alpha beta gamma eta k1 c1 k2 c2. ours.txt contains the RMSE of the fit from each start

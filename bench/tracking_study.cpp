@@ -1,9 +1,9 @@
 // Measures the tracking accuracy on the simulated finger bench_twin and prints a table. The references are
 // sines of 13 ± 7 mm at 0.05, 0.1 and 0.2 Hz, the control rate is 200 Hz, and the sensor noise is 0.03 mm.
-// The parameters of the controller's model deviate by up to ±5 %. One search method finds the gains of all
-// schemes.
+// The parameters of the controller's model deviate from those of the simulated finger by up to ±5 %. One
+// search method finds the gains of all schemes.
 //
-//   tracking_study [--draws N] [--search-draws N] [--seed S] [--latency-ms L] [--quantised]
+//   Usage: tracking_study [--draws N] [--search-draws N] [--seed S] [--latency-ms L] [--quantised]
 //   [--max-sensitivity M]
 
 #include <algorithm>
@@ -221,7 +221,8 @@ int main(int argc, char** argv) {
   const model::Model twin = model_named("bench_twin");
   const model::Model published = model_named("zhang2025");
   std::printf(
-      "bench_twin, 13 ± 7 mm, 200 Hz, noise 0.03 mm%s, exchange %.1f ms; model off by ±5 %%: median [5 %%, "
+      "bench_twin, 13 ± 7 mm, 200 Hz, noise 0.03 mm%s, exchange %.1f ms; model errors of ±5 %%: median [5 "
+      "%%, "
       "95 %%] "
       "of %d draws, seed %llu; gains by one search on %d other draws, Ms <= %.2f\n",
       options.quantised ? ", quantised" : "", options.latency_ms, options.draws,

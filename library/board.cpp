@@ -29,8 +29,8 @@ bool is_valid(const SimulatedObject& object) noexcept {
   return std::isfinite(object.position) && object.yielding >= 0 && object.yielding <= 1;
 }
 
-/// The conversions between the public and the internal enumeration require that both have their enumerators
-/// in the same order.
+/// The conversions between the public and the internal enumeration require that both enumerations list their
+/// values in the same order.
 static_assert(static_cast<int>(BusStatus::closed_at_once) ==
               static_cast<int>(drivers::BusStatus::closed_at_once));
 static_assert(static_cast<int>(Validity::stale) == static_cast<int>(model::Validity::stale));

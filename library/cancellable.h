@@ -17,7 +17,7 @@ auto cancellable(unsigned threads, const std::stop_token& stop, Work&& work) {
   try {
     return std::forward<Work>(work)();
   } catch (const WorkCancelled&) {
-    throw Cancelled("the computation ended early because its stop token requested the end");
+    throw Cancelled("the computation ended early, because its stop token requested a stop");
   }
 }
 

@@ -78,8 +78,10 @@ FingerHealth finger_of(const sysid::health::JudgedFinger& judged) {
 
 Health health(const std::vector<std::string>& recordings, const std::string& baseline,
               const HealthOptions& options) {
-  if (recordings.empty()) throw InvalidArgument("recordings", "0 paths; at least 1 is required");
-  if (baseline.empty()) throw InvalidArgument("baseline", "an empty path; a folder is required");
+  if (recordings.empty())
+    throw InvalidArgument("recordings", "0 paths were given; at least 1 path is required");
+  if (baseline.empty())
+    throw InvalidArgument("baseline", "a path is empty; the path of a folder is required");
   library::require_between("false_alarm_points", options.false_alarm_points, 20, 1e9, "");
   sysid::health::HealthQuestion question{recordings, baseline, notes_of(options.notes),
                                          {},         {},       options.progress};

@@ -74,8 +74,8 @@ Identification identify(const std::vector<Log>& logs, const IdentifyOptions& opt
   question.structure = question_of(options.structure);
   if (question.structure && options.start)
     throw InvalidArgument("start",
-                          "the options request a choice of the structure and also give a start model; to fit "
-                          "the start model, use Structure::start");
+                          "the options request a choice of the structure, but also contain a start model. To "
+                          "fit the start model, use Structure::start");
   library::require_between("branches", static_cast<double>(options.branches), 1, 8, "");
   library::require_between("starts", static_cast<double>(options.starts), 1, 10000, "");
   library::require_between("fit_share", options.fit_share, 0.05, 1, "");

@@ -174,7 +174,7 @@ NeededUnit needed_for(const Model& model) {
 std::vector<sysid::Log> checked_logs(const std::string& argument, const std::vector<Log>& logs,
                                      const LogUse& use, bool measured_stay,
                                      const std::optional<NeededUnit>& needed) {
-  if (logs.empty()) throw InvalidArgument(argument, "0 logs; at least 1 is required");
+  if (logs.empty()) throw InvalidArgument(argument, "0 logs were given; at least 1 log is required");
   sysid::LogOptions options;
   options.output_unit = unit_of(needed ? needed->unit : logs.front().unit);
   options.output_unit_of = needed ? needed->of : logs.front().name;
@@ -204,8 +204,8 @@ Log read_log(const std::string& path, const ReadOptions& options) {
   try {
     return imported(path, options);
   } catch (const FileError&) {
-    // A file with the column pressure_command_kpa is meant to be a log. Therefore, the problems that the log
-    // reader found are reported.
+    // A file with the column pressure_command_kpa is meant to be a log of softgrip. Therefore, its problems
+    // as a log are reported, and the file is not imported.
     const auto text = read_file(path, sysid::LogOptions{}.bytes);
     if (text && text->substr(0, text->find('\n')).find("pressure_command_kpa") != std::string::npos)
       library::refuse(problems);

@@ -87,7 +87,7 @@ enum class Kind : std::uint8_t {
 
 /// The method by which the feedforward compensates the effect of a block.
 enum class Inverse : std::uint8_t {
-  implicit,  ///< inverted together with the actuator; the output of the block increases with the newest
+  implicit,  ///< the block is inverted together with the actuator; its output increases with the newest
              ///< pressure
   lead,      ///< inverted with the derivative of the planned signal
   preview,   ///< inverted with the future value of the reference
@@ -188,7 +188,8 @@ concept Foretells = requires(const Block block, const T& duration_s, const U& en
   { block.peek(duration_s, end, around) } -> std::same_as<U>;
 };
 
-/// All requirements of a block in series, of an element and of a reading block.
+/// The next three concepts contain all requirements: of a block in series, of an element, and of a reading
+/// block.
 template <class Block, class T>
 concept SeriesBlock = SaysWhatItIs<Block> && StandsSomewhere<Block, T> && PassesOn<Block, T>;
 template <class Block, class T>

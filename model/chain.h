@@ -47,21 +47,22 @@ class Chain {
   /// (see block.h).
   void reset(const T& command);
 
-  /// Sets the state of rest as reset() does. However, blocks with a memory over the measurement campaign,
-  /// such as the largest load so far, keep this memory. Call rest() at the start of a log that was recorded
-  /// on the same rig after a pause.
+  /// Sets the state of rest as reset() does, with one difference: blocks with a memory over the measurement
+  /// campaign, such as the largest load so far, keep this memory. Call rest() at the start of a log that was
+  /// recorded on the same rig after a pause.
   void rest(const T& command);
 
-  /// Advances by `duration_s` >= 0, in which the command changes linearly to `command`. Returns the reading
-  /// [mm].
+  /// Simulates a step of `duration_s` [s], >= 0, in which the command changes linearly to `command`. Returns
+  /// the reading [mm].
   T step(const T& duration_s, const T& command, Surroundings surroundings = {});
 
   /// Predicts the displacement before the sensor, for a pressure that changes linearly to `end_kpa` over
   /// `duration_s`. The signal passes only through the blocks with Inverse::implicit, and the state does not
   /// change. The result is exact, except if the pressure has a corner within the sample, for example at a
-  /// threshold. In this case, it is approximate. To invert a model, create a chain that contains only the
-  /// blocks with Inverse::implicit. In each step, find the pressure for which peek() returns the reference,
-  /// and call step() with this pressure. U is T, or Dual<T> for the derivative with respect to the pressure.
+  /// threshold. In this case, the result is approximate. To invert a model, create a chain that contains only
+  /// the blocks with Inverse::implicit. In each step, find the pressure for which peek() returns the
+  /// reference, and call step() with this pressure. U is T, or Dual<T> for the derivative with respect to the
+  /// pressure.
   template <class U>
   [[nodiscard]] U peek(const T& duration_s, const U& end_kpa, Surroundings surroundings = {}) const;
 

@@ -34,9 +34,9 @@ template <class Block>
 inline constexpr Kind kind_of = std::remove_cvref_t<Block>::info.kind;
 /// Largest pressure change of one segment at the elements [kPa]. The limit applies to chains that have a
 /// displacement block without an inverse, such as inertia. Such a block approximates the sum of the elements
-/// by one parabola per segment. Therefore, a segment with a larger pressure change is divided into parts. For
-/// a change of 44 kPa within 10 ms and an inertia with a period of 45 ms, the error is 1e-4 mm. Without the
-/// division, the error was 0.07 mm.
+/// by one parabola per segment. Therefore, a segment whose pressure change exceeds the limit is divided into
+/// parts. For a change of 44 kPa within 10 ms and an inertia with a period of 45 ms, the error is 1e-4 mm. If
+/// the segment is not divided, the error is 0.07 mm.
 inline constexpr double longest_way_kpa = 5;
 /// Largest number of parts into which a segment is divided. If this number of parts is reached, a part may
 /// exceed longest_way_kpa.

@@ -55,7 +55,8 @@ struct NamedValue {
   double value;
 };
 
-/// Returns a block with the values in `values`. Every other value of the block is that of neutral_block().
+/// Returns a block with the values in `values`. The parameters that `values` does not contain get their
+/// neutral values.
 template <template <class> class Block>
 [[nodiscard]] BlockSpec block_of(std::initializer_list<NamedValue<Block>> values, std::size_t parts = 1) {
   BlockSpec block = neutral_block(block_type<Block>(), parts);

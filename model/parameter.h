@@ -23,12 +23,14 @@ struct ParameterSpec {
   bool placed = false;       ///< true: the parameter stays fixed while a fit changes the values that depend
                              ///< on it (a threshold)
   bool latency = false;      ///< true: a dead time, a lag or a period, whose size depends on the kind of rig;
-                             ///< `upper` is a limit for files, and a fit has a lower limit for each log
+                             ///< `upper` is the limit in files, and a fit uses a smaller upper limit that
+                             ///< depends on the logs
   bool per_pressure = false;  ///< true: a gain or a rate per kPa, whose size depends on the range of the
-                              ///< pressure; `lower` and `upper` are limits for files, and a fit has narrower
-                              ///< limits for each log
-  /// Neutral value: if all parameters that have a neutral value are set to it, the block has no effect. NaN:
-  /// the parameter has no neutral value, because it has no influence while the others are neutral.
+                              ///< pressure; `lower` and `upper` are the limits in files, and a fit uses
+                              ///< narrower limits that depend on the logs
+  /// Neutral value of the parameter. If every parameter of a block has its neutral value, the block has no
+  /// effect. NaN: the parameter has no neutral value, because it has no influence while the other parameters
+  /// have their neutral values.
   double neutral = std::numeric_limits<double>::quiet_NaN();
   /// Value that is used if a model file omits the parameter. With this value, a file that is older than the
   /// parameter keeps its meaning. NaN: the file must contain the parameter.
@@ -91,7 +93,7 @@ consteval ParameterSpec parameter(std::string_view name, std::string_view unit, 
   };
   if (!allowed(spec.default_value) || !allowed(spec.neutral) || !allowed(spec.if_left_out) ||
       !(spec.scale > 0)) {
-    throw "values of a parameter must be within its bounds, and its scale above 0";
+    throw "the values of a parameter must be within its bounds, and its scale must be above 0";
   }
   return spec;
 }

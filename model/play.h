@@ -34,8 +34,8 @@ class Play {
     return dragged(input, U(output_));
   }
 
-  /// Computes the output over a segment of the input and passes it on. If the output begins to move within
-  /// the segment, the segment is divided at this point.
+  /// Computes the output over a segment of the input and passes the output on. If the output begins to move
+  /// within the segment, the segment is divided at this point.
   template <class Next>
   void step(const Segment<T>& in, Next&& next) {
     const T begin = output_;

@@ -95,8 +95,8 @@ class RegulatedPressure {
   /// hour, in which the pressure comes to rest.
   static constexpr double most_steps = 1e6;
   static constexpr double atmosphere_kpa = 101.325;
-  /// Values of ISO 6358-1: critical pressure ratio of a common port, and the pressure ratio above which the
-  /// flow of a port is linear.
+  /// Critical pressure ratio of a common port according to ISO 6358-1, and the pressure ratio above which the
+  /// flow of a port is computed as linear in the ratio.
   static constexpr double critical_ratio = 0.3, linear_above = 0.995;
   /// Gauge pressure for which venting_s is defined [kPa].
   static constexpr double usual_kpa = 50;
@@ -135,7 +135,8 @@ class RegulatedPressure {
     const T ends = to - pressure_kpa_;
     const double stopped_after = stops_by(ends);
     // Adds the mean error of the step to the integral. The error is computed from the new pressure. If the
-    // integral is stopped in a part of the step, only the error in the rest of the step is added.
+    // limit of the spool stops the integral in a part of the step, only the error in the rest of the step is
+    // added.
     if (stopped_before > 0 && stopped_after > 0) return mean;
     T error = (from + to) * 0.5 - mean;
     double share = 1;
@@ -177,8 +178,8 @@ class RegulatedPressure {
   }
 
   /// Advances a pressure that is within the band of the overlap. The pressure is constant until an edge of
-  /// the band reaches it. After that, the pressure moves towards this edge. Returns the mean of the pressure
-  /// over the step.
+  /// the band reaches the pressure. After that, the pressure moves towards this edge. Returns the mean of the
+  /// pressure over the step.
   T wait(const T& step_s, const T& wanted, const T& wanted_after) {
     const double p = value_of(pressure_kpa_), band = value_of(n_.overlap_kpa);
     const bool fills = p < value_of(wanted_after) - band;

@@ -75,7 +75,7 @@ void pass_jump(T& output, const Segment<T>& in, bool rises_at_once, bool falls_a
   next(Segment<T>::straight(in.duration_s, begin, output));
 }
 
-/// The surroundings of the rig during a sample. Each block uses only those that affect it.
+/// The surroundings of the rig during a sample. Each block uses only the members that affect it.
 struct Surroundings {
   /// Time from the start of the measurement campaign to the end of the sample [s]. NaN: the chain uses the
   /// sum of its step durations since reset().

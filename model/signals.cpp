@@ -26,8 +26,8 @@ constexpr std::array first_cycle{Pulse{60, 10}, Pulse{40, 5}, Pulse{50, 4}, Puls
 constexpr std::array second_cycle{Pulse{50, 8}, Pulse{25, 4}, Pulse{60, 6}, Pulse{35, 2.5}, Pulse{15, 3.5}};
 constexpr int cycles = 2;
 
-// Each change of the pressure is a ramp of 0.2 s. If it were a jump, the simulated pressure would depend on
-// the sampling rate.
+// Each change of the pressure is a ramp of 0.2 s. With jumps, the simulated pressure would depend on the
+// sampling rate.
 constexpr double ramp_s = 0.2;
 constexpr std::array steps_corners{Corner{0, 0},
                                    Corner{1, 0},  //

@@ -1,6 +1,6 @@
 #pragma once
-// Implements a first-order lag with different time constants for filling and venting. It models a volume that
-// air fills through a port from a high pressure, and from which air vents into a low pressure.
+// Implements a first-order lag with different time constants for filling and venting. The lag models a volume
+// that air fills through a port from a high pressure, and from which air vents into a low pressure.
 
 #include <cmath>
 
@@ -73,7 +73,8 @@ class TwoWayLag {
 
   // Returns the time after which the output equals the input. For a straight input, the gap d = input -
   // output follows d' = slope - d / tau. The gap is zero after tau log(1 - d(0) / (slope tau)) if input and
-  // output move towards each other. If they do not, returns the whole duration.
+  // output move towards each other. If input and output do not move towards each other, returns the whole
+  // duration.
   T meeting(const Segment<T>& in, const T& gap, const Direction& now) const {
     using std::log1p;
     const T slope = (in.end - in.begin) / in.duration_s;

@@ -156,7 +156,10 @@ class BoardReader {
     terminals(in, map_.outputs, {fc_write_register, fc_write_registers}, drivers::max_fc23_write_registers);
     const drivers::RegisterBlock& registers = map_.outputs.registers;
     if (registers.function == fc_write_register && words_of(registers.kind) > 1) {
-      in.report("function", "function 6 writes one register, but each of these outputs has two", "use 16");
+      in.report("function",
+                "function 6 writes one register, but each of the outputs of this board map consists of two "
+                "registers",
+                "use 16");
     }
   }
 
@@ -182,7 +185,8 @@ class BoardReader {
     block.ok = status_values(in, "ok", true);
     block.over = status_values(in, "over", false);
     block.under = status_values(in, "under", false);
-    if (in.has("ok") && block.ok.empty()) in.report("ok", "list at least one status value of a valid input");
+    if (in.has("ok") && block.ok.empty())
+      in.report("ok", "list at least one status value that means a valid input");
     map_.input_status = block;
   }
 
@@ -345,7 +349,7 @@ class BoardReader {
     if (map_.max_registers >= least) return;
     in.report("max_registers", "`max_registers` is " + std::to_string(map_.max_registers) + ", but " +
                                    std::to_string(least) +
-                                   " registers of one block must be read in one request");
+                                   " consecutive registers must be read in one request");
   }
 
   const document::Document& document_;

@@ -71,7 +71,7 @@ void compare_reach(const document::Document& document, const control::ChannelSet
     problems.warn(document.problem(place_of(document, index, "limits", pressure),
                                    "at `" + pressure + "` the model of channel `" + channel.name +
                                        "` goes to " + about(reach.end_mm) + " mm, " + about(times) +
-                                       " times as far as the limit `" + reach.displacement + "` (" +
+                                       " times the distance that the limit `" + reach.displacement + "` (" +
                                        significant(reach.limit_mm, 6) + " mm) allows",
                                    pressure + ": " + about(enough_kpa) +
                                        " is the pressure at which the model reaches this displacement"));

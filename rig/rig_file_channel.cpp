@@ -94,7 +94,7 @@ void read_plausibility(Context& context, MapReader& outer, control::Plausibility
     reader.report("max_age_s",
                   "`max_age_s` must be longer than one cycle of the control loop, which is " +
                       written(context.period_s()) + " s",
-                  "otherwise every reading would be too old");
+                  "otherwise every reading would be older than `max_age_s`");
   });
 }
 

@@ -102,7 +102,7 @@ void check_watchdog_time(Context& context, MapReader& top) {
     top.warn("board",
              "the board's watchdog sets the safe outputs after " + written(timeout_s) +
                  " s, which is less than three cycles",
-             "one late exchange would vent the fingers");
+             "a single late exchange with the board would vent the fingers");
   }
 }
 

@@ -73,10 +73,10 @@ void check_waits(Context& context) {
         wait.at,
         "`" + std::string(wait.key) + "` is not below `" + std::string(wait.deadline) + "` (" +
             written(longest_s) +
-            " s): " + (connecting ? "no session could be opened" : "requests would never be repeated"),
-        connecting ? "raise `connect_deadline_s`: this deadline includes the connection, `settle_s` and the "
-                     "first requests"
-                   : "`exchange_deadline_s` is the deadline for all requests of an exchange together"));
+            " s): " + (connecting ? "so no session could be opened" : "so requests would never be repeated"),
+        connecting
+            ? "raise `connect_deadline_s`, which must cover the connection, `settle_s` and the first requests"
+            : "`exchange_deadline_s` is the deadline for all requests of an exchange together"));
   }
 }
 
@@ -89,7 +89,7 @@ void read_numbering(MapReader& reader, drivers::TcpAddress& address) {
   if (!said) return;
   address.numbered = false;
   if (*said == words) return;
-  reader.report(key, "the text does not state the risk that is accepted",
+  reader.report(key, "the text does not state the accepted risk word by word",
                 "write " + std::string(key) + ": \"" + std::string(words) + "\"");
 }
 
@@ -144,7 +144,8 @@ class ModulesReader {
       return other.link == module.link && other.unit == module.unit;
     };
     if (reader.good("unit") && std::any_of(settings_.modules.begin(), settings_.modules.end(), same)) {
-      reader.report("unit", "another module has the same unit id at the same address or serial line");
+      reader.report("unit",
+                    "another module has the same unit id at the same address or on the same serial line");
     }
     KnownModule known{module.name, std::nullopt};
     if (map) known.terminals = drivers::terminals_of(*map);
@@ -171,7 +172,8 @@ class ModulesReader {
       if (other.host != address.host || other.port != address.port) continue;
       if (other != address) {
         reader.report(
-            "port", "another module at this host and port has different settings of the shared session",
+            "port",
+            "another module at this host and port has different settings, but both modules share one session",
             "give both modules the same `settle_s`, `repeat_after_s`, `framing` and other framing keys");
       }
       return link;

@@ -194,7 +194,7 @@ void read_socket(Context& context, MapReader& top) {
           if (!socket.look.path.empty() && socket.look.path == socket.path) {
             look.report(
                 "path", "this path is already the socket of the operators",
-                "choose a different path, because the socket determines the commands that a client may send");
+                "choose a different path, because each of the two sockets permits different commands");
           }
         },
         "socket: look");

@@ -20,7 +20,8 @@ void declare_rig(RigKeys& keys) {
   using control::RigSettings;
   keys.rig = {
       {"name", "a name", "", "name of the rig in folders and metrics"},
-      required("rate_hz", &RigSettings::rate_hz, {1, 10'000}, "cycles per second of control loop and bus"),
+      required("rate_hz", &RigSettings::rate_hz, {1, 10'000},
+               "cycles per second of the control loop and of the bus thread"),
       {"loop", "map", "none", "[timing of the bus thread](#loop)"},
       {"faults", "map", "", "[reaction times](#faults)"},
       {"board", "map", "", "one of `modbus_tcp`, `modbus_rtu`, `iio` and `simulated`"},
@@ -41,42 +42,47 @@ void declare_rig(RigKeys& keys) {
   using control::DetectionSettings;
   keys.detection = {
       required("margin_mm", &DetectionSettings::margin_mm, {0.001, 1000},
-               "a finger has contact if its model of free motion is at least this far ahead of it"),
+               "distance by which the model of free motion must be ahead of the finger to detect contact"),
       optional("model_rmse_mm", &DetectionSettings::model_rmse_mm, {0, 1000},
-               "RMSE of the model; `margin_mm` must be at least 3 times as large", "none")};
-  keys.rest = {required("band_mm", &RigSettings::rest_band_mm, {0.001, 100},
-                        "a finger is at rest if its readings stay within this band for `time_s`"),
-               required("time_s", &RigSettings::rest_time_s, {0.001, 600}, "see `band_mm`"),
-               required("timeout_s", &RigSettings::rest_timeout_s, {0.001, 3600},
-                        "a start ends with ERROR if the fingers are not at rest by then")};
+               "RMSE of the model; `margin_mm` must be at least 3 times this value", "none")};
+  keys.rest = {
+      required("band_mm", &RigSettings::rest_band_mm, {0.001, 100},
+               "band in which the readings of a finger must stay for `time_s` if the finger is at rest"),
+      required("time_s", &RigSettings::rest_time_s, {0.001, 600}, "see `band_mm`"),
+      required("timeout_s", &RigSettings::rest_timeout_s, {0.001, 3600},
+               "time after which a start ends with ERROR if the fingers are not at rest")};
 }
 
 void declare_channel(RigKeys& keys) {
-  keys.channel = {{"name", "a name", "", "unique name of the channel, for example `left`"},
-                  {"model", "a path", "", "model file of the finger without contact, for the controller"}};
+  keys.channel = {
+      {"name", "a name", "", "unique name of the channel, for example `left`"},
+      {"model", "a path", "", "model file of the finger in free motion, which the controller uses"}};
   keys.channel_parts = {
       {"pid", "map", "", "[settings of the feedback](#pid)"},
       {"limits", "map", "", "[limits of every command](#limits)"},
       {"valve", "map", "", "[output for the valve](#valve)"},
-      {"sensor", "map", "", "[input with the displacement](#sensor)"},
-      {"pressure_monitor", "map", "none", "input with the measured pressure"},
-      {"temperature_sensor", "map", "none", "input with the temperature, which is only recorded"},
+      {"sensor", "map", "", "[input for the displacement sensor](#sensor)"},
+      {"pressure_monitor", "map", "none",
+       "input for the pressure sensor, or for the monitor output of the valve"},
+      {"temperature_sensor", "map", "none",
+       "input for the temperature sensor; the temperature is recorded, but not used"},
       optional("displacement_used", &control::ChannelSettings::displacement_used, {},
-               "`false`: displacements are only recorded; requires `pressure_monitor`"),
+               "`false`: displacements are recorded, but not used; requires `pressure_monitor`"),
       {"plausibility", "map", "map of the rig", "[limits of a valid reading](#plausibility)"},
       {"model_health", "map", "map of the rig", "[residual of a healthy finger](#model_health)"},
   };
   using control::FeedforwardSettings;
   const auto& names = control::feedforward_names;
-  keys.feedforward = {
-      required("feedforward", &FeedforwardSettings::kind, {{names.begin(), names.end()}},
-               "inverse of the model that computes the command"),
-      optional("extra_latency_s", &FeedforwardSettings::extra_latency_s, {0, 1},
-               "delay of a command until the output of the board, without the valve blocks of the model",
-               "`bus_offset_fraction` of a cycle")};
+  keys.feedforward = {required("feedforward", &FeedforwardSettings::kind, {{names.begin(), names.end()}},
+                               "kind of inverse of the model with which the command is computed"),
+                      optional("extra_latency_s", &FeedforwardSettings::extra_latency_s, {0, 1},
+                               "delay between a command and the output of the board, in addition to the "
+                               "delays of the valve blocks of the model",
+                               "`bus_offset_fraction` of a cycle")};
   using Limits = control::LimitSettings;
-  keys.rest_pressure = {optional("rest_kpa", &Limits::rest_kpa, any_pressure_kpa,
-                                 "[pressure of every safe state](#rest_kpa), inside the pressure limits")};
+  keys.rest_pressure = {optional(
+      "rest_kpa", &Limits::rest_kpa, any_pressure_kpa,
+      "[pressure of every safe state](#rest_kpa), between `pressure_min_kpa` and `pressure_max_kpa`")};
   keys.limits = {
       required("pressure_min_kpa", &Limits::pressure_min_kpa, any_pressure_kpa, "smallest command"),
       required("pressure_max_kpa", &Limits::pressure_max_kpa, any_pressure_kpa, "largest command"),
@@ -86,39 +92,45 @@ void declare_channel(RigKeys& keys) {
       required("displacement_max_mm", &Limits::displacement_max_mm, any_displacement_mm,
                "greatest reference"),
       required("displacement_margin_mm", &Limits::displacement_margin_mm, {0, 1000},
-               "a reading that exceeds the displacement limits by more than this causes a fault")};
+               "distance beyond the displacement limits at which a reading causes a fault")};
   using Pid = control::PidSettings;
-  keys.pid = {
-      required("kp_kpa_per_mm", &Pid::kp_kpa_per_mm, {0, 1e6}, "proportional gain"),
-      required("ki_kpa_per_mm_s", &Pid::ki_kpa_per_mm_s, {0, 1e6}, "integral gain"),
-      required("kd_kpa_s_per_mm", &Pid::kd_kpa_s_per_mm, {0, 1e6}, "derivative gain"),
-      required("derivative_filter_s", &Pid::derivative_filter_s, {0, 100}, "time constant of the derivative"),
-      required("setpoint_weight", &Pid::setpoint_weight, {0, 1}, "weight of the reference in the P term"),
-      required("anti_windup", &Pid::anti_windup, {"none", "conditional", "back_calculation"},
-               "method against integrator windup"),
-      optional("tracking_time_s", &Pid::tracking_time_s, {1e-4, 1000},
-               "time constant of the back-calculation; required with `back_calculation`")};
+  keys.pid = {required("kp_kpa_per_mm", &Pid::kp_kpa_per_mm, {0, 1e6}, "proportional gain"),
+              required("ki_kpa_per_mm_s", &Pid::ki_kpa_per_mm_s, {0, 1e6}, "integral gain"),
+              required("kd_kpa_s_per_mm", &Pid::kd_kpa_s_per_mm, {0, 1e6}, "derivative gain"),
+              required("derivative_filter_s", &Pid::derivative_filter_s, {0, 100},
+                       "time constant of the derivative filter"),
+              required("setpoint_weight", &Pid::setpoint_weight, {0, 1},
+                       "weight of the reference in the proportional term"),
+              required("anti_windup", &Pid::anti_windup, {"none", "conditional", "back_calculation"},
+                       "method against integrator windup"),
+              optional("tracking_time_s", &Pid::tracking_time_s, {1e-4, 1000},
+                       "time constant of the back-calculation; required with `back_calculation`")};
 }
 
 void declare_wiring(RigKeys& keys) {
   keys.output = {
       {"output", "0 to 255", "", "number of the output terminal; a terminal may be used only once"},
       {"module", "a name", "the only module with outputs", "module with the terminal"},
-      {"at_v", "two numbers", "", "two signals at the terminal in the board's unit; or `at_ma`, `at_kpa`"},
-      {"is_kpa", "two numbers", "", "the two pressures at these signals; the slope may be negative"},
+      {"at_v", "two numbers", "",
+       "two signals at the terminal; write `at_ma` or `at_kpa` if the unit of the terminal is mA or kPa"},
+      {"is_kpa", "two numbers", "",
+       "the two pressures at the two signals of `at_v`; the slope may be negative"},
       {"range_kpa", "two numbers", "", "lowest and highest pressure that the valve controls"}};
   keys.input = {
       {"input", "0 to 255", "", "number of the input terminal; a terminal may be used only once"},
       {"module", "a name", "the only module with inputs", "module with the terminal"},
-      {"at_v", "two numbers", "", "two signals at the terminal in the board's unit; or `at_ma`, `at_kpa`"},
-      {"is_mm", "two numbers", "", "the two displacements at these signals; the slope may be negative"},
+      {"at_v", "two numbers", "",
+       "two signals at the terminal; write `at_ma` or `at_kpa` if the unit of the terminal is mA or kPa"},
+      {"is_mm", "two numbers", "",
+       "the two displacements at the two signals of `at_v`; the slope may be negative"},
       {"valid_v", "two numbers", "",
-       "lowest and highest signal of a valid reading; or `valid_ma`, `valid_kpa`"},
+       "lowest and highest signal of a valid reading; `valid_ma` or `valid_kpa` if the terminal is in mA or "
+       "kPa"},
       {"error_codes", "list", "none", "signals with which the sensor reports that it cannot measure"}};
   keys.valve = {
       required("on_power_loss", &ValveFacts::on_power_loss, {"vents", "holds"}, "behaviour without power"),
       optional("on_power_loss_kpa", &ValveFacts::power_loss_kpa, line_pressure_kpa,
-               "pressure without power of a valve that vents")};
+               "pressure to which a valve with `on_power_loss: vents` goes without power")};
 }
 
 /// Reads `overrun_cycles`, whose deprecated name is `slipped_cycles`.
@@ -129,75 +141,85 @@ void read_overrun_cycles(MapReader& reader, const KeyFacts& key, control::FaultS
   faults.overrun_cycles = static_cast<std::uint32_t>(reader.integer(renamed ? old_name : key.name, any));
   if (!renamed || reader.child(key.name, false) == nullptr) return;
   (void)reader.integer(key.name, any);
-  reader.report(old_name, "this repeats overrun_cycles", "overrun_cycles alone");
+  reader.report(old_name,
+                "`slipped_cycles` is the old name of `overrun_cycles`, but the file contains both keys",
+                "overrun_cycles alone");
 }
 
 void declare_safety(RigKeys& keys) {
   keys.safety = {{"safe_action", "map", "",
-                  "`vent` or `hold` for each phase: `idle`, `closing`, `holding`, `releasing`"},
+                  "safe action, `vent` or `hold`, for each phase: `idle`, `closing`, `holding`, `releasing`"},
                  required("on_emergency_stop", &control::SafetySettings::on_emergency_stop, {"vent", "hold"},
                           "action after an emergency stop")};
   keys.commands = {
-      required("max_missed_commands", &LoopSettings::max_missed_commands, {1, 1000},
-               "exchanges without a new command until the bus thread writes the safe outputs"),
+      required(
+          "max_missed_commands", &LoopSettings::max_missed_commands, {1, 1000},
+          "number of exchanges without a new command after which the bus thread writes the safe outputs"),
       {"accept_no_watchdog", "a text", "none",
        "required if the board has no watchdog that vents: `" + std::string(no_watchdog_words) + "`"}};
   using Fault = control::FaultSettings;
   keys.faults = {
       required("bus_down_cycles", &Fault::bus_down_cycles, cycles,
-               "cycles without a successful exchange until the fault"),
+               "number of cycles without a successful exchange with the board after which the fault occurs"),
       required("invalid_reading_cycles", &Fault::invalid_reading_cycles, cycles,
-               "cycles with an invalid reading until the fault"),
+               "number of cycles with an invalid reading after which the fault occurs"),
       required("displacement_cycles", &Fault::displacement_cycles, cycles,
-               "cycles with a displacement outside its limits until the fault"),
+               "number of cycles with a displacement outside its limits after which the fault occurs"),
       required("readback_cycles", &Fault::readback_cycles, cycles,
-               "cycles with an output that differs from the commands until the fault"),
-      required("readback_tolerance_kpa", &Fault::readback_tolerance_kpa, {0.001, 1000},
-               "permitted difference of the output from the commands of the last `readback_delay_s`"),
+               "number of cycles with an output that differs from the commands after which the fault occurs"),
+      required(
+          "readback_tolerance_kpa", &Fault::readback_tolerance_kpa, {0.001, 1000},
+          "largest permitted difference between the output and the commands of the last `readback_delay_s`"),
       required("readback_delay_s", &Fault::readback_delay_s, {0, 10}, "see `readback_tolerance_kpa`"),
-      optional(
-          "pressure_cycles", &Fault::pressure_cycles, {0, 100'000},
-          "cycles with a measured pressure that differs from the commands until the fault; 0: no comparison"),
+      optional("pressure_cycles", &Fault::pressure_cycles, {0, 100'000},
+               "number of cycles with a measured pressure that differs from the commands after which the "
+               "fault occurs; 0: no comparison"),
       optional("pressure_tolerance_kpa", &Fault::pressure_tolerance_kpa, {0.001, 1000},
-               "permitted difference of the pressure from the commands of the last `pressure_delay_s`",
+               "largest permitted difference between the measured pressure and the commands of the last "
+               "`pressure_delay_s`",
                "none"),
       optional("pressure_delay_s", &Fault::pressure_delay_s, {0, 10}, "see `pressure_tolerance_kpa`", "none"),
       {{"overrun_cycles", "0 to 100000", "",
-        "missed cycles of the control loop; 0: they never cause a fault"},
+        "number of consecutive missed cycles of the control loop after which the fault occurs; 0: missed "
+        "cycles never cause a fault"},
        read_overrun_cycles},
       required("model_unfit_is_fault", &Fault::model_unfit_is_fault, {}, "`true`: an unfit model is a fault"),
       optional("unsteady_is_fault", &Fault::unsteady_is_fault, {},
-               "`true`: readings that jump back and forth cause F204, otherwise only an event")};
+               "`true`: readings that jump back and forth cause the fault F204; `false`: such readings cause "
+               "only an event")};
 }
 
 void declare_monitoring(RigKeys& keys) {
   using Check = control::PlausibilitySettings;
   keys.plausibility = {
-      required("max_age_s", &Check::max_age_s, {1e-4, 60}, "an older reading is stale"),
+      required("max_age_s", &Check::max_age_s, {1e-4, 60}, "age above which a reading is stale"),
       required("max_speed_mm_per_s", &Check::max_speed_mm_per_s, {0.001, 1e6},
-               "speed that no finger reaches"),
-      required("jump_margin_mm", &Check::jump_margin_mm, {0, 1000}, "tolerance of this speed for noise"),
+               "largest plausible speed of a finger; a reading that changes faster is a jump"),
+      required("jump_margin_mm", &Check::jump_margin_mm, {0, 1000},
+               "change of a reading that is always permitted, because of noise"),
       required("frozen_after_s", &Check::frozen_after_s, {0.001, 3600},
-               "a reading that is constant for this time while the command changes is frozen"),
-      required("frozen_band_mm", &Check::frozen_band_mm, {0, 1000}, "largest change of a constant reading"),
+               "time after which a constant reading is frozen if the command has changed"),
+      required("frozen_band_mm", &Check::frozen_band_mm, {0, 1000},
+               "largest change of a reading that counts as constant"),
       required("frozen_command_kpa", &Check::frozen_command_kpa, {0.001, 10'000},
-               "change of the command for a frozen reading"),
+               "smallest change of the command at which a constant reading counts as frozen"),
       optional("jump_mm", &Check::jump_mm, {0.001, 1000},
-               "a change between two readings that exceeds that of the model by more than this is a jump"),
+               "smallest jump of a reading: the change of the reading minus the change of the model"),
       optional("unsteady_jumps", &Check::unsteady_jumps, {2, control::most_unsteady_jumps},
-               "number of jumps back and forth within 1 s that makes the sensor unsteady")};
+               "number of jumps back and forth within 1 s at which the sensor counts as unsteady")};
   using Health = control::ModelHealthSettings;
   keys.model_health = {
       required("model_error_mm", &Health::model_error_mm, {1e-6, 1000},
                "standard deviation of the model error"),
       required("correlation_time_s", &Health::correlation_time_s, {1e-6, 3600},
-               "correlation time of this error"),
+               "correlation time of the model error"),
       required("noise_mm", &Health::noise_mm, {1e-6, 1000}, "standard deviation of the noise of a reading"),
       required("unfit_mm", &Health::unfit_mm, {1e-6, 1000},
-               "the model is unfit if the RMS of the residual over `unfit_window_s` exceeds this"),
-      optional("interval_s", &Health::interval_s, {1e-6, 3600}, "time over which the residual is averaged"),
+               "RMS of the residual over `unfit_window_s` above which the model is unfit"),
+      optional("interval_s", &Health::interval_s, {1e-6, 3600},
+               "time over which each value of the residual is averaged"),
       optional("allowance_sigma", &Health::allowance_sigma, {1e-6, 100},
-               "half of the smallest shift that is detected, in standard deviations"),
+               "half of the smallest detected shift of the residual, in standard deviations"),
       optional("false_alarm_interval_s", &Health::false_alarm_interval_s, {1e-6, 1e12},
                "mean time between false alarms of a healthy model"),
       optional("unfit_window_s", &Health::unfit_window_s, {1e-6, 3600}, "see `unfit_mm`")};
@@ -206,11 +228,13 @@ void declare_monitoring(RigKeys& keys) {
 void declare_service(RigKeys& keys) {
   using RealTime = RealTimeSettings;
   keys.real_time = {
-      required("required", &RealTime::required, {}, "`true`: refuse to start if a setting is not available"),
+      required("required", &RealTime::required, {},
+               "`true`: softgripd does not start if one of these settings is not available"),
       required("priority", &RealTime::priority, {0, 80},
                "SCHED_FIFO priority of the control loop; 0: default scheduling of Linux"),
       required("lock_memory", &RealTime::lock_memory, {}, "`true`: lock and prefault the daemon's memory"),
-      {"cpus", "list", "", "processors for control loop and bus thread; `[]`: all processors"},
+      {"cpus", "list", "",
+       "processors on which the control loop and the bus thread run; `[]`: all processors"},
       optional("cpu_dma_latency_us", &RealTime::cpu_dma_latency_us, {0, 1'000'000},
                "longest permitted wake-up time of a processor from a sleep state"),
       optional("prefault_stack_bytes", &RealTime::prefault_stack_bytes, {0, 4 << 20}, "prefaulted stack"),
@@ -221,11 +245,12 @@ void declare_service(RigKeys& keys) {
       required("directory", &Recorder::directory, {}, "folder of the recordings"),
       optional("decimation", &Recorder::decimation, {1, 10'000}, "number of cycles per row of the recording"),
       optional("flush_interval_s", &Recorder::flush_interval_s, {0.001, 0.5},
-               "length of the recording that can be lost after `kill -9`"),
+               "largest part of a recording that can be lost after `kill -9`, as a duration"),
       optional("sync_interval_s", &Recorder::sync_interval_s, {0, 3600},
-               "length of the recording that can be lost after a power failure; 0: the kernel decides"),
+               "largest part of a recording that can be lost after a power failure, as a duration; 0: the "
+               "kernel decides when it writes to the disk"),
       optional("history_s", &Recorder::history_s, {0, 60},
-               "a recording also contains this time before the event that started it")};
+               "time before the start of a recording that the recording also contains")};
   keys.look = {
       required("path", &SocketFile::path, {}, "path of the Unix domain socket, at most 107 bytes"),
       {"mode", "a text", "", "permissions of the socket, such as `rw-rw----` or `\"0660\"`"},
@@ -233,27 +258,34 @@ void declare_service(RigKeys& keys) {
   using Socket = SocketSettings;
   const Keys<Socket> own{
       {"look", "map", "none", "a second, read-only socket with the keys `path`, `mode` and `group`"},
-      required("sequence_directory", &Socket::sequence_directory, {}, "folder of the sequences for clients"),
-      optional("max_clients", &Socket::max_clients, {1, 1000}, "most clients on each of the two sockets"),
-      optional("max_line_bytes", &Socket::max_line_bytes, {256, 1 << 20}, "longest line of a client"),
+      required("sequence_directory", &Socket::sequence_directory, {},
+               "folder of the sequences that clients can start by name"),
+      optional("max_clients", &Socket::max_clients, {1, 1000},
+               "largest number of clients on each of the two sockets"),
+      optional("max_line_bytes", &Socket::max_line_bytes, {256, 1 << 20},
+               "length of the longest line that a client may send"),
       optional("max_queue_bytes", &Socket::max_queue_bytes, {4096, 64 << 20},
-               "largest size of the responses that a client has not read yet")};
+               "largest total size of the responses that a client has not read yet")};
   keys.socket.assign(keys.look.begin(), keys.look.end());
   keys.socket.insert(keys.socket.end(), own.begin(), own.end());
 }
 
 void declare_gpio(RigKeys& keys) {
-  keys.gpio = {required("debounce_s", &GpioSettings::debounce_s, {0.0001, 0.1},
-                        "a new level must be constant for this time"),
-               required("stale_after_s", &GpioSettings::stale_after_s, {0.01, 10},
-                        "time without a reading of the lines, or without a cycle, until the reaction"),
-               optional("look_interval_s", &GpioSettings::look_interval_s, {0.001, 0.1},
-                        "interval of the readings between edges; at most a quarter of `stale_after_s`")};
+  keys.gpio = {
+      required("debounce_s", &GpioSettings::debounce_s, {0.0001, 0.1},
+               "time for which a new level of an input must be constant before it is accepted"),
+      required("stale_after_s", &GpioSettings::stale_after_s, {0.01, 10},
+               "time without a reading of the lines until F502, and time without a cycle of the control loop "
+               "until the enable output is switched off"),
+      optional(
+          "look_interval_s", &GpioSettings::look_interval_s, {0.001, 0.1},
+          "interval at which the lines are read if no edge occurs; at most a quarter of `stale_after_s`")};
   using Line = drivers::GpioLineSettings;
   keys.gpio_line = {
       required("chip", &Line::chip, {}, "[word that identifies one chip](#devices-of-the-computer)"),
       optional("line", &Line::line, {}, "name of the line"),
-      optional("offset", &Line::offset, {0, 65535}, "number of the line in the chip, in place of `line`"),
+      optional("offset", &Line::offset, {0, 65535},
+               "number of the line in the chip; may be given in place of `line`"),
       required("active", &Line::active_low, {"high", "low"}, "level at which the line is active")};
   keys.gpio_input = {
       optional("bias", &Line::bias, {"as_is", "disabled", "pull_up", "pull_down"}, "inputs: pull resistor")};
@@ -263,33 +295,38 @@ void declare_gpio(RigKeys& keys) {
 
 void declare_modbus(RigKeys& keys) {
   keys.exchange = {required("exchange_deadline_s", &LoopSettings::exchange_deadline_s, {1e-4, 1},
-                            "an exchange that takes longer has failed; a new session is opened")};
+                            "time after which an exchange has failed and a new session is opened")};
   keys.connecting = {
       required("connect_deadline_s", &ReconnectSettings::connect_deadline, {1e-3, 30},
-               "limit for opening a session"),
+               "time limit for opening a session"),
       required("first_pause_s", &ReconnectSettings::first_pause, {1e-3, 60},
-               "first pause between two connection attempts; it doubles after each attempt"),
+               "first pause between two connection attempts; the pause doubles after each attempt"),
       required("longest_pause_s", &ReconnectSettings::longest_pause, {1e-3, 600}, "longest pause")};
   keys.budget = {optional("accept_over_budget", &RigFile::accept_over_budget, {},
                           "`true`: accept a `rate_hz` that exceeds the bus budget")};
   keys.module = {{"map", "a path", "", "[board map](board-map.md)"},
-                 {"unit", "0 to 255", "", "unit id of the board; 1 to 247 with RTU frames"},
-                 {"modules", "list", "none", "several modules, in place of one"}};
+                 {"unit", "0 to 255", "", "unit id of the board; with RTU frames, 1 to 247"},
+                 {"modules", "list", "none", "several modules, in place of `map` and `unit` for one module"}};
   using drivers::LinkHabits;
   keys.habits = {
       optional("settle_s", &LinkHabits::settle_s, {0, 30},
-               "time from opening a connection to the first request, below `connect_deadline_s`"),
-      optional("repeat_after_s", &LinkHabits::repeat_after_s, {0.001, 1},
-               "time without a response until a request is repeated, below `exchange_deadline_s`", "never")};
+               "waiting time between the opening of a connection and the first request; must be below "
+               "`connect_deadline_s`"),
+      optional(
+          "repeat_after_s", &LinkHabits::repeat_after_s, {0.001, 1},
+          "time without a response after which a request is repeated; must be below `exchange_deadline_s`",
+          "never")};
   using drivers::TcpAddress;
-  keys.tcp = {required("host", &TcpAddress::host, {}, "numeric IPv4 or IPv6 address; names are not resolved"),
+  keys.tcp = {required("host", &TcpAddress::host, {},
+                       "numeric IPv4 or IPv6 address of the board; host names are not resolved"),
               required("port", &TcpAddress::port, {1, 65535}, "the standard port of Modbus TCP is 502")};
   keys.framing = {optional("framing", &TcpAddress::rtu_framing, {"tcp", "rtu"},
-                           "`rtu` for serial servers that forward RTU frames")};
+                           "`rtu`: the board is connected to a serial server that forwards RTU frames")};
   keys.rtu_framing = {optional("silence_s", &TcpAddress::silence_s, {0, 1},
-                               "with `framing: rtu`: silence between a response and the next request")};
-  keys.numbering = {{"accept_no_transaction_id", "a text", "none",
-                     "for gateways that do not return the transaction id; states the accepted risk"}};
+                               "only with `framing: rtu`: silence between a response and the next request")};
+  keys.numbering = {
+      {"accept_no_transaction_id", "a text", "none",
+       "needed for gateways that do not return the transaction id; the text states the accepted risk"}};
   using drivers::SerialLine;
   keys.serial = {
       required("device", &SerialLine::device, {}, "path of the device, such as `/dev/serial/by-id/...`"),
@@ -298,8 +335,9 @@ void declare_modbus(RigKeys& keys) {
       optional("silence_s", &SerialLine::silence_s, {1e-5, 1}, "silence between frames", "3.5 characters"),
       required("turnaround_s", &SerialLine::turnaround_s, {0, 1}, "response time of a module"),
       optional("adapter_latency_s", &SerialLine::adapter_latency_s, {0, 1},
-               "delay of a response by the adapter", "value of the kernel"),
-      optional("echo", &SerialLine::echo, {}, "`true`: the adapter also receives the frames that it sends")};
+               "time by which the adapter delays a response", "value of the kernel"),
+      optional("echo", &SerialLine::echo, {},
+               "`true`: the adapter also receives the frames that it has sent")};
 }
 
 void declare_converters(RigKeys& keys) {
@@ -313,21 +351,23 @@ void declare_converters(RigKeys& keys) {
                        required("channel", &IioTerminal::channel, {},
                                 "such as `voltage0`, `current1`, `voltage0-voltage1`, `pressure`")};
   keys.iio_output = {
-      required("raw_max", &IioTerminal::raw_max, {1, largest_raw}, "outputs: largest raw number")};
+      required("raw_max", &IioTerminal::raw_max, {1, largest_raw}, "only for outputs: largest raw number")};
   keys.heartbeat = {
-      {"raw", "two whole numbers", "", "numbers that are written alternately"},
-      required("timeout_s", &drivers::IioHeartbeat::timeout_s, {0.001, 3600},
-               "time without a change after which the external circuit switches off the valves")};
+      {"raw", "two whole numbers", "", "two raw numbers that are written to this output alternately"},
+      required(
+          "timeout_s", &drivers::IioHeartbeat::timeout_s, {0.001, 3600},
+          "time without a change of this output after which the external circuit switches off the valves")};
   keys.seed = {
       required("seed", &RigFile::seed, document::Range{.lower = 0}, "the same seed gives the same noise")};
-  keys.simulated = {required("watchdog_timeout_s", &simulation::SimulatedBoardSettings::watchdog_timeout_s,
-                             {0, 60},
-                             "time without an exchange until the outputs go to rest; 0: no watchdog")};
+  keys.simulated = {
+      required("watchdog_timeout_s", &simulation::SimulatedBoardSettings::watchdog_timeout_s, {0, 60},
+               "time without an exchange after which the simulated outputs go to rest; 0: no watchdog")};
   using simulation::SimulatedChannel;
-  keys.converters = {required("output_bits", &SimulatedChannel::output_bits, {0, 24}, "0: no quantisation"),
-                     required("input_bits", &SimulatedChannel::input_bits, {0, 24}, "0: no quantisation"),
-                     {"plants", "map", "", "a plant for each channel, under the name of the channel"},
-                     {"events", "list", "none", "timed events"}};
+  keys.converters = {
+      required("output_bits", &SimulatedChannel::output_bits, {0, 24}, "0: no quantisation"),
+      required("input_bits", &SimulatedChannel::input_bits, {0, 24}, "0: no quantisation"),
+      {"plants", "map", "", "map with one plant per channel; each key is the name of a channel"},
+      {"events", "list", "none", "timed events"}};
   using Plant = simulation::PlantSettings;
   keys.plant = {
       {"model", "a path", "", "model file of the simulated finger"},
@@ -335,7 +375,8 @@ void declare_converters(RigKeys& keys) {
       required("pressure_noise_kpa", &Plant::pressure_noise_kpa, {0, 100}, "standard deviation"),
       optional("temperature_c", &Plant::temperature_c, {-50, 150}, "ambient temperature"),
       optional("temperature_noise_c", &Plant::temperature_noise_c, {0, 100}, "standard deviation"),
-      {"object", "map", "none", "object at the start, with `position_mm` and `yielding`"}};
+      {"object", "map", "none",
+       "object in the path of the finger at the start; a map with `position_mm` and `yielding`"}};
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ for argument in "$@"; do
   esac
 done
 stored=$here/library/libsoftgrip.abi library=$build/library/libsoftgrip.so
-command -v abidiff abidw >/dev/null || { echo "abi.sh: abidiff is missing: Debian's abigail-tools" >&2; exit 77; }
+command -v abidiff abidw >/dev/null || { echo "abi.sh: abidiff is missing; install the Debian package abigail-tools" >&2; exit 77; }
 
 describe() {
   abidw --suppr "$here/library/libsoftgrip.abignore" --exported-interfaces-only --no-corpus-path --no-comp-dir-path \
@@ -34,11 +34,11 @@ describe >"$work/present.abi"
 [ -n "$(soname_of "$work/present.abi")" ] || { echo "abi.sh: $library has no SONAME" >&2; exit 1; }
 compatible=true
 if [ -e "$stored" ] && [ "$(architecture_of "$stored")" != "$(architecture_of "$work/present.abi")" ]; then
-  echo "abi.sh: $stored is of another processor" >&2
+  echo "abi.sh: $stored was written on another processor architecture" >&2
   exit 77
 fi
 if [ ! -e "$stored" ] || [ "$(soname_of "$stored")" != "$(soname_of "$work/present.abi")" ]; then
-  $renew || { echo "abi.sh: $(soname_of "$work/present.abi") is new: scripts/abi.sh --renew stores its interface" >&2; exit 1; }
+  $renew || { echo "abi.sh: $(soname_of "$work/present.abi") is new; scripts/abi.sh --renew stores the interface of this SONAME" >&2; exit 1; }
 else
   abidiff --no-added-syms "$stored" "$work/present.abi" >"$work/difference.txt" || compatible=false
 fi

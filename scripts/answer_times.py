@@ -127,7 +127,7 @@ class Measurement(bench.BenchTest):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seconds", type=float, default=10, help="of each of the four turns")
+    parser.add_argument("--seconds", type=float, default=10, help="duration of each of the four measurements [s]")
     Measurement.seconds = parser.parse_args().seconds
     outcome = bench.unittest.TextTestRunner(verbosity=0).run(Measurement())
     sys.exit(0 if outcome.wasSuccessful() else 1)

@@ -27,7 +27,7 @@ if [ ! -s "$store/$release.tar" ]; then
   echo "chroot: $release"
   archive=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Origin: Debian' 'Component: main' |
     grep -v security | head -n 1)
-  [ -n "$archive" ] || { echo "chroot_test.sh: apt names no archive of Debian" >&2; exit 1; }
+  [ -n "$archive" ] || { echo "chroot_test.sh: apt lists no archive of Debian" >&2; exit 1; }
   options=()
   while IFS= read -r line; do options+=(--aptopt="$line"); done < <(apt-config dump Acquire::http::Proxy Acquire::https::Proxy)
   mmdebstrap --quiet --format=tar --variant=minbase --include=ca-certificates,git "${options[@]}" \

@@ -147,7 +147,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--only", nargs="+", help="cases whose name contains one of these")
+    parser.add_argument("--only", nargs="+", help="run only the cases whose name contains one of these texts")
     parser.add_argument("--page", type=pathlib.Path)
     args = parser.parse_args()
     args.build = args.build.resolve()
@@ -162,7 +162,7 @@ def main():
             print(f"{row['program']}, {name}: {row['wall_s']:.1f} s, {row['processor_s']:.1f} s of processor time, {row['verdict']}",
                   flush=True)
     if not rows:
-        parser.error("no case has such a name")
+        parser.error("no name of a case contains one of these texts")
     text = page(args, rows)
     args.page.write_text(text) if args.page else print(text, end="")
 

@@ -27,11 +27,11 @@ code=$(sed -nE 's/^npm (ERR!|error) code ([A-Z_]+)$/\2/p' "$folder/npm.log" | he
 case $code in
   ENOTFOUND | EAI_AGAIN | ECONNREFUSED | ECONNRESET | ETIMEDOUT | ENETUNREACH | EHOSTUNREACH | ERR_SOCKET_TIMEOUT | \
     SELF_SIGNED_CERT_IN_CHAIN | UNABLE_TO_GET_ISSUER_CERT_LOCALLY | UNABLE_TO_VERIFY_LEAF_SIGNATURE)
-    echo "npm reaches no registry ($code): @mcap/core is not installed" >"$folder/unreachable"
-    echo "NOT TESTED: MCAP by its own reader, for $(cat "$folder/unreachable")" >&2
+    echo "npm reaches no registry ($code), so @mcap/core is not installed" >"$folder/unreachable"
+    echo "NOT TESTED: MCAP files with the reader @mcap/core, because $(cat "$folder/unreachable")" >&2
     exit 0
     ;;
 esac
 tail -n 20 "$folder/npm.log" >&2
-echo "mcap_reader.sh: npm did not install @mcap/core (all of it: $folder/npm.log)" >&2
+echo "mcap_reader.sh: npm did not install @mcap/core (complete output: $folder/npm.log)" >&2
 exit 1

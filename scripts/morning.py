@@ -68,7 +68,7 @@ def sentences(page):
     reported the interruption last, and the amount of data that the model has."""
     text = re.sub(r"-?\d+(\.\d+)?", "#", page.replace("[...]", ""))
     text = re.sub(r"disconnected:[^.]*", "disconnected", " ".join(text.split()))
-    text = text.replace("watchdog_tripped: no good exchange for # s: the board's own watchdog acts after # s",
+    text = text.replace("watchdog_tripped: no successful exchange with the board for # s; the board's own watchdog vents the outputs after # s",
                         "disconnected")
     text = re.sub(r"model (unknown|healthy|suspect)", "model", text)
     return re.split(r"(?<=[.:]) ", text)
@@ -133,15 +133,15 @@ def play():
             return self.emulated.port
 
         def no_cable(self):
-            self.say("## The cable is not in\n\nsoftgripd was started before the board was connected. The missing "
+            self.say("## The cable is not connected\n\nsoftgripd was started before the board was connected. The missing "
                      "connection is not a fault yet. The status shows the connection attempts and their interval.")
             bench.wait_for("slow attempts", lambda: self.softgripd.status()["bus"]["attempts"] >= 4)
             self.show_status()
             self.say("The cable is connected:")
 
         def cable_out(self):
-            self.say("## The cable comes out\n\nThe rig is idle and holds no part. The fault latches. "
-                     "While its cause is present, the daemon refuses `acknowledge` with a message that names the cause.")
+            self.say("## The cable is disconnected\n\nThe rig is idle and holds no part. The fault latches. "
+                     "While the cause of the fault is present, the daemon refuses `acknowledge` with a message that names the cause.")
             self.emulated.ask("fault cable")
             self.softgripd.wait_for_state("faulted")
             bench.wait_for("attempts", lambda: self.softgripd.status()["bus"]["attempts"] >= 2)

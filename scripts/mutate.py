@@ -152,7 +152,7 @@ def main():
     parser.add_argument("--per-file", type=int, default=6)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--again", type=pathlib.Path, help="a report whose survivors are judged once more")
+    parser.add_argument("--again", type=pathlib.Path, help="report of an earlier run, whose surviving mutants are tested again")
     parser.add_argument("--out", type=pathlib.Path, default=SOURCE / "build/mutants/report.md")
     options = parser.parse_args()
 

@@ -311,7 +311,7 @@ def main():
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
     parser.add_argument("--healthy", type=int, default=6)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--keep", type=pathlib.Path, help="keep the recordings here, and go on with those that are there")
+    parser.add_argument("--keep", type=pathlib.Path, help="folder for the recordings; recordings that the folder already contains are used again")
     parser.add_argument("--page", type=pathlib.Path)
     args = parser.parse_args()
     softgrip = (args.build / "tools/softgrip").resolve()

@@ -110,7 +110,7 @@ class Campaign(bench.BenchTest):
             for _ in range(5):
                 self.master.write("command_counter", counter, plc.START, 1)
             if self.master.done(counter) != (plc.REFUSED, plc.FIRST_AFTER_START):
-                self.wrong.append("a new gateway took an old command for a new one")
+                self.wrong.append("a new gateway executed an old command as if the command were new")
             time.sleep(0.1)
             return None
         return self.master.done(counter)[0]
@@ -119,15 +119,15 @@ class Campaign(bench.BenchTest):
         self.counts[OUTCOMES.get(outcome, "not answered")] += 1
         if executed is None:
             if self.starts():
-                self.wrong.append(f"carried out by a daemon that came later ({victim})")
+                self.wrong.append(f"carried out by a daemon that was started later ({victim})")
             return
         self.counts[f"carried out {executed} times"] += 1
         if executed > 1:
             self.wrong.append(f"carried out {executed} times ({victim})")
         if outcome == plc.ACCEPTED and executed != 1:
-            self.wrong.append(f"accepted and not carried out ({victim})")
+            self.wrong.append(f"accepted, but not carried out exactly once ({victim})")
         if outcome == plc.REFUSED and executed != 0:
-            self.wrong.append(f"refused and carried out ({victim})")
+            self.wrong.append(f"refused, but carried out ({victim})")
 
     def wait_for_result(self):
         """Waits for the result of a grip. Before the fingers move, the gateway shows the result of the previous
@@ -182,7 +182,7 @@ class Campaign(bench.BenchTest):
         for name, count in sorted(self.counts.items()):
             print(f"{count:6} {name}")
         times = sorted(self.latencies)
-        print(f"vent, from the master's write to the board's output: p50 {times[len(times) // 2]:.1f} ms, "
+        print(f"time from the client's write of a vent to the change of the board's output: p50 {times[len(times) // 2]:.1f} ms, "
               f"p99 {times[int(len(times) * 0.99)]:.1f} ms, max {times[-1]:.1f} ms, {len(times)} times")
         self.assertEqual(self.wrong, [])
 

@@ -15,9 +15,9 @@ differs=0
 
 compare() {  # compare NAME FILE
   if cmp -s "$work/other/$2" "$work/this/$2"; then
-    echo "$1: the same"
+    echo "$1: identical"
   else
-    echo "$1: differs"
+    echo "$1: different"
     diff "$work/other/$2" "$work/this/$2" | head -n 6
     differs=1
   fi

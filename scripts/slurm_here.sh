@@ -6,7 +6,7 @@
 set -euo pipefail
 here=$(dirname "$(realpath "$0")")
 [ $# -ge 2 ] || { sed -n '2,5s/^# \{0,1\}//p' "$0" >&2; exit 2; }
-[ "$(id -u)" -eq 0 ] || { echo "slurm_here.sh: Slurm's daemon starts jobs as their users: run this as root" >&2; exit 1; }
+[ "$(id -u)" -eq 0 ] || { echo "slurm_here.sh: run this script as root, because Slurm's daemon starts each job as the user of the job" >&2; exit 1; }
 bash "$here/packages.sh" workflows slurm
 
 dir=$(realpath -m "$1")

@@ -30,7 +30,7 @@ started=$SECONDS
 say() { printf '\n== %s (%d s)\n' "$*" $((SECONDS - started)); }
 # Prints the last lines of the output. They list the skipped tests.
 end() {
-  if [ -s build/mcap/unreachable ]; then printf '\nNOT TESTED: MCAP by its own reader, for %s\n' "$(cat build/mcap/unreachable)"; fi
+  if [ -s build/mcap/unreachable ]; then printf '\nNOT TESTED: MCAP files with the reader @mcap/core, because %s\n' "$(cat build/mcap/unreachable)"; fi
   say "done"
   exit 0
 }
@@ -62,7 +62,7 @@ sanitized=$!
 start_computing_tests release "$without"
 set +m
 trap 'kill -- -$sanitized -$computing 2>/dev/null || true' EXIT
-say "test: in real time"
+say "tests in real time"
 failed=false
 run_real_time_tests release "$without" || failed=true
 # The Debian package is built while the rest of the computing tests run.
@@ -71,7 +71,7 @@ bash scripts/package.sh | tail -n 1
 say "sanitizers"
 wait $sanitized || { tail -n 40 build/sanitize.log >&2; exit 1; }
 $all || bash scripts/sanitize.sh
-say "test: the others"
+say "other tests"
 end_computing_tests release || failed=true
 ! $failed || exit 1
 if $all; then

@@ -183,7 +183,7 @@ def page(results, frequencies_hz, command, version):
     lines = [*results_page.head("Tracking control of fingers that are simulated with equations from textbooks", meaning, version, command,
                                 f"{len(results)} simulated fingers in real time on Modbus TCP, 200 Hz"),
              " ".join(__doc__.split("\n\n")[2].replace("(tests/blind/textbook)", "(`tests/blind/textbook`)").split()), "",
-             f"There are {len(results)} fingers. The amplitude of the sines is 25 % of the span. The standard deviation of the sensor noise is "
+             f"The study contains {len(results)} simulated fingers. The amplitude of the sines is 25 % of the span. The standard deviation of the sensor noise is "
              f"{NOISE_MM} mm. The RMS error contains the sensor noise, so no controller can have an RMS error below the noise.", "",
              "| frequency | error: identified model and PID | error: best PID alone | error: scheme of the paper | error of the best PID / error of identified model and PID, median | "
              "smallest of these ratios | this ratio without the sensor noise, median | error of the best PID / error of the scheme of the paper, median |", "|---|---|---|---|---|---|---|---|"]

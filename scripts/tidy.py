@@ -153,7 +153,7 @@ def look(shown_by):
 def main():
     wanted = sources(sys.argv[1:] or ["."])
     if not wanted:
-        print("tidy.py: no sources there", file=sys.stderr)
+        print("tidy.py: the given paths contain no sources", file=sys.stderr)
         return 2
     found, rooms = commands()
     wanted = [name for name in wanted if not other_library(name, found)]
@@ -162,7 +162,7 @@ def main():
     keys = Keys(found)
     due = {source: CACHE / keys.of(source) for source in wanted}
     due = {source: mark for source, mark in due.items() if not mark.exists()}
-    print(f"{len(wanted)} sources, {len(due)} of them to be looked at", flush=True)
+    print(f"{len(wanted)} sources, {len(due)} of them to be checked", flush=True)
 
     started, failed, told = time.monotonic(), 0, set()
     with concurrent.futures.ThreadPoolExecutor(int(os.environ.get("JOBS", os.cpu_count()))) as pool:
@@ -180,7 +180,7 @@ def main():
             findings = re.split(r"\n(?=\S+:\d+:\d+: (?:error|warning): )", "\n" + text)
             print("\n".join(one for one in findings if one not in told).strip() or names[0], flush=True)
             told |= set(findings)
-    print(f"{failed} of {len(waiting)} looks with findings, {time.monotonic() - started:.0f} s")
+    print(f"{failed} of {len(waiting)} checks with findings, {time.monotonic() - started:.0f} s")
     return 1 if failed else 0
 
 

@@ -77,9 +77,9 @@ class Day(test_vacuum.Vacuum):
             self.wrong.append(f"{what}: the output stays at {self.samples[-1][1]:.2f} kPa")
         after = [kpa for at, kpa, _ in self.samples if at >= since]
         if max(after) > SETTLED_KPA:
-            self.wrong.append(f"{what}: the output went to {max(after):.2f} kPa, above rest")
+            self.wrong.append(f"{what}: the output went to {max(after):.2f} kPa, above the rest pressure")
         if any(b < a - SETTLED_KPA for a, b in zip(after, after[1:])):
-            self.wrong.append(f"{what}: the output moved away from rest")
+            self.wrong.append(f"{what}: the output moved away from the rest pressure")
 
     def grip(self):
         self.hold()
@@ -125,7 +125,7 @@ class Day(test_vacuum.Vacuum):
         self.mark("goes on")
         self.softgripd.child.send_signal(signal.SIGCONT)
         self.softgripd.wait_for_state("faulted")
-        self.to_rest("behind a pause")
+        self.to_rest("after a pause")
         bench.wait_for("an acknowledged fault", lambda: self.softgripd.ask("acknowledge")["ok"], pause_s=0.1)
 
     def kill(self):
@@ -140,7 +140,7 @@ class Day(test_vacuum.Vacuum):
         self.hold()
         self.mark("SIGTERM")
         self.softgripd.end()
-        self.to_rest("an orderly end")
+        self.to_rest("an end by SIGTERM")
 
     def clear(self):
         self.over.set()

@@ -59,7 +59,7 @@ def table(times, only):
             continue
         waited, wrong = repeated(name, times)
         if not waited:
-            sys.exit(f"{name}: no vent was heard")
+            sys.exit(f"{name}: the test reported no vent")
         worst = max(worst, *waited)
         lines.append(f"| {words} | {len(waited)} | {max(waited) * 1000:.0f} ms | {statistics.median(waited) * 1000:.0f} ms | {wrong} |")
         print(lines[-1], flush=True)
@@ -70,7 +70,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--times", type=int, default=20, help="how often each attack is repeated")
     parser.add_argument("--page", action="store_true", help="write the table into docs/results/vents-under-attack.md")
-    parser.add_argument("--only", default="", help="the attacks whose test's name holds this")
+    parser.add_argument("--only", default="", help="run only the attacks whose test name contains this text")
     arguments = parser.parse_args()
     text = table(arguments.times, arguments.only)
     print(text)
@@ -78,7 +78,7 @@ def main():
         begin, end = map(re.escape, MARKS)
         page, count = re.subn(f"({begin}).*({end})", lambda m: m[1] + text + m[2], PAGE.read_text(), flags=re.DOTALL)
         if count != 1:
-            sys.exit(f"{PAGE} has no place for it")
+            sys.exit(f"{PAGE} does not contain the two marks between which the table belongs")
         PAGE.write_text(page)
 
 

@@ -191,7 +191,7 @@ def main():
             minutes = [("quiet", time.sleep), ("crowd", crowd.run)]
             for name, act in minutes if pair % 2 == 0 else reversed(minutes):
                 measure(name, daemon, web, options.seconds, act)
-        print(f"the crowd took {crowd.taken / 1e6:.1f} MB; {crowd.refused} connections were refused")
+        print(f"the simulated browsers received {crowd.taken / 1e6:.1f} MB; {crowd.refused} connections were refused")
     finally:
         for process in reversed(processes):
             process.terminate()

@@ -37,18 +37,18 @@ FAULTS = (
      "if (input.request.id < halted_by_ || ", "if ("),
     ("a fault is acknowledged while its cause is present", "control/tick/supervisor.cpp",
      "if (cause.code != FaultCode::none) {", "if (false) {"),
-    ("a fault holds where it should vent", "control/tick/supervisor.cpp",
+    ("a fault holds the pressure although the fault must vent", "control/tick/supervisor.cpp",
      "if (action_for(fault.code, fault_phase_) == SafeAction::vent) venting_ = all_;", ""),
     ("outputs that another Modbus client wrote do not cause a fault", "daemon/loop/bus.cpp", "return FaultCode::outputs_overwritten;",
      "return FaultCode::none;"),
-    ("what another master wrote between two requests is written over", "daemon/loop/bus.cpp", "    if (holds) continue;",
+    ("values that another Modbus client wrote between two requests are overwritten", "daemon/loop/bus.cpp", "    if (holds) continue;",
      "    if (holds || true) continue;"),
-    ("the bus takes the lowest pressure for the rest pressure", "daemon/loop/bus.cpp",
+    ("the bus thread uses the lowest pressure as the rest pressure", "daemon/loop/bus.cpp",
      "rest_kpa_[i] = control::resting_kpa(rig.channels[i].limits);",
      "rest_kpa_[i] = rig.channels[i].limits.pressure_min_kpa;"),
-    ("a vent goes to the lowest pressure", "control/tick/channel_controller.cpp",
+    ("a vent sets the lowest pressure instead of the rest pressure", "control/tick/channel_controller.cpp",
      "      return resting_kpa(limits_);", "      return limits_.pressure_min_kpa;"),
-    ("a command that crosses rest goes on by almost three steps", "control/elements/limits.cpp",
+    ("a command that crosses the rest pressure continues by almost three steps", "control/elements/limits.cpp",
      "  return {reached, in_range(limits, wanted_kpa) != wanted_kpa, reached != inside, false, capped};",
      "  const double past_kpa = reached - resting_kpa(limits);\n"
      "  const double slew = past_kpa > 0 ? limits.slew_up_kpa_per_s : -limits.slew_down_kpa_per_s;\n"
@@ -115,7 +115,7 @@ def main():
     chosen = [fault for fault in FAULTS if any(word in fault[0] for word in sys.argv[1:] or [""])]
     for _, name, old, *_ in chosen:
         if (SOURCE / name).read_text().count(old) != 1:
-            sys.exit(f"{name} does not hold this once: {old}")
+            sys.exit(f"{name} does not contain this text exactly once: {old}")
     prepare()
     missed = 0
     print("| inserted error | simulated program | first seed that detects the error | violated invariant |\n|---|---|---|---|", flush=True)

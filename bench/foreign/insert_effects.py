@@ -122,7 +122,7 @@ def write_set(data_set, pairs, folder):
 
 
 def chosen(pairs, pulses=False):
-    """Returns, for each later run, the pair of `repeats` with the largest number of baseline runs."""
+    """For each later run, returns the element of `pairs` with the largest number of baseline runs."""
     most = {}
     for pair in pairs:
         if (pair.group != "runs") == pulses and len(pair.baseline) > len(getattr(most.get(pair.later), "baseline", [])):

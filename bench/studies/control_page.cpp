@@ -75,8 +75,8 @@ sysid::Chart chart_of(const ControlStudy& study, double mismatch) {
 
 sysid::Table table_of(const ControlScheme& scheme) {
   sysid::Table table;
-  table.header = {"f [Hz]",      "± [mm]",  "model error [%]",  "RMSE [mm]",  "90 % of draws",
-                  "% of stroke", "largest", "mean, most [kPa]", "kp, ki, kd", "Ms"};
+  table.header = {"f [Hz]",      "± [mm]",  "model error [%]",     "RMSE [mm]",  "90 % of draws",
+                  "% of stroke", "largest", "mean, largest [kPa]", "kp, ki, kd", "Ms"};
   table.numeric = {true, true, true, true, true, true, true, true, false, true};
   for (const ControlFigure& f : scheme.figures) {
     table.rows.push_back({significant(f.frequency_hz), significant(f.amplitude_mm),
@@ -106,10 +106,11 @@ sysid::Page control_page(const ControlStudy& study) {
             " mm, or less if the finger cannot follow this amplitude; stroke: twice the amplitude"},
        {"Loop",
         significant(options.rate_hz) + " Hz, noise " + significant(options.noise_mm) + " mm, 0 to 60 kPa"},
-       {"Gains", "the gains of all schemes were tuned in one way: smallest RMSE on " +
+       {"Gains", "the gains of all schemes were tuned by the same criterion: smallest RMSE on " +
                      std::to_string(options.search_draws) + " other fingers, sensitivity peak Ms at most " +
                      significant(options.most_sensitivity)},
-       {"Fingers", std::to_string(options.draws) + " for each result, each parameter with a separate error"},
+       {"Fingers", std::to_string(options.draws) +
+                       " fingers for each result; each parameter of a finger has a separate random error"},
        {"Time", significant(study.wall_s, 3) + " s"}});
   page.section("Results by scheme");
   for (const double each : options.mismatches) {
@@ -119,7 +120,7 @@ sysid::Page control_page(const ControlStudy& study) {
                  {{chart_of(study, each)}}});
   }
   page.list(
-      {"Full inverse of the extended structure compared with PID alone, reduction of the RMSE by a factor "
+      {"Compared with PID alone, the full inverse of the extended structure reduces the RMSE by a factor "
        "of " +
            gains_in_words(study, "pid", "full_extended", mismatch) + ".",
        "Plan for a finger that follows the published model, which has no inverse, compared with PID alone: " +

@@ -252,7 +252,7 @@ ControlStudy study_control(const ControlStudyOptions& options) {
   };
   ControlStudy study;
   study.options = options;
-  say("identifying the twin");
+  say("identify models from responses of the simulated rig");
   const Identified base = identify_twin({}, options);
   study.identified = base.model;
   study.identified_rmse_mm = base.rmse_mm;

@@ -46,8 +46,8 @@ struct ControlFigure {
   double amplitude_mm = 0;  ///< amplitude of the reference: the largest amplitude that bench_twin can track
                             ///< at this frequency, but not more than the amplitude of the study
   control::PidSettings pid;
-  double sensitivity = 0;  ///< largest sensitivity Ms of the loop, over the simulated fingers for the search
-                           ///< of the gains
+  double sensitivity = 0;  ///< largest sensitivity Ms of the loop over the simulated fingers with which the
+                           ///< gains were searched
   std::string limited_by;
   Spread rmse_mm;
   Spread most_mm;                ///< largest absolute error of each simulated finger
@@ -73,8 +73,8 @@ struct ControlStudy {
   ControlStudyOptions options;
   model::Model identified;  ///< model with the published structure, identified from logs of bench_twin
   double identified_rmse_mm = 0;
-  /// Model with the published structure and additional blocks for the valve, identified from the logs of
-  /// `identified`.
+  /// Model with the published structure and additional blocks for the valve. The model was identified from
+  /// the same logs as `identified`.
   model::Model extended;
   double extended_rmse_mm = 0;
   std::vector<ControlScheme> schemes;

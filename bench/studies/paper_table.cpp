@@ -55,11 +55,12 @@ std::vector<PaperRow> paper_table(const PaperTableOptions& options) {
 
 const std::vector<std::string>& paper_table_remarks() {
   static const std::vector<std::string> remarks{
-      "The paper gives its pressures, rates, spans and data only in figures, so this study uses own signals "
-      "of the same kinds. The patterns of the columns can be compared, but not their digits.",
+      "The paper gives its pressures, rates, spans and data only in figures, so this study uses other "
+      "signals of similar shape. The patterns of the columns can be compared, but not the exact values.",
       "For a finger that follows the published model, only the noise remains, even on signals that were not "
       "fitted. The real finger of the paper had an error several times larger. On signals that were not "
-      "fitted, its error was up to three times larger than on TP1. The real finger has an effect that the "
+      "fitted, the error of the real finger was up to three times larger than on TP1. The real finger has an "
+      "effect that the "
       "published structure lacks.",
       "An ordinary actuator behind lag and dead time shows the pattern of the paper's "
       "figures at "

@@ -151,8 +151,9 @@ model::Model element(double ratio) {
   return model::with_values(published, values);
 }
 
-/// Computes the explicit ("multiplicative") inverse of a Bouc-Wen element, p(k) = (y(k) + h(k-1))/alpha. Sets
-/// `growth` to the factor by which an error of p grows per sample.
+/// Computes the explicit ("multiplicative") inverse of a Bouc-Wen element: the pressure p(k) = (y(k) +
+/// h(k-1))/alpha for the displacement y and the hysteretic state h. Sets `growth` to the factor by which an
+/// error of p grows per sample.
 std::vector<double> explicit_inverse(const model::Model& element, const std::vector<double>& wanted_mm,
                                      double tick_s, double& growth) {
   const double alpha = model::flat_values(element)[0];

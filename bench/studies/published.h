@@ -39,8 +39,8 @@ struct HiddenLatency {
   double planned_ratio = 0;  ///< ratio beta/(alpha + 1/k0) that was expected when the study was planned
   double ratio = 0;          ///< ratio beta/(alpha + 1/k0) of the fitted model
   double true_ratio = 0;
-  double other_ratio = 0;  ///< ratio beta/(alpha + 1/k0) of the model that was fitted to the other kind of
-                           ///< triangles
+  double other_ratio = 0;  ///< ratio beta/(alpha + 1/k0) of a second model, which was fitted to the triangles
+                           ///< of the other kind
   double rmse_mm = 0;
   double span_mm = 0;
   double tau2_s = 0;  ///< time constant of the faster of the two fitted branches
@@ -112,7 +112,7 @@ enum class Triangles {
   mixed,   ///< six triangles with independent amplitudes and rates; the sequence is played twice
   rising,  ///< three triangles whose rate increases with the amplitude; the sequence is played four times
 };
-/// Returns the command of a sequence of triangles. displacement_mm is empty.
+/// Returns a log with the command of a sequence of triangles. The log contains no readings.
 [[nodiscard]] sysid::Log triangles(Triangles choice, double rate_hz);
 
 [[nodiscard]] PublishedStudy study_published(const PublishedOptions& options);

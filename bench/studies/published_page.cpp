@@ -89,7 +89,7 @@ void latency_section(sysid::Page& page, const PublishedStudy& study) {
                                   "0.016, tau2 0.4 s.",
                               study.latency));
   page.figure({"fitted ratio by hidden latency",
-               "The fitted ratio against the hidden latency.",
+               "Fitted ratio beta/(alpha + 1/k0) over the hidden latency.",
                {{ratio_chart(study)}}});
   page.paragraph(
       "The ratio depends on the choice of triangles: two choices within one range of amplitude and frequency "
@@ -119,8 +119,8 @@ void match_section(sysid::Page& page, const PublishedStudy& study) {
          fit_charts(study.match_log, study.match_mm, "published model", "invertible actuator + valve")});
   }
   page.paragraph(
-      "The model of the simulated rig (bench_twin) is such an actuator. Its RMSE against the published "
-      "response to tp1 for eta = 2 /bar is " +
+      "The model of the simulated rig (bench_twin) is such an actuator. The RMSE of this model against the "
+      "published response to tp1 for eta = 2 /bar is " +
       fixed(study.twin_rmse_mm, 4) + " mm. All parameters except k0 were fitted.");
 }
 
@@ -168,9 +168,8 @@ void inverse_section(sysid::Page& page, const PublishedStudy& study) {
 void paper_section(sysid::Page& page, const PublishedStudy& study) {
   page.section("4. The paper's four figures");
   page.paragraph(
-      "Section 4 of the paper: its structure, identified on TP1, predicts TP2, SP1 and SP2. Repeated with "
-      "simulated "
-      "logs of two fingers, noise " +
+      "Section 4 of the paper: its structure, identified on TP1, predicts TP2, SP1 and SP2. This study "
+      "repeats the procedure with simulated logs of two fingers, noise " +
       significant(study.options.noise_mm) + " mm.");
   page.table(result::table_of(
       "RMSE in mm; in brackets: share of the span of the log [%], which the paper does not give.",

@@ -22,13 +22,13 @@ constexpr std::array<RefusalText, 13> texts{{
     {"The rig is starting, or a channel of the sequence has no valid reading.",
      "`softgrip status` names the channel; `softgrip doctor` finds the reason."},
     {"No sequence runs.", "`softgrip release` vents a pressurised finger."},
-    {"No fault is latched, and no grip result needs an acknowledgement.",
-     "The rig can be started: `softgrip start SEQUENCE`."},
+    {"There is nothing to acknowledge: no fault is latched, and no grip result needs an acknowledgement.",
+     "The rig is ready: `softgrip start SEQUENCE` starts a sequence."},
     {"The cause of a fault is still present.",
      "`softgrip status` names the remedy. Apply the remedy, then acknowledge again."},
     {"A stop or vent request superseded the start.", "To run the sequence, send the start request again."},
     {"No sequence runs and every channel is at its rest pressure.", "No finger is pressurised."},
-    {"The stop names a start that is not running and will not begin.",
+    {"The stop request names a start whose sequence does not run and will not begin.",
      "No action is required. To stop any running sequence, use `softgrip stop` without naming a start."},
 }};
 static_assert(static_cast<std::size_t>(RefusalCode::named_start_not_running) + 1 == texts.size());

@@ -36,10 +36,10 @@ constexpr std::string_view usual_cause =
     "the usual cause is a latency in the data that the model lacks: run `softgrip diagnose`";
 
 constexpr std::string_view creep_alone =
-    ": at this pressure, the model moves only by creep, because it has no elastic element (a play with "
-    "threshold 0, or a spring)";
+    ": at this pressure, the model moves only by creep, because the model has no elastic element (a spring, "
+    "or a play with threshold 0)";
 constexpr std::string_view planned_needs_none =
-    "use feedforward `planned`, which also works without an elastic element";
+    "use feedforward `planned`, which does not require an elastic element";
 
 /// Smallest immediate gain of a model with an element that responds immediately to the pressure. A
 /// Kelvin-Voigt spring without effect has the gain 1e-9 mm/kPa, which is below this limit.

@@ -63,19 +63,20 @@ class Fitting {
   void plan(PreparedSequence& prepared, const std::stop_token& stop) {
     for (const MissedPlan& missed : plan_steps(prepared, settings_, stop)) {
       const Step& step = sequence_.steps[missed.step];
-      problems_.warn(source_.problem(step.at,
-                                     "step '" + step.name + "': the model of channel '" +
-                                         settings_.channels[missed.channel].name +
-                                         "' cannot follow the reference within the pressure and slew limits: "
-                                         "the displacement deviates by up to " +
-                                         significant(rounded(missed.worst_mm), 6) + " mm from the reference",
-                                     "use a slower or smaller motion, or wider limits"));
+      problems_.warn(source_.problem(
+          step.at,
+          "step '" + step.name + "': the model of channel '" + settings_.channels[missed.channel].name +
+              "' cannot follow the reference within the pressure and slew limits: "
+              "the displacement deviates by up to " +
+              significant(rounded(missed.worst_mm), 6) + " mm from the reference",
+          "use a slower or smaller motion, or widen the pressure and slew limits"));
     }
-    if (stop.stop_requested()) report(sequence_.steps.front(), "the planning of this step was stopped");
+    if (stop.stop_requested())
+      report(sequence_.steps.front(), "the planning of this step was stopped before its end");
     if (prepared.planned_s > most_planned_s) {
       report(sequence_.steps.front(),
              "more than " + significant(most_planned_s, 6) +
-                 " s of motion would have to be planned before the start",
+                 " s of motion would have to be planned before the start of the sequence",
              "split the sequence, or use a feedforward other than `planned`");
     }
   }
@@ -191,9 +192,10 @@ class Fitting {
     if (by_kpa >= needed_kpa) return;
     report(step,
            "grips with " + significant(by_kpa, 6) + " kPa, but channel '" + channel.name +
-               "' detects a part only from " + significant(needed_kpa, 6) + " kPa on",
-           "a larger " + std::string(squeezes ? "squeeze_kpa" : "squeeze_max_kpa") +
-               ", or a smaller margin_mm under `detection` in the rig file");
+               "' detects a part only if the gripping pressure is at least " + significant(needed_kpa, 6) +
+               " kPa",
+           "increase " + std::string(squeezes ? "squeeze_kpa" : "squeeze_max_kpa") +
+               ", or reduce margin_mm under `detection` in the rig file");
   }
 
   void check_target(const Step& step, const ChannelSettings& channel) {
@@ -272,7 +274,7 @@ class Fitting {
   void check_verify(const Step& step, const ChannelSettings& channel) {
     if (step.verify.by == VerifyBy::pressure) {
       if (!channel.pressure_measured) {
-        report(step, "verifies the grip by pressure, but channel '" + channel.name +
+        report(step, "verifies the grip by its pressure, but channel '" + channel.name +
                          "' does not measure the pressure");
       }
       check_pressure_bound(step, channel);
@@ -293,7 +295,7 @@ class Fitting {
     if (!rest_passes) return;
     report(step,
            "verifies the grip by a pressure that channel '" + channel.name +
-               "' has even at rest, without a grip (" + significant(rest_kpa, 6) + " kPa)",
+               "' already has at rest, without a grip (" + significant(rest_kpa, 6) + " kPa)",
            below ? "use a lower pressure_max_kpa"
                  : "use pressure_max_kpa if the grip uses a pressure below the rest pressure");
   }
@@ -308,12 +310,13 @@ class Fitting {
     if (!compares || channel.limits.pressure_min_kpa >= rest_kpa || highest_kpa(step, channel) >= rest_kpa) {
       return;
     }
-    report(step,
-           "moves channel '" + channel.name + "' below its rest pressure (" + significant(rest_kpa, 6) +
-               " kPa), where detection, on_contact and squeeze_kpa cannot detect a part",
-           step.kind == StepKind::grip
-               ? "verify by: position, or by: pressure with pressure_max_kpa, and remove squeeze_kpa"
-               : "on_contact: ignore");
+    report(
+        step,
+        "moves channel '" + channel.name + "' below its rest pressure (" + significant(rest_kpa, 6) +
+            " kPa), where detection, on_contact and squeeze_kpa cannot detect a part",
+        step.kind == StepKind::grip
+            ? "use `by: position` under `verify`, or `by: pressure` with pressure_max_kpa. Remove squeeze_kpa"
+            : "on_contact: ignore");
   }
 
   /// Returns the highest pressure of a step. For a step to a displacement, the highest pressure is the

@@ -63,7 +63,7 @@ std::string unit_of(MapReader& map, const std::string& name) {
   choices.emplace_back("none");
   const auto choice = map.optional_choice("unit", choices);
   if (choice && known && choices[*choice] != own) {
-    map.report("unit", "the name " + document::in_backticks(name) + " states another unit, " +
+    map.report("unit", "the name " + document::in_backticks(name) + " ends with a different unit, " +
                            document::in_backticks(own));
   }
   if (!choice && !known && !map.has("unit")) {

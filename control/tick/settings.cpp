@@ -26,7 +26,7 @@ void check_limits(const LimitSettings& limits, const std::string& who, Texts& pr
           problems, who + ": pressure_max_kpa must be above pressure_min_kpa");
   require(std::isfinite(limits.rest_kpa), problems, who + ": rest_kpa must be a number");
   require(positive(limits.slew_up_kpa_per_s) && positive(limits.slew_down_kpa_per_s), problems,
-          who + ": both slew limits must be above 0");
+          who + ": slew_up_kpa_per_s and slew_down_kpa_per_s must be above 0");
   require(std::isfinite(limits.displacement_min_mm) && std::isfinite(limits.displacement_max_mm) &&
               limits.displacement_min_mm < limits.displacement_max_mm,
           problems, who + ": displacement_max_mm must be above displacement_min_mm");
@@ -37,7 +37,7 @@ void check_limits(const LimitSettings& limits, const std::string& who, Texts& pr
 void check_pid(const PidSettings& pid, const std::string& who, Texts& problems) {
   require(not_negative(pid.kp_kpa_per_mm) && not_negative(pid.ki_kpa_per_mm_s) &&
               not_negative(pid.kd_kpa_s_per_mm),
-          problems, who + ": gains must not be negative");
+          problems, who + ": the gains of the PID controller must not be negative");
   require(not_negative(pid.derivative_filter_s), problems,
           who + ": derivative_filter_s must not be negative");
   require(pid.setpoint_weight >= 0 && pid.setpoint_weight <= 1, problems,
@@ -58,7 +58,7 @@ void check_plausibility(const PlausibilitySettings& plausibility, const std::str
 void check_channel(const ChannelSettings& channel, Texts& problems) {
   const std::string who = "channel '" + channel.name + "'";
   require(!channel.name.empty(), problems, "a channel has no name");
-  require(!channel.model.blocks.empty(), problems, who + ": its model has no blocks");
+  require(!channel.model.blocks.empty(), problems, who + ": the model of the channel has no blocks");
   require(channel.displacement_used || channel.pressure_measured, problems,
           who + ": a channel that does not use its displacement must measure its pressure");
   check_limits(channel.limits, who, problems);
@@ -75,7 +75,7 @@ void check_detection(const DetectionSettings& detection, Texts& problems) {
 void check_faults(const FaultSettings& faults, Texts& problems) {
   require(faults.bus_down_cycles > 0 && faults.invalid_reading_cycles > 0 && faults.displacement_cycles > 0 &&
               faults.readback_cycles > 0,
-          problems, "faults: every number of cycles must be at least 1");
+          problems, "faults: each number of cycles after which a fault occurs must be at least 1");
   require(positive(faults.readback_tolerance_kpa) && not_negative(faults.readback_delay_s), problems,
           "faults: readback_tolerance_kpa must be above 0, and readback_delay_s must not be negative");
   require(positive(faults.pressure_tolerance_kpa) && not_negative(faults.pressure_delay_s), problems,

@@ -118,14 +118,16 @@ std::string limit_in_words(const TuneTask& task, const Tuned& tuned) {
   if (tuned.sensitivity > 0.95 * task.most_sensitivity) {
     const auto lag = model::find_path(task.finger, "valve_lag.time_constant_s");
     text = "the stability margin: the sensitivity peak Ms is " + significant(tuned.sensitivity, 3) +
-           " of the " + significant(task.most_sensitivity, 3) + " that are permitted; " +
+           " (at most " + significant(task.most_sensitivity, 3) + " is permitted), and " +
            significant(dead_time_s(task.finger), 3) + " s of dead time" +
            (lag ? " and " + significant(model::flat_values(task.finger)[*lag], 3) + " s of lag" : "") +
            " do not permit higher feedback gains";
   } else {
-    text = "no stability margin (the sensitivity peak Ms is " + significant(tuned.sensitivity, 3) + " of " +
-           significant(task.most_sensitivity, 3) +
-           "), because higher feedback gains would not lower the error";
+    text =
+        "effects other than the stability margin, because higher feedback gains would not lower the error "
+        "(the sensitivity peak Ms is " +
+        significant(tuned.sensitivity, 3) + "; at most " + significant(task.most_sensitivity, 3) +
+        " is permitted)";
   }
   const double floor = tuned.exact_mm;
   const double by_noise = tuned.noisy_mm - floor;

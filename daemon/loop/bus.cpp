@@ -282,7 +282,8 @@ void Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
   inhibit(FaultCode::board_watchdog_tripped);
   std::array<char, sizeof(BusEvent::detail)> detail{};
   std::snprintf(detail.data(), detail.size(),
-                "no good exchange for %.3f s: the board's own watchdog acts after %.3f s",
+                "no successful exchange with the board for %.3f s; the board's own watchdog vents the "
+                "outputs after %.3f s",
                 seconds(now - *last_good_), seconds(watchdog_));
   tell(BusEvent::Kind::failed, BusStatus::watchdog_tripped, detail.data());
   told_failed_ = true;

@@ -64,10 +64,11 @@ RealTimeStep prepare_heap(std::size_t bytes) {
   const long faults = faults_of_a_heap_block(bytes);
   if (accepted && faults == 0) {
     step.outcome = Outcome::verified;
-    step.detail = fmt::format("{} KiB of heap touched once and kept in the process", bytes / 1024);
+    step.detail =
+        fmt::format("{} KiB of heap memory were accessed in advance and stay in the process", bytes / 1024);
   } else {
     step.outcome = Outcome::failed;
-    step.detail = accepted ? fmt::format("{} page faults in a block that was touched before", faults)
+    step.detail = accepted ? fmt::format("{} page faults in a memory block that was accessed before", faults)
                            : "the allocator does not accept M_TRIM_THRESHOLD and M_MMAP_MAX";
   }
   return step;
@@ -79,17 +80,17 @@ std::string doubt_of_a_new_mapping() {
   const auto bytes = static_cast<std::size_t>(page_bytes());
   void* page = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (page == MAP_FAILED)
-    return fmt::format("no new page can be mapped after the lock: {}", text_of_errno(errno));
+    return fmt::format("no new page can be mapped after the memory lock: {}", text_of_errno(errno));
   unsigned char resident = 0;
   const int error = mincore(page, bytes, &resident) == 0 ? 0 : errno;
   munmap(page, bytes);
   if (error != 0) {
     return fmt::format(
-        "it is unknown if pages mapped after the lock are resident: {} (SystemCallFilter= must permit "
-        "mincore)",
+        "it is unknown if pages mapped after the memory lock are resident: {} (SystemCallFilter= of the unit "
+        "must permit mincore)",
         text_of_errno(error));
   }
-  return (resident & 1) != 0 ? "" : "a page mapped after the lock was not resident";
+  return (resident & 1) != 0 ? "" : "a page mapped after the memory lock was not resident";
 }
 
 /// Returns true if the limit on locked memory (RLIMIT_MEMLOCK) does not apply to this process.
@@ -124,7 +125,7 @@ RealTimeStep lock_memory(bool wanted) {
     step.detail = "the kernel accepted the memory lock, but " + doubt;
   } else {
     step.outcome = Outcome::verified;
-    step.detail = "all memory pages are resident, including pages mapped after the lock";
+    step.detail = "all memory pages are resident, including pages mapped after the memory lock";
   }
   return step;
 }
@@ -187,7 +188,7 @@ RealTimeStep set_processors(const std::vector<int>& cpus, std::string_view who) 
 
 RealTimeStep set_scheduling(int priority, std::string_view who) {
   RealTimeStep step{fmt::format("scheduling of {}", who), Outcome::not_asked, "",
-                    "other processes may delay the thread, so it may wake up several milliseconds late"};
+                    "other processes may delay the wake-up of the thread by several milliseconds"};
   // The timer slack matters for threads without SCHED_FIFO: by default, the kernel may delay each of their
   // wake-ups by 50 us to save power.
   prctl(PR_SET_TIMERSLACK, 1UL);
@@ -211,8 +212,9 @@ RealTimeStep set_scheduling(int priority, std::string_view who) {
     step.outcome = Outcome::verified;
     step.detail = fmt::format("SCHED_FIFO {}", in_force.sched_priority);
   } else {
-    step.detail = fmt::format("the kernel accepted the request, but policy {} with priority {} is in force",
-                              policy, in_force.sched_priority);
+    step.detail = fmt::format(
+        "the kernel accepted the request for SCHED_FIFO, but the thread has policy {} with priority {}",
+        policy, in_force.sched_priority);
   }
   return step;
 }
@@ -249,14 +251,15 @@ RealTimeStep prepare_stack(std::size_t bytes, std::string_view who) {
   if (const std::size_t left = stack_left(); bytes > left) {
     step.outcome = Outcome::failed;
     step.detail =
-        fmt::format("{} KiB of stack requested, but the thread has {} KiB left", bytes / 1024, left / 1024);
+        fmt::format("{} KiB of stack were requested, but only {} KiB of the thread's stack are free",
+                    bytes / 1024, left / 1024);
     return step;
   }
   touch_stack(bytes);
   const long faults = touch_stack(bytes);
   step.outcome = faults == 0 ? Outcome::verified : Outcome::failed;
   step.detail = faults == 0 ? fmt::format("{} KiB touched", bytes / 1024)
-                            : fmt::format("{} page faults in a stack that was touched before", faults);
+                            : fmt::format("{} page faults in a stack that was accessed before", faults);
   return step;
 }
 

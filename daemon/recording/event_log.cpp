@@ -33,8 +33,10 @@ constexpr std::array<Words, 7> bus_words{{
     {"bus_connected", information, "Connected to the board: the board responds."},
     {"bus_failed", error, ""},
     {"bus_recovered", information, "Communication with the board restored."},
-    {"loop_silent", error, "Command time-out: the loop sends no commands, the safe outputs are written."},
-    {"loop_back", information, "Commands resumed: the loop's commands are written again."},
+    {"loop_silent", error,
+     "Command time-out: the control loop sends no commands, so the safe outputs are written."},
+    {"loop_back", information,
+     "Commands resumed: the commands of the control loop are written to the board again."},
     {"another_client", warning, ""},
     {"bus_not_connected", error, ""},
 }};
@@ -44,7 +46,7 @@ static_assert(static_cast<std::size_t>(BusEvent::Kind::not_connected) + 1 == bus
 constexpr std::array<Words, 8> panel_words{{
     {"emergency_stop_pressed", warning, "The emergency stop is pressed."},
     {"emergency_stop_released", information,
-     "The emergency stop is released; acknowledge to make the rig ready."},
+     "The emergency stop is released. `softgrip acknowledge` makes the rig ready."},
     {"part_in_position", information, "A part is in position."},
     {"part_away", information, "No part is in position."},
     {"enable_on", information, "The enable output is on."},
@@ -129,13 +131,13 @@ void describe_contact(const Event& event, const Sequence*, EventEntry& entry) {
   const char* then = "";
   switch (action) {
     case control::OnContact::hold:
-      then = "the pressure of first contact is kept";
+      then = "the pressure at first contact is kept";
       break;
     case control::OnContact::grip:
-      then = "the pressure of first contact is kept, and the grip begins";
+      then = "the pressure at first contact is kept, and the grip begins";
       break;
     case control::OnContact::fail:
-      then = "the pressure of first contact is kept, and the step has failed";
+      then = "the pressure at first contact is kept, and the step has failed";
       break;
     case control::OnContact::ignore:
       then = "the step continues";
@@ -157,7 +159,7 @@ void describe_limit(const Event& event, const Sequence*, EventEntry& entry) {
   const auto limit = static_cast<control::BindingLimit>(event.detail);
   entry.code = control::name_of(limit);
   const std::string_view words = control::words_of(limit);
-  entry.text = binds ? fmt::format("Limit active: {}, now {:.1f} kPa.", words, event.value)
+  entry.text = binds ? fmt::format("Limit active: {}. The command is {:.1f} kPa.", words, event.value)
                      : fmt::format("Limit cleared: {}.", words);
   const bool of_rig = limit == control::BindingLimit::rig_pressure;
   entry.severity = binds && of_rig ? Severity::warning : Severity::information;
@@ -200,7 +202,7 @@ void describe_unsteady(const Event& event, const Sequence*, EventEntry& entry) {
     entry.text = "The reading is steady again.";
     return;
   }
-  entry.text = fmt::format("The reading is unsteady: the reading jumps back and forth, last by {:.1f} mm.",
+  entry.text = fmt::format("The reading is unsteady: it jumps back and forth. The last jump was {:.1f} mm.",
                            std::abs(event.value));
   entry.severity = Severity::warning;
 }
@@ -292,8 +294,8 @@ EventEntry describe(const BusEvent& event) {
   const std::string_view detail(event.detail.data());
   if (event.kind == BusEvent::Kind::another_client) {
     entry.text = fmt::format(
-        "The board counts {} clients. The requests of another client reset the board's watchdog, too. If "
-        "softgripd ends without venting, the board does not vent while that client sends requests.",
+        "The board has {} clients. Requests of any client reset the board's watchdog. If softgripd ends "
+        "without venting, the board does not vent while another client sends requests.",
         detail);
   }
   const bool failed = event.kind == BusEvent::Kind::failed;

@@ -95,7 +95,7 @@ bool RunFolder::append(std::string_view lines) {
   fail(path_ + "/run.csv", error);
   // If the disk is full, a part of the lines may have been written. Truncation removes this part and needs no
   // space. If the truncation fails, the last line is incomplete, which readers of recordings accept.
-  if (ftruncate(descriptor_, whole_bytes_) != 0) error_ += "; the last line of the file may be incomplete";
+  if (ftruncate(descriptor_, whole_bytes_) != 0) error_ += "; the last line of run.csv may be incomplete";
   close();
   return false;
 }

@@ -166,8 +166,9 @@ std::string without_right(const std::string& board, const std::optional<Peer>& h
   const std::string who =
       holder ? fmt::format("user {}{}", holder->user, in_brackets(holder->process)) : "an unknown program";
   return fmt::format(
-      "{}: {} holds the lock of this board but may not control the board; softgrip ignores this lock", board,
-      who);
+      "{}: {} holds the lock of this board, but has no permission to control the board, so softgrip ignores "
+      "the lock",
+      board, who);
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ bool EventPrinter::passes(const EventEntry& event) {
   Flow& flow = flows_[event.kind];
   if (event.time_s - flow.window_s > window_s) {
     if (flow.suppressed > 0)
-      logger_->warn("{} more events of the kind {} were not printed", flow.suppressed, event.kind);
+      logger_->warn("{} further events of the kind {} were not printed", flow.suppressed, event.kind);
     flow = {event.time_s, 0, 0};
   }
   if (flow.printed < most_per_window) {
@@ -135,7 +135,7 @@ void EventPrinter::print_end(const Outcome& outcome) {
     logger_->info("the board confirmed the safe outputs");
     if (outcome.vents_after_s > 0)
       logger_->warn(
-          "the outputs keep these values only until the board's watchdog vents them, {:g} s from now",
+          "the board's watchdog will vent the outputs in {:g} s; until then, the outputs keep their values",
           outcome.vents_after_s);
   } else {
     logger_->error("the board did NOT confirm the safe outputs");

@@ -44,14 +44,14 @@ void declare(CLI::App& program, Arguments& arguments) {
   program.add_option("--config", arguments.config, "the rig file")->required()->type_name("RIG");
   program.add_flag("--check", arguments.check,
                    "check the rig file and the sequence, report their problems, and exit");
-  program.add_flag(
-      "--safe-outputs", arguments.safe_outputs,
-      "vent: connect to the board, write the rest pressure of every channel until the board confirms "
-      "these pressures, and exit. For ExecStopPost= of the unit: no action if $SERVICE_RESULT is success");
+  program.add_flag("--safe-outputs", arguments.safe_outputs,
+                   "vent and exit: write the rest pressure of every channel until the board confirms these "
+                   "pressures. If $SERVICE_RESULT is success (ExecStopPost= of the unit), do nothing");
   program
-      .add_option("--device", arguments.device,
-                  "for the udev rule: exit with code 0 if the rig file names this device of the computer, "
-                  "else with 6. For an analog converter, also print the attributes that the daemon writes")
+      .add_option(
+          "--device", arguments.device,
+          "for the udev rule: exit with code 0 if the rig file names this device of the computer, otherwise "
+          "with code 6. For an analog converter, also print the attributes that the daemon writes")
       ->type_name("gpiochipN|iio:deviceN");
   program.add_flag("--virtual-time", arguments.virtual_time,
                    "run as fast as possible on a simulated board, with identical results in every run; "
@@ -140,7 +140,7 @@ ExitCode safe_outputs(const Arguments& arguments) {
   const auto rig = kept ? kept : rig::load_rig(arguments.config, problems);
   if (!rig || !problems.empty()) return refuse(problems);
   daemon::SafeOutputsReport report = daemon::vent_rig(*rig);
-  if (kept) report.text += "; the contents of the rig file that the last softgripd had read were used";
+  if (kept) report.text += "; the rig file was used as the last softgripd had read it";
   const bool safe = daemon::exit_code_of(report.end) == ExitCode::done;
   if (kept && safe) daemon::forget_rig(arguments.config);
   return end_of_safe_outputs(report);
@@ -167,8 +167,8 @@ tl::expected<void, std::string> write_histograms(const std::string& path, const 
 
 ExitCode run(const Arguments& arguments) {
   if (same_file(arguments.config, arguments.histograms)) {
-    complain(
-        fmt::format("{} is the rig file and is not overwritten: name another file", arguments.histograms));
+    complain(fmt::format("{} is the rig file, which is never overwritten: give the name of another file",
+                         arguments.histograms));
     return ExitCode::usage;
   }
   document::Problems problems;

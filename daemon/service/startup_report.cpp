@@ -19,10 +19,11 @@ std::string bus_lines(const rig::RigFile& rig, const drivers::Board& board) {
   const bool fits = budget.exchange_s <= period_s;
   std::string text =
       fmt::format("bus: {}; configured {:g} Hz: {}\n", budget.explanation, rig.settings.rate_hz,
-                  fits ? "fits" : "DOES NOT FIT: some cycles have no exchange");
+                  fits ? "fits" : "DOES NOT FIT: some cycles will have no exchange with the board");
   const double offset_s = rig.loop.bus_offset_fraction * period_s;
   text += fmt::format(
-      "latency: a command is written {:.3g} ms after its tick, a reading is {:.3g} ms old when used\n",
+      "latency: a command is written {:.3g} ms after the start of its cycle; a reading is {:.3g} ms old when "
+      "the controller uses it\n",
       offset_s * ms_per_s, (period_s - offset_s) * ms_per_s);
   return text;
 }
@@ -37,8 +38,8 @@ std::string watchdog_line(const rig::RigFile& rig, const drivers::Board& board, 
     if (rig.settings.safety.board_vents_when_silent &&
         std::find(actions.begin(), actions.end(), control::SafeAction::hold) != actions.end())
       text += fmt::format(
-          "hold: a part is held only while {} runs; the watchdog vents the fingers {:g} s after the end of "
-          "this program\n",
+          "hold: a part is held only while {} runs; the watchdog vents the fingers {:g} s after the program "
+          "ends\n",
           program, time_s);
     return text;
   }
@@ -73,12 +74,12 @@ std::string gpio_lines(const rig::RigFile& rig) {
   if (!gpio.has(drivers::GpioRole::emergency_stop)) return text;
   const double period_s = 1 / rig.settings.rate_hz;
   const double latched_s = gpio.debounce_s + period_s;
-  return text + fmt::format(
-                    "emergency stop: latched {:.3g} ms after the contact switches (debounce {:.3g} ms, one "
-                    "cycle), and written to the board {:.3g} ms after that; acknowledge the emergency stop "
-                    "before the first start\n",
-                    latched_s * ms_per_s, gpio.debounce_s * ms_per_s,
-                    rig.loop.bus_offset_fraction * period_s * ms_per_s);
+  return text +
+         fmt::format(
+             "emergency stop: detected {:.3g} ms after the contact switches (debounce {:.3g} ms + 1 cycle), "
+             "written to the board {:.3g} ms later. Acknowledge the emergency stop before the first start\n",
+             latched_s * ms_per_s, gpio.debounce_s * ms_per_s,
+             rig.loop.bus_offset_fraction * period_s * ms_per_s);
 }
 
 }  // namespace

@@ -120,14 +120,13 @@ SequenceLoader::Result SequenceLoader::fit(std::optional<control::Sequence> sequ
   if (!prepared || !problems.empty()) return tl::unexpected(std::move(problems));
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
   if (took.count() > longest_planning_share * prepared->planned_s + planning_slack_s) {
-    problems.warn(
-        {sequence->file,
-         {},
-         "",
-         fmt::format(
-             "planning took {:.1f} s for {:.1f} s of motion: this time delays every start of the sequence",
-             took.count(), prepared->planned_s),
-         "channels with the same model and limits are planned together"});
+    problems.warn({sequence->file,
+                   {},
+                   "",
+                   fmt::format("planning took {:.1f} s for {:.1f} s of motion; every start of the sequence "
+                               "is delayed by the planning",
+                               took.count(), prepared->planned_s),
+                   "channels with the same model and limits are planned together"});
   }
   auto loaded = std::make_shared<LoadedSequence>();
   loaded->remarks = std::move(problems);

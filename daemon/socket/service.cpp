@@ -129,7 +129,8 @@ void Service::pump() {
     entry.kind = "events_lost";
     entry.severity = Severity::warning;
     entry.time_s = seconds(snapshot().at - origin_);
-    entry.text = fmt::format("{} events came too fast and were lost.", dropped - events_dropped_);
+    entry.text = fmt::format("{} events were lost, because events occurred faster than they could be stored.",
+                             dropped - events_dropped_);
     log_.add(std::move(entry));
     events_dropped_ = dropped;
   }

@@ -238,9 +238,9 @@ void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds
 /// Checks the id of a new start. Returns null if the id is allowed, otherwise the error.
 Json SocketApi::refusal_of_id(const std::string& start_id) const {
   if (starts_.is_forbidden(start_id))
-    return error_json("abandoned", "a stop of this start arrived before the start");
+    return error_json("abandoned", "a stop request for this start arrived before the start request");
   if (starts_.request_of(start_id))
-    return error_json("bad_request", "an earlier start has this 'start_id' already");
+    return error_json("bad_request", "an earlier start already has this 'start_id'");
   return nullptr;
 }
 

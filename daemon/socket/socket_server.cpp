@@ -171,7 +171,9 @@ bool SocketServer::displace_one(Role role, bool any) {
 std::string SocketServer::too_many() const {
   return error_line(
       std::nullopt, "too_many_clients",
-      fmt::format("at most {} clients at a time; stop and vent are still accepted", settings_.max_clients));
+      fmt::format(
+          "at most {} clients may be connected at the same time; stop and vent requests are still accepted",
+          settings_.max_clients));
 }
 
 void SocketServer::hear(std::uint64_t id, Client& client, std::string_view line) {

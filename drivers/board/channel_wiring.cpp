@@ -57,7 +57,7 @@ class Checker {
   void scales(const std::string& where, const InputWiring& input) {
     scaling(where, input.scaling);
     if (!(input.valid_min < input.valid_max)) {
-      problems_.push_back(where + "the electrical range of valid readings is empty");
+      problems_.push_back(where + "the lowest valid signal must be below the highest valid signal");
     }
     for (const SensorErrorCode& code : input.error_codes) {
       if (!(code.tolerance >= 0)) {

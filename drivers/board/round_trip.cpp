@@ -43,8 +43,8 @@ Board::Budget tcp_cost(std::size_t transactions, const std::string& plan, const 
   const double assumed_s = is_loopback(host) ? assumed_loopback_s : assumed_network_s;
   const double round_trip_s = known ? measured.median_s() : assumed_s;
   const std::string source =
-      known ? "median of " + std::to_string(measured.count()) + " measured when connecting, slowest " +
-                  milliseconds(measured.slowest_s())
+      known ? "median of " + std::to_string(measured.count()) +
+                  " round trips measured when connecting, slowest " + milliseconds(measured.slowest_s())
             : std::string("assumed for ") + (is_loopback(host) ? "loopback" : "a network") +
                   ", not measured because the board has not been connected yet";
   Board::Budget cost;

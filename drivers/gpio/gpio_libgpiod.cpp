@@ -39,8 +39,8 @@ Failure failed(const std::string& what, int error) {
   Failure failure{Failure::Kind::failed, 0, what + ": " + std::strerror(error), ""};
   if (error == EACCES || error == EPERM) {
     failure.hint =
-        "the udev rule of the package gives the service access to the chips in its rig file; after a change "
-        "of the rig file, run `udevadm trigger --action=add --subsystem-match=gpio`";
+        "the udev rule of the package gives the service access to the chips that are named in the rig file; "
+        "after a change of the rig file, run `udevadm trigger --action=add --subsystem-match=gpio`";
   }
   return failure;
 }
@@ -88,7 +88,8 @@ tl::expected<Chip, Failure> open_chip(const std::filesystem::path& devices, cons
     const bool none_opened = std::none_of(
         there.begin(), there.end(), [](const ComputerDevice& chip) { return !chip.word("label").empty(); });
     if (none_opened && denied != 0)
-      return tl::unexpected(failed(found.error().message + ", and none can be opened", denied));
+      return tl::unexpected(
+          failed(found.error().message + ", and none of the GPIO chips can be opened", denied));
     return tl::unexpected(refused(found.error().message, found.error().hint));
   }
   Chip chip(gpiod_chip_open((devices / found->node).c_str()));
@@ -141,8 +142,8 @@ tl::expected<LineFacts, Failure> find_line(gpiod_chip* chip, const GpioLineSetti
   if (is_input(settings.role) && facts->output) {
     return tl::unexpected(refused(
         "the line is configured as an output, but `" + std::string(name_of(settings.role)) + "` is an input",
-        "the rig file names a wrong line, or a program changed the direction of the line: `gpioget` with "
-        "this chip and line makes the line an input"));
+        "the rig file names a wrong line, or a program made the line an output; `gpioget` with this chip and "
+        "line makes the line an input again"));
   }
   return *facts;
 }
@@ -157,7 +158,7 @@ Failure request_failure(const GpioLineSettings& settings, int error) {
                       error == EIO || error == ENXIO;
   if (!unable) return failed("the line cannot be requested", error);
   return refused("the chip cannot make this line an " +
-                     std::string(is_input(settings.role) ? "input" : "output") + " as described",
+                     std::string(is_input(settings.role) ? "input" : "output") + " with these settings",
                  settings.bias == GpioBias::as_is
                      ? "the rig file names a wrong line, or the chip cannot change the direction of this line"
                      : "the chip cannot change the direction of this line, or does not support this `bias`");

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int probes = 5;
 constexpr const char* stays_off_text =
-    "this attribute stays 1 after 0 was written, so the output remains switched off";
+    "this attribute is still 1 after 0 was written, so the output remains switched off";
 
 /// Returns the name and the bus address of the converter, which must not change while a rig runs. Returns an
 /// empty text if the rig file selects the converter by its label or serial number, because these already
@@ -107,7 +107,7 @@ BusStatus IioBoard::Parts::attach(const Devices& there, const IioTerminal& termi
   if (!converter.first_identity.empty() && converter.identity != converter.first_identity) {
     return say(BusStatus::disconnected, converter.name,
                ("it was " + converter.first_identity + ", but now it is " + converter.identity +
-                ": restart softgripd if this is correct")
+                ": restart softgripd if this change is intended")
                    .c_str());
   }
   const std::filesystem::path folder = std::filesystem::path(settings.root) / device->node;
@@ -130,7 +130,7 @@ BusStatus IioBoard::Parts::open_number(const std::filesystem::path& folder, cons
   if (!(std::abs(converter.scale) > 0) || !std::isfinite(converter.scale) ||
       !std::isfinite(converter.offset)) {
     return say(BusStatus::disconnected, converter.name,
-               "the converter has no scale, so its raw values cannot be converted");
+               "the converter has no valid attribute `scale`, so its raw values cannot be converted");
   }
   return BusStatus::ok;
 }
@@ -314,7 +314,7 @@ BusStatus IioBoard::exchange(std::span<const double> commands_kpa, std::span<Rea
   if (!parts.open) return BusStatus::disconnected;
   if (commands_kpa.size() != channels() || readings.size() != channels() || channels() > most_channels) {
     std::snprintf(parts.detail.data(), parts.detail.size(),
-                  "the commands, readings and channels differ in number");
+                  "the numbers of commands, readings and channels are not equal");
     return BusStatus::write_refused;
   }
   for (const double command : commands_kpa) {
@@ -338,7 +338,8 @@ BusStatus IioBoard::exchange(std::span<const double> commands_kpa, std::span<Rea
     if (const BusStatus status = parts.read_channel(i, fresh[i]); status != BusStatus::ok) return status;
     ++fresh[i].sequence;
     if (monotonic_now() <= until) continue;
-    std::snprintf(parts.detail.data(), parts.detail.size(), "the conversions took longer than the deadline");
+    std::snprintf(parts.detail.data(), parts.detail.size(),
+                  "the analog-to-digital conversions took longer than the deadline of the exchange");
     return BusStatus::timed_out;
   }
   if (written != BusStatus::ok) return written;

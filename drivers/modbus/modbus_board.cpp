@@ -205,7 +205,8 @@ BusStatus ModbusBoard::exchange(std::span<const double> commands_kpa, std::span<
   const Nanoseconds until = monotonic_now() + deadline.count();
   for (ModbusModule& module : parts.modules) module.forget_found();
   if (commands_kpa.size() != channels() || readings.size() != channels()) {
-    return parts.say(BusStatus::write_refused, "the commands, readings and channels differ in number");
+    return parts.say(BusStatus::write_refused,
+                     "the numbers of commands, readings and channels are not equal");
   }
   // detail() keeps the reason for the end of the session, because this reason is more useful than
   // "disconnected".

@@ -82,7 +82,7 @@ BusStatus ModbusLink::open(Nanoseconds deadline) noexcept {
 }
 
 BusStatus ModbusLink::settle(Nanoseconds deadline) noexcept {
-  return drain(opened_at_ + settle_, deadline, "waiting until the board has settled");
+  return drain(opened_at_ + settle_, deadline, "waiting for settle_s after opening the connection");
 }
 
 /// Discards all bytes that arrive until the time `until`. If the link fails before this time, the function
@@ -165,9 +165,10 @@ BusStatus ModbusLink::ask(std::uint8_t unit, const ModbusRequest& request, Nanos
   exception_code_ = 0;
   if (!is_open()) return BusStatus::disconnected;
   const std::size_t size = build(unit, request, outgoing_);
-  if (size == 0) return fail(BusStatus::bad_reply, "sending", "invalid Modbus request");
+  if (size == 0) return fail(BusStatus::bad_reply, "sending", "the request is not a valid Modbus request");
   const auto frame = std::span<const std::uint8_t>(outgoing_).first(size);
-  BusStatus status = drain(quiet_until_, deadline, "waiting for a second reply to a repeated request");
+  BusStatus status =
+      drain(quiet_until_, deadline, "waiting for a possible second reply to a repeated request");
   if (status == BusStatus::ok) status = before_asking(deadline);
   if (status == BusStatus::ok) status = send_until_heard(frame, deadline);
   if (status != BusStatus::ok) return status;
@@ -290,10 +291,10 @@ BusStatus ModbusLink::conclude(const ModbusReply& reply, int error, std::uint8_t
     return BusStatus::ok;
   }
   exception_code_ = reply.exception_code;
-  std::snprintf(detail_.data(), detail_.size(), "unit %u refused function %u at %u: %s (exception %u)",
-                static_cast<unsigned>(unit), static_cast<unsigned>(request.function),
-                static_cast<unsigned>(request.address), text_of_exception(reply.exception_code),
-                static_cast<unsigned>(reply.exception_code));
+  std::snprintf(detail_.data(), detail_.size(),
+                "unit %u refused function %u at address %u: %s (exception %u)", static_cast<unsigned>(unit),
+                static_cast<unsigned>(request.function), static_cast<unsigned>(request.address),
+                text_of_exception(reply.exception_code), static_cast<unsigned>(reply.exception_code));
   return BusStatus::exception;
 }
 

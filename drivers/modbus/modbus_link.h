@@ -89,7 +89,7 @@ class ModbusLink {
   [[nodiscard]] const RoundTrip& measured() const noexcept { return measured_; }
 
   /// Text that detail() returns if bytes have arrived although no request was waiting for a response.
-  static constexpr const char* unasked = "unexpected bytes: a late or repeated reply";
+  static constexpr const char* unasked = "unexpected bytes were received, possibly a late or repeated reply";
 
   /// A checked response. `error` is whole_frame for a complete frame. For an incomplete frame, `error` is the
   /// errno that gives the reason.

@@ -114,9 +114,9 @@ BusStatus ModbusModule::name_refusal(BusStatus status, Nanoseconds deadline) noe
   if (status != BusStatus::exception || !plan_.tripped.has_value()) return status;
   const char* const refusal = detail_;
   if (read_step(plan_.tripped->step, deadline) == BusStatus::ok && is_tripped()) {
-    return say(
-        BusStatus::watchdog_tripped,
-        "the board's watchdog tripped: the board rejects writes while its outputs are at their safe values");
+    return say(BusStatus::watchdog_tripped,
+               "the board's watchdog tripped, so the board rejects writes while the outputs are at their "
+               "safe values");
   }
   return say(status, refusal);
 }
@@ -256,7 +256,7 @@ void ModbusModule::forget_found() noexcept {
 BusStatus ModbusModule::check() noexcept {
   if (is_tripped()) {
     return say(BusStatus::watchdog_tripped,
-               "the board's watchdog tripped: its outputs are at their safe value");
+               "the board's watchdog tripped, so the outputs are at their safe values");
   }
   if (!settings_.map.read_back.has_value() || !drives_outputs()) return BusStatus::ok;
   if (!reads_first_) accepted_.note(requested_raws_);
@@ -267,15 +267,15 @@ BusStatus ModbusModule::check() noexcept {
     const double raw = raw_at(*plan_.channels[i].read_back, kind);
     if (accepted_.accepts(i, raw)) continue;
     if (reads_first_) {
-      return fail(
-          BusStatus::overwritten,
-          "channel '%s': another client writes to the board: before the next write, the output reads back as "
-          "raw %g",
-          i, raw);
+      return fail(BusStatus::overwritten,
+                  "channel '%s': another client has changed the output; its raw value was read back as %g", i,
+                  raw);
     }
     found_kpa_[i] = read_back_kpa(i);
     if (status == BusStatus::ok)
-      status = fail(BusStatus::write_refused, "channel '%s': the output reads back as raw %g", i, raw);
+      status = fail(BusStatus::write_refused,
+                    "channel '%s': the raw value of the output was read back as %g, which was not written", i,
+                    raw);
   }
   if (status != BusStatus::ok) return status;
   // An exchange that reads first writes the requested values after this check. Therefore, the next exchange

@@ -43,15 +43,15 @@ const char* text_of(ReplyDefect defect) noexcept {
     case ReplyDefect::length:
       return "the reply's header states a wrong length";
     case ReplyDefect::unit:
-      return "the reply has another unit id";
+      return "the reply has a wrong unit id";
     case ReplyDefect::function:
-      return "the reply has another function code";
+      return "the reply has a different function code than the request";
     case ReplyDefect::byte_count:
       return "the reply's byte count does not match the request";
     case ReplyDefect::echo:
       return "the reply confirms an address or value that differs from the written one";
     case ReplyDefect::trailing:
-      return "bytes follow the reply";
+      return "additional bytes were received after the reply";
     case ReplyDefect::checksum:
       return "the reply was damaged in transmission (checksum)";
     case ReplyDefect::own_echo:
@@ -86,7 +86,8 @@ const char* text_of_exception(unsigned code) noexcept {
   // strerror(), which allocates memory.
   const bool known = code >= MODBUS_EXCEPTION_ILLEGAL_FUNCTION && code < MODBUS_EXCEPTION_MAX &&
                      code != MODBUS_EXCEPTION_NOT_DEFINED;
-  return known ? ::modbus_strerror(MODBUS_ENOBASE + static_cast<int>(code)) : "not a standard exception";
+  return known ? ::modbus_strerror(MODBUS_ENOBASE + static_cast<int>(code))
+               : "not an exception code of the Modbus standard";
 }
 
 }  // namespace softgrip::drivers

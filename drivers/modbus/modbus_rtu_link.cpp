@@ -66,7 +66,7 @@ BusStatus ModbusRtuLink::send(std::span<const std::uint8_t> frame, Nanoseconds d
 BusStatus ModbusRtuLink::take_echo(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept {
   std::array<std::uint8_t, max_rtu_frame> echo;
   while (!frame.empty()) {
-    BusStatus status = wait_until_ready(POLLIN, deadline, "waiting for the echo");
+    BusStatus status = wait_until_ready(POLLIN, deadline, "waiting for the echo of the request");
     std::size_t got = 0;
     if (status == BusStatus::ok) status = read_some(std::span(echo).first(frame.size()), "sending", got);
     if (status != BusStatus::ok) return status;
@@ -98,8 +98,8 @@ Board::Budget ModbusRtuLink::cost(std::span<const TransactionSize> transactions,
 
   std::string source;
   if (known) {
-    source = "median of " + std::to_string(measured().count()) + " measured when connecting, slowest " +
-             milliseconds(measured().slowest_s());
+    source = "median of " + std::to_string(measured().count()) +
+             " response times measured when connecting, slowest " + milliseconds(measured().slowest_s());
   } else {
     source = "turnaround " + milliseconds(line_.turnaround_s) + " and adapter " +
              milliseconds(line_.adapter_latency_s) +

@@ -141,7 +141,7 @@ SerialFailure open_serial(modbus_t* context, const SerialLine& line, Descriptor&
   if (::flock(master.get(), LOCK_EX | LOCK_NB) != 0) return {"locking the serial device", EBUSY};
   if (::modbus_connect(context) != 0) return {"setting the serial line", errno};
   if (!keeps_to(::modbus_get_socket(context), line)) {
-    return {"setting the serial line: the device does not apply rate or format", 0};
+    return {"setting the serial line: the device does not apply the baud rate or the format", 0};
   }
   (void)::modbus_flush(context);
   return {};

@@ -26,8 +26,8 @@ class ActuatorThreshold {
   template <class Next>
   void step(const Segment<T>& in, const Surroundings&, Next&& next) {
     const auto pass = [&](const Segment<T>& piece) {
-      // The map from the input pressure p to the output pressure q has three zones: q is p minus the
-      // threshold, 0, or p.
+      // The map from the input pressure p to the output pressure q has three zones: above the threshold, q is
+      // p minus the threshold. Between 0 and the threshold, q is 0. Below 0, q is p.
       const double middle = 0.5 * (value_of(piece.begin) + value_of(piece.end));
       const T begin = output_;
       output_ = map(piece.end);

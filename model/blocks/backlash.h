@@ -16,8 +16,9 @@ class Backlash {
       block_info("backlash", Station::load, Kind::displacement, Inverse::ignored, "Backlash",
                  "Play between the actuator and the measured point.",
                  "|y - z| <= gap/2; z moves only to keep this condition");
-  static constexpr std::array parameters{parameter("gap_mm", "mm", "motion lost at a reversal", Typical{0.3},
-                                                   Within{0.0, 100.0}, Scale{0.1}, Neutral{0.0})};
+  static constexpr std::array parameters{
+      parameter("gap_mm", "mm", "motion of the actuator that is lost at a reversal", Typical{0.3},
+                Within{0.0, 100.0}, Scale{0.1}, Neutral{0.0})};
 
   Backlash(std::span<const T> values, const Preparation&) : play_(T(values[0] * 0.5)) {}
 

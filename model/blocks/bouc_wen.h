@@ -104,10 +104,11 @@ class BoucWen {
           "saturation rate of the hysteretic state, equal in both directions (also per mm^(exponent-1))",
           Typical{0.03}, Within{-1e4, 1e4}, Scale{0.02}, PerPressure{}),
       parameter("eta_per_kpa", "1/kPa",
-                "saturation rate while the state grows: the width of the loop (also per mm^(exponent-1))",
+                "saturation rate while the hysteretic state grows; determines the width of the loop (also "
+                "per mm^(exponent-1))",
                 Typical{0.03}, Within{0.0, 1e4}, Scale{0.02}, PerPressure{}),
-      parameter("exponent", "", "n, sharpness of the saturation", Typical{1.0}, Within{1.0, 4.0}, Scale{1.0},
-                Whole{})};
+      parameter("exponent", "", "exponent n, which determines the sharpness of the saturation", Typical{1.0},
+                Within{1.0, 4.0}, Scale{1.0}, Whole{})};
 
   BoucWen(std::span<const T> values, const Preparation&)
       : alpha_(values[0]),
@@ -117,8 +118,8 @@ class BoucWen {
         exponent_(static_cast<int>(std::lround(value_of(values[4])))) {}
 
   static std::string_view objection(std::span<const double> values) {
-    return values[2] + values[3] < 0 ? "gamma_per_kpa + eta_per_kpa must be at least 0: with a negative sum, "
-                                       "the hysteretic state would grow without bound"
+    return values[2] + values[3] < 0 ? "gamma_per_kpa + eta_per_kpa must be at least 0, because the "
+                                       "hysteretic state would grow without bound with a negative sum"
                                      : std::string_view{};
   }
 
@@ -139,7 +140,7 @@ class BoucWen {
     growing_ = {not_below(growing_[0] - skew.epsilon_per_kpa, 0.0),
                 not_below(growing_[1] + skew.epsilon_per_kpa, 0.0)};
     shrinking_ = {shrinking_[0] + skew.epsilon_per_kpa, shrinking_[1] - skew.epsilon_per_kpa};
-    // After the hysteretic state h has saturated in one direction of the pressure, h must decrease when the
+    // After h has saturated in one direction of the pressure, the magnitude of h must decrease when the
     // pressure reverses.
     for (const std::size_t way : {0U, 1U}) {
       const T bound = growing_[1 - way] * beta_[way] / beta_[1 - way];
@@ -179,8 +180,8 @@ class BoucWen {
   [[nodiscard]] T output() const { return output_; }
   /// Returns the hysteretic state h [mm].
   [[nodiscard]] const T& hysteresis_mm() const { return hysteresis_; }
-  /// Returns the slope dh/dp of the hysteretic state h over the pressure p, at the present state [mm/kPa].
-  /// The slope is that for a rising pressure if `rising` is true, otherwise for a falling pressure.
+  /// Returns the slope dh/dp of the hysteretic state h over the pressure p, at the present state [mm/kPa]. If
+  /// `rising` is true, returns the slope for a rising pressure, otherwise the slope for a falling pressure.
   [[nodiscard]] T slope(bool rising) const { return slope_at(hysteresis_, rising ? 1.0 : -1.0); }
   [[nodiscard]] const T& alpha_mm_per_kpa() const { return alpha_; }
   /// Returns the larger of the two values of beta for loading and for unloading.

@@ -6,8 +6,8 @@
 namespace softgrip::model {
 
 /// Computes the reading z = y + lead dy/dt from the displacement y, with the slope of y in the last sample.
-/// This extrapolates the motion by the time `lead`, which is exact between two corners of a piecewise linear
-/// motion. A corner of the motion appears in z by the time `lead` too late.
+/// This formula extrapolates the motion by the time `lead`. The extrapolation is exact between two corners of
+/// a piecewise linear motion. A corner of the motion appears in z by the time `lead` too late.
 template <class T>
 class ClockOffset {
  public:
@@ -15,9 +15,9 @@ class ClockOffset {
       "clock_offset", Station::sensor, Kind::reading, Inverse::ignored, "Clock offset",
       "The clocks of the readings and of the commands differ, so that the readings appear too early.",
       "z = y + lead dy/dt");
-  static constexpr std::array parameters{parameter("lead_s", "s", "time by which the reading leads",
-                                                   Typical{0.05}, Within{0.0, 1000.0}, Scale{0.02},
-                                                   Neutral{0.0}, Latency{})};
+  static constexpr std::array parameters{
+      parameter("lead_s", "s", "time by which the reading leads the displacement", Typical{0.05},
+                Within{0.0, 1000.0}, Scale{0.02}, Neutral{0.0}, Latency{})};
 
   ClockOffset(std::span<const T> values, const Preparation&) : lead_s_(values[0]) {}
 

@@ -20,8 +20,8 @@ class Contact {
       parameter("position_mm", "mm", "displacement at which contact begins", Typical{15.0},
                 Within{-1000.0, 1000.0}, Scale{2.0}),
       parameter("stiffening", "",
-                "stiffness of the contact relative to the stiffness of the free actuator; 1 halves the "
-                "motion beyond the position",
+                "stiffness of the contact relative to the stiffness of the free actuator; the value 1 halves "
+                "the motion beyond the contact position",
                 Typical{1.0}, Within{0.0, 1e6}, Scale{0.5}, Neutral{0.0})};
 
   Contact(std::span<const T> values, const Preparation&)

@@ -22,7 +22,8 @@ class CrescentHysteresis {
   static constexpr std::array parameters{
       parameter("gain_mm_per_kpa", "mm/kPa", "displacement per pressure of the loop width", Typical{0.02},
                 Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
-      parameter("bend", "", "curvature of the lower envelope: its slope at full range is 1 + bend",
+      parameter("bend", "",
+                "curvature of the lower envelope; the slope of this envelope at full range is 1 + bend",
                 Typical{3.0}, Within{0.0, 1000.0}, Scale{1.0}),
       parameter("range_kpa", "kPa", "pressure at which the loop closes", Typical{60.0}, Within{0.01, 10000.0},
                 Scale{20.0})};

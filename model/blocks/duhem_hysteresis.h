@@ -17,8 +17,8 @@ class DuhemHysteresis {
  public:
   static constexpr BlockInfo info =
       block_info("duhem_hysteresis", Station::actuator, Kind::element, Inverse::implicit, "Duhem hysteresis",
-                 "Hysteresis with different shapes on loading and unloading: the state grows on unloading "
-                 "and decays on loading.",
+                 "Hysteresis with different shapes for loading and unloading. The state grows during "
+                 "unloading and decays during loading.",
                  "y += gain z; falling: z' = |p'| (1 - z/unloading); rising: z' = -|p'| z/loading");
   static constexpr std::array parameters{
       parameter("gain_mm_per_kpa", "mm/kPa", "displacement per pressure change at the start of unloading",

@@ -28,8 +28,8 @@ class KelvinVoigt {
   static constexpr std::array repeated{
       parameter("k#_kpa_per_mm", "kPa/mm", "stiffness of branch #", Typical{5.0}, Within{0.0, 1e9},
                 Scale{2.0}, Neutral{1e9}),
-      parameter("c#_kpa_s_per_mm", "kPa s/mm", "damping of branch #; its time constant is c/k", Typical{10.0},
-                Within{1e-9, 1e9}, Scale{5.0}, Neutral{1e9})};
+      parameter("c#_kpa_s_per_mm", "kPa s/mm", "damping of branch #; the time constant of the branch is c/k",
+                Typical{10.0}, Within{1e-9, 1e9}, Scale{5.0}, Neutral{1e9})};
   static constexpr std::size_t max_parts = 12;
 
   KelvinVoigt(std::span<const T> values, const Preparation& preparation)

@@ -1,6 +1,6 @@
 #pragma once
-// Models the pressure drop between valve and finger. The flow through a leak at the finger causes this drop,
-// which also exists while the pressure is constant.
+// Models the pressure drop between valve and finger. The flow through a leak at the finger causes this drop.
+// The drop exists even while the pressure is constant.
 
 #include "model/block.h"
 #include "model/line_loss.h"
@@ -13,13 +13,12 @@ class Leak {
  public:
   static constexpr BlockInfo info =
       block_info("leak", Station::valve, Kind::pressure, Inverse::implicit, "Leak",
-                 "A steady flow through a leak at the finger reduces the pressure along the line.",
+                 "A steady flow through a leak at the finger causes a pressure drop along the line.",
                  "u = p (1 + share a / (p + a)), a = 101.325 kPa; u = p + share (p + a) / 4 above a");
-  static constexpr std::array parameters{parameter("share", "",
-                                                   "share of a small pressure that is lost: square of the "
-                                                   "conductance of the leak divided by that of the line",
-                                                   Typical{0.03}, Within{0.0, 10.0}, Scale{0.02},
-                                                   Neutral{0.0})};
+  static constexpr std::array parameters{parameter(
+      "share", "",
+      "share of a small pressure that is lost: square of the ratio of the conductances of leak and line",
+      Typical{0.03}, Within{0.0, 10.0}, Scale{0.02}, Neutral{0.0})};
 
   Leak(std::span<const T> values, const Preparation&) : loss_{values[0]} {}
 
@@ -31,8 +30,8 @@ class Leak {
     const T begin = output_;
     output_ = loss_.behind(in.end);
     // The pressure at the finger is approximated by a straight line between its values at the two ends of the
-    // segment. This approximation is sufficient, because only the preceding lag makes the pressure nonlinear
-    // in time within a sample.
+    // segment. This approximation is sufficient, because within a sample the pressure is nonlinear in time
+    // only as the result of a lag before this block.
     const T middle = (begin + output_) * 0.5;
     const double way = value_of(in.end) - value_of(in.begin);
     const T slope = way != 0.0 ? T((output_ - begin) / (in.end - in.begin)) : T(1.0);

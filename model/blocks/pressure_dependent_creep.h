@@ -24,12 +24,14 @@ class PressureDependentCreep {
                  "Pressure-dependent creep", "Creep that starts above a threshold pressure.",
                  "y += x1 + x2 + ..., tau x' = c max(p - hinge, 0) - x in every branch");
   static constexpr std::array<ParameterSpec, 0> parameters{};
-  static constexpr std::array repeated{parameter("hinge#_kpa", "kPa", "pressure above which branch # creeps",
-                                                 Typical{20.0}, Within{0.0, 1e4}, Scale{5.0}, Placed{}),
-                                       parameter("compliance#_mm_per_kpa", "mm/kPa", "final gain of branch #",
-                                                 Typical{0.05}, Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}),
-                                       parameter("time_constant#_s", "s", "time constant of branch #",
-                                                 Typical{5.0}, Within{1e-3, 1e6}, Scale{2.0}, Placed{})};
+  static constexpr std::array repeated{
+      parameter("hinge#_kpa", "kPa", "threshold pressure above which branch # creeps", Typical{20.0},
+                Within{0.0, 1e4}, Scale{5.0}, Placed{}),
+      parameter("compliance#_mm_per_kpa", "mm/kPa",
+                "final creep of branch # per pressure above the threshold pressure", Typical{0.05},
+                Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}),
+      parameter("time_constant#_s", "s", "time constant of branch #", Typical{5.0}, Within{1e-3, 1e6},
+                Scale{2.0}, Placed{})};
   static constexpr std::size_t max_parts = 24;
 
   PressureDependentCreep(std::span<const T> values, const Preparation& preparation)

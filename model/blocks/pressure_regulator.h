@@ -23,11 +23,11 @@ class PressureRegulator {
                 Typical{0.05}, Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}, Latency{}),
       parameter("overlap_kpa", "kPa", "largest pressure error at which no port of the valve opens",
                 Typical{0.5}, Within{0.0, 100.0}, Scale{0.5}, Placed{}, Neutral{0.0}),
-      parameter("integral_time_s", "s", "integral time of the regulator; 0: no integral action", Typical{0.4},
-                Within{0.0, 1000.0}, Scale{0.5}, Placed{}, Neutral{0.0}),
+      parameter("integral_time_s", "s", "integral time of the regulator; 0 for no integral action",
+                Typical{0.4}, Within{0.0, 1000.0}, Scale{0.5}, Placed{}, Neutral{0.0}),
       parameter("full_open_kpa", "kPa",
-                "pressure error at which a port of the valve is fully open; 0: no limit", Typical{12.0},
-                Within{0.0, 1000.0}, Scale{10.0}, Placed{}, Neutral{0.0})};
+                "pressure error at which a port of the valve is fully open; 0 for no limit of the flow",
+                Typical{12.0}, Within{0.0, 1000.0}, Scale{10.0}, Placed{}, Neutral{0.0})};
 
   static std::string_view objection(std::span<const double> values) {
     if (values[4] > 0 && values[4] <= values[2]) return "full_open_kpa must be above overlap_kpa, or 0";

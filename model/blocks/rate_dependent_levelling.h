@@ -1,5 +1,5 @@
 #pragma once
-// Models a Bouc-Wen element that saturates earlier at high pressure rates.
+// Models a Bouc-Wen element that saturates earlier at high pressure rates than at low pressure rates.
 
 #include "model/block.h"
 #include "model/blocks/bouc_wen.h"
@@ -14,16 +14,17 @@ class RateDependentLevelling : public BoucWenPart<T> {
   static constexpr BlockInfo info = block_info(
       "rate_dependent_levelling", Station::actuator, Kind::element, Inverse::implicit,
       "Rate-dependent saturation",
-      "The width of the hysteresis loop depends on the rate of the pressure: bouc_wen saturates earlier at "
-      "high rates.",
+      "The width of the hysteresis loop depends on the rate of the pressure, because bouc_wen saturates "
+      "earlier at high rates.",
       "bouc_wen: eta is replaced by eta (1 + levelling r/(r + rate)), settling r' = |p'| - r");  // words-ok
   static constexpr std::array parameters{
       parameter("levelling", "", "largest relative increase of eta of bouc_wen, reached at high rates",
                 Typical{0.2}, Within{-0.9, 100.0}, Scale{0.1}, Neutral{0.0}),
-      parameter("rate_kpa_per_s", "kPa/s", "rate at which half of the increase is reached", Typical{20.0},
+      parameter("rate_kpa_per_s", "kPa/s",
+                "rate of the pressure at which half of the largest increase is reached", Typical{20.0},
                 Within{0.01, 1e5}, Scale{10.0}, IfLeftOut{20.0}),
-      parameter("settling_s", "s", "time constant with which the rate is averaged", Typical{0.05},
-                Within{1e-3, 100.0}, Scale{0.05}, IfLeftOut{0.05})};
+      parameter("settling_s", "s", "time constant with which the rate of the pressure is averaged",
+                Typical{0.05}, Within{1e-3, 100.0}, Scale{0.05}, IfLeftOut{0.05})};
 
   RateDependentLevelling(std::span<const T> values, const Preparation&)
       : rate_{values[0], values[1], values[2]} {}

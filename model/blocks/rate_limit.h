@@ -16,7 +16,7 @@ class RateLimit {
  public:
   static constexpr BlockInfo info =
       block_info("rate_limit", Station::valve, Kind::pressure, Inverse::bound, "Rate limit",
-                 "The pressure changes at a limited rate.",
+                 "The rate of change of the pressure is limited.",
                  "p follows u, -1 / venting_s_per_kpa <= p' <= 1 / filling_s_per_kpa");
   static constexpr std::array parameters{
       parameter("filling_s_per_kpa", "s/kPa", "shortest time in which the pressure rises by 1 kPa",
@@ -76,8 +76,8 @@ class RateLimit {
     next(Segment<T>::straight(duration_s, begin, output_));
   }
 
-  /// Moves the output with an input that starts at the output. If the input changes faster than the limit
-  /// permits, the output moves at the largest permitted rate.
+  /// Moves the output along an input that begins at the present output. If the input changes faster than the
+  /// limit permits, the output moves at the largest permitted rate.
   template <class Next>
   void follow(const Segment<T>& in, Next&& next) {
     const T rise = in.end - output_;

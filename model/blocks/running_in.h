@@ -14,14 +14,13 @@ namespace softgrip::model {
 template <class T>
 class RunningIn : public SurroundingsGain<RunningIn<T>, T> {
  public:
-  static constexpr BlockInfo info =
-      block_info("running_in", Station::actuator, Kind::displacement, Inverse::implicit, "Running in",
-                 "The gain drifts during the running-in of the actuator.",
-                 "z = y (1 + run_in (1 - exp(-t/tau))), kept positive");
+  static constexpr BlockInfo info = block_info(
+      "running_in", Station::actuator, Kind::displacement, Inverse::implicit, "Running in",
+      "The gain drifts while the actuator runs in.", "z = y (1 + run_in (1 - exp(-t/tau))), kept positive");
   static constexpr std::array parameters{
       parameter("run_in", "", "final relative change of the gain", Typical{0.05}, Within{-10.0, 10.0},
                 Scale{0.05}, Neutral{0.0}),
-      parameter("run_in_time_s", "s", "time constant of running in", Typical{60.0}, Within{0.1, 1e5},
+      parameter("run_in_time_s", "s", "time constant of the running-in", Typical{60.0}, Within{0.1, 1e5},
                 Scale{30.0}, IfLeftOut{60.0})};
 
   RunningIn(std::span<const T> values, const Preparation&) : run_in_(values[0]), per_s_(1.0 / values[1]) {}

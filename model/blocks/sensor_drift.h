@@ -12,10 +12,11 @@ class SensorDrift {
  public:
   static constexpr BlockInfo info = block_info(
       "sensor_drift", Station::sensor, Kind::reading, Inverse::ignored, "Sensor drift",
-      "The zero offset of the sensor drifts steadily with the time since the start of the measurements.",
+      "The zero offset of the sensor drifts at a constant rate from the start of the measurements.",
       "z = y + rate t");
-  static constexpr std::array parameters{parameter("rate_mm_per_h", "mm/h", "steady drift", Typical{0.5},
-                                                   Within{-1e5, 1e5}, Scale{1.0}, Neutral{0.0})};
+  static constexpr std::array parameters{parameter("rate_mm_per_h", "mm/h", "constant drift rate",
+                                                   Typical{0.5}, Within{-1e5, 1e5}, Scale{1.0},
+                                                   Neutral{0.0})};
 
   SensorDrift(std::span<const T> values, const Preparation&) : rate_mm_per_s_(values[0] / 3600.0) {}
 

@@ -22,8 +22,8 @@ class SensorFreeDrift {
                                                    Typical{30.0}, Within{0.1, 1e5}, Scale{10.0},
                                                    IfLeftOut{30.0})};
   static constexpr std::array repeated{
-      parameter("knot#_mm", "mm", "drift of the sensor's zero point, # intervals after the start",
-                Typical{0.1}, Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0})};
+      parameter("knot#_mm", "mm", "drift of the zero offset # intervals after the start", Typical{0.1},
+                Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0})};
   static constexpr std::size_t max_parts = 16;
 
   SensorFreeDrift(std::span<const T> values, const Preparation&)

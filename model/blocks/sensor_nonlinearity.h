@@ -24,7 +24,7 @@ class SensorNonlinearity {
                 "largest error of the reading in each half of the range, with opposite signs", Typical{0.0},
                 Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0}),
       parameter("range_mm", "mm",
-                "displacement of the upper calibration point; the lower calibration point is at 0",
+                "displacement at the upper calibration point; the lower calibration point is at 0",
                 Typical{30.0}, Within{0.1, 1000.0}, Scale{10.0})};
 
   SensorNonlinearity(std::span<const T> values, const Preparation&)

@@ -16,7 +16,7 @@ class Stiffening {
   static constexpr bool at_samples = true;
   static constexpr BlockInfo info =
       block_info("stiffening", Station::actuator, Kind::displacement, Inverse::implicit, "Stiffening",
-                 "The gain changes with the displacement, equally for loading and unloading.",
+                 "The gain changes with the displacement in the same way for loading and unloading.",
                  "z = y / (1 + s |y|), for negative s: y (1 - s |y|)");
   static constexpr std::array parameters{parameter(
       "stiffening_per_mm", "1/mm",

@@ -66,8 +66,8 @@ class StressSoftening {
     return p * (1.0 + softening_per_kpa_ * largest / (1.0 + saturation_per_kpa_ * largest));
   }
 
-  // Passes on a segment whose pressures are all below the largest pressure so far. There, the map from p to q
-  // is a straight line.
+  // Passes on a segment whose pressures are all below m, the largest pressure so far. Below m, the map from p
+  // to q is a straight line.
   template <class Next>
   void again(const Segment<T>& in, Next&& next) {
     const T begin = output_;

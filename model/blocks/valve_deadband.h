@@ -17,8 +17,8 @@ class ValveDeadband {
                  "The valve ignores changes of the command smaller than a band.",
                  "|u - p| <= band/2; p moves only to keep this condition");
   static constexpr std::array parameters{
-      parameter("band_kpa", "kPa", "change of the command that is ignored after a reversal", Typical{1.0},
-                Within{0.0, 1000.0}, Scale{0.5}, Neutral{0.0})};
+      parameter("band_kpa", "kPa", "largest change of the command that is ignored after a reversal",
+                Typical{1.0}, Within{0.0, 1000.0}, Scale{0.5}, Neutral{0.0})};
 
   ValveDeadband(std::span<const T> values, const Preparation&) : play_(T(values[0] * 0.5)) {}
 

@@ -19,8 +19,9 @@ class ValveLag {
   static constexpr BlockInfo info =
       block_info("valve_lag", Station::valve, Kind::pressure, Inverse::lead, "Valve lag",
                  "First-order lag of the regulator and the tube.", "tau p' = u - p");
-  static constexpr std::array parameters{parameter("time_constant_s", "s", "time constant", Typical{0.05},
-                                                   Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0}, Latency{})};
+  static constexpr std::array parameters{parameter("time_constant_s", "s", "time constant of the lag",
+                                                   Typical{0.05}, Within{0.0, 1e4}, Scale{0.05}, Neutral{0.0},
+                                                   Latency{})};
 
   ValveLag(std::span<const T> values, const Preparation& preparation)
       : time_constant_s_(values[0]), weights_(1) {

@@ -16,7 +16,8 @@ class Wear {
  public:
   static constexpr BlockInfo info =
       block_info("wear", Station::actuator, Kind::displacement, Inverse::implicit, "Wear",
-                 "The gain drifts with use.", "z = y (1 + gain l), l = travel so far; kept positive");
+                 "The gain drifts with the travel of the finger.",
+                 "z = y (1 + gain l), l = travel so far; kept positive");
   static constexpr std::array parameters{
       parameter("gain_per_m", "1/m", "relative change of the gain per metre of travel", Typical{0.05},
                 Within{-1000.0, 1000.0}, Scale{0.05}, Neutral{0.0})};

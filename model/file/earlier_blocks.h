@@ -8,8 +8,8 @@
 
 namespace softgrip::model {
 
-/// A block of an earlier version. The keys of the new blocks that replace this block have the same names as
-/// its keys.
+/// A block of an earlier version. The new blocks that replace the earlier block have keys with the same names
+/// as the keys of the earlier block.
 struct EarlierBlock {
   std::string_view id;
   std::vector<std::size_t> types;  ///< types of the blocks that replace the earlier block

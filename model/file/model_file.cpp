@@ -165,7 +165,7 @@ class ModelReader {
 
   void report_several(const Node::Entry& entry, const std::vector<BlockSpec>& blocks) {
     std::string hint =
-        "the new blocks together do not have the same effect as the earlier block. Fit the model again with";
+        "the new blocks together do not have the same effect as the old block. Fit the model again with";
     for (const BlockSpec& block : blocks) {
       hint += " `- " + std::string(catalogue()[block.type].info.id) + ": {";
       for (std::size_t i = 0; i < block.values.size(); ++i)
@@ -173,7 +173,8 @@ class ModelReader {
       hint += "}`";
     }
     problems_.add(document_.problem(
-        entry.key_at, entry.key + " contains several mechanisms, which now are separate blocks", hint));
+        entry.key_at, entry.key + " contains several mechanisms, which are separate blocks in this version",
+        hint));
   }
 
   void report_unknown(const Node::Entry& entry, std::optional<std::size_t> type, Station station) {
@@ -181,7 +182,7 @@ class ModelReader {
     if (type) {
       problems_.add(document_.problem(
           entry.key_at, entry.key + " does not belong to the station " + where,
-          "this block belongs under `" + std::string(name_of(catalogue()[*type].info.station)) + ":`"));
+          "list this block under `" + std::string(name_of(catalogue()[*type].info.station)) + ":`"));
       return;
     }
     const std::string near = document::nearest(entry.key, ids_of(station));
@@ -272,8 +273,8 @@ std::optional<Model> read_rig_model(const Document& document, Problems& problems
                                 "the output unit of the model is " +
                                     std::string(name_of(model->output_unit)) +
                                     ", but a rig measures and controls in mm",
-                                "simulate, identify, validate and diagnose use this model; a rig needs one "
-                                "that was identified from logs in mm"));
+                                "simulate, identify, validate and diagnose use this model. A rig needs a "
+                                "model that was identified from logs in mm"));
   return std::nullopt;
 }
 

@@ -92,8 +92,8 @@ class Session:
         if self.starts and failure:
             which = ", ".join("a start without a reply" if request is None else f"request {request}"
                               for request in self.starts.values())
-            raise StopNotConfirmed(f"the daemon did not confirm the stop of this program's sequences ({which}): {failure}. They "
-                                   "may still run. `softgrip status` shows them, `softgrip stop` stops them") from failure
+            raise StopNotConfirmed(f"the daemon did not confirm the stop of this program's sequences ({which}): {failure}. "
+                                   "The sequences may still run. `softgrip status` shows them, `softgrip stop` stops them") from failure
 
     def greeted(self, hello: Hello) -> None:
         self._names_starts = START_ID in hello.capabilities
@@ -117,7 +117,7 @@ class Session:
     def _new_start_id(self) -> str:
         if not self._names_starts:
             raise ProtocolError("softgripd is older than this package and cannot stop the sequence of a single client, so "
-                                "nothing was started")
+                                "no sequence was started")
         return os.urandom(16).hex()
 
     def forget(self, number: int) -> None:

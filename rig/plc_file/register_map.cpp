@@ -78,7 +78,7 @@ class Reader {
     const auto [taken, is_free] = claimed_.emplace(address, what);
     if (is_free && address <= last_address) return;
     problems_.add(document_.problem(
-        at, is_free ? fmt::format("the address of '{}' is above {}, the last possible address", what,
+        at, is_free ? fmt::format("the address of '{}' is above {}, the largest possible address", what,
                                   last_address)
                     : fmt::format("address {} belongs to both '{}' and '{}'", address, taken->second, what)));
   }
@@ -100,8 +100,10 @@ class Reader {
     if (!info->unit.empty()) {
       map_.resolution[index] = resolution_of(reader.text("unit"), info->unit);
       if (reader.good("unit") && map_.resolution[index] == 0) {
-        reader.report("unit", "this is not a resolution (the physical value of one count of the register)",
-                      fmt::format("write a number and the unit: \"0.01 {}\"", info->unit));
+        reader.report(
+            "unit",
+            "this value is not a resolution (the physical value that corresponds to 1 in the register)",
+            fmt::format("write a number and the unit: \"0.01 {}\"", info->unit));
       }
     }
     if (block != Block::finger) claim(node.at, address, name);

@@ -25,17 +25,21 @@ const WebKeys& web_keys() {
        {"daemon", "map", "", "sockets of the daemon"},
        {"listen", "map", "", "address of the page"},
        {"access", "map", "", "permissions of clients"}},
-      {required("look", &S::look_socket, {}, "read-only socket of the daemon, for all values that are shown"),
+      {required("look", &S::look_socket, {},
+                "read-only socket of the daemon, from which the page gets all values that it shows"),
        optional("operate", &S::operate_socket, {}, "socket of the daemon for commands")},
       {required("address", &S::address, {}, "numeric IP address of the web server"),
        required("port", &S::port, {0, 65535}, "port of the web server"),
        optional("max_connections", &S::max_connections, {4, 512}, "largest number of connections"),
-       {"hosts", "list", "none", "host names of the page, in addition to `localhost` and numeric addresses"}},
+       {"hosts", "list", "none",
+        "host names under which clients may open the page, in addition to `localhost` and numeric "
+        "addresses"}},
       {optional("tokens", &S::tokens, {}, "file that contains the tokens"),
-       required("without_token", &S::without_token, {"none", "look", "operate"}, "role without a token"),
+       required("without_token", &S::without_token, {"none", "look", "operate"},
+                "role of a client without a token"),
        optional("session_idle_s", &S::session_idle_s, {1, 86400},
-                "a session without requests and without an open page ends after this time"),
-       optional("session_s", &S::session_s, {1, 604800}, "every session ends after this time")}};
+                "time without requests and without an open page after which a session ends"),
+       optional("session_s", &S::session_s, {1, 604800}, "time after which every session ends")}};
   return keys;
 }
 

@@ -132,7 +132,7 @@ drivers::BusStatus SimulatedBoard::Parts::take_commands(std::span<const double> 
         quantised(clamped, channel.valve_min_kpa, channel.valve_max_kpa, channel.output_bits);
     if (clamped != commands_kpa[i]) {
       std::snprintf(text.data(), text.size(),
-                    "channel '%s': %g kPa is outside the output range, its limit was written",
+                    "channel '%s': %g kPa is outside the output's range; the limit was written",
                     channel.name.c_str(), commands_kpa[i]);
       status = say(drivers::BusStatus::write_refused, text.data());
     }
@@ -197,7 +197,7 @@ drivers::BusStatus SimulatedBoard::exchange(std::span<const double> commands_kpa
   Parts& parts = *parts_;
   if (commands_kpa.size() != channels() || readings.size() != channels()) {
     return parts.say(drivers::BusStatus::write_refused,
-                     "the number of commands or readings differs from the number of channels");
+                     "the numbers of commands, readings and channels are not equal");
   }
   const Nanoseconds now = parts.clock.now();
   if (!parts.started) {

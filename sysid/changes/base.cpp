@@ -22,21 +22,22 @@ namespace softgrip::sysid {
 namespace {
 
 /// Order of the autoregression of the residual [bins]. The residual of a displacement has a longer
-/// correlation time than the residual of a pressure. The order for a displacement therefore covers at least
-/// finger_memory_s.
+/// correlation time than the residual of a pressure. For a displacement, the autoregression therefore covers
+/// at least finger_memory_s [s].
 constexpr std::size_t whitening_order = 8;
 constexpr double finger_memory_s = 0.4;
-/// Lower limits of the spread between runs: relative spread of the gain, and spread of the zero offset as a
-/// share of the span. No finger is more repeatable from day to day than these limits.
+/// Lower limits of the variation between healthy runs. `least_gain_spread` applies to the relative gain, and
+/// `least_zero_share` applies to the zero offset as a share of the span. No finger repeats more accurately
+/// from day to day than these limits.
 constexpr double least_gain_spread = 0.002;
 constexpr double least_zero_share = 0.0005;
 
-/// A model that may become the baseline model.
+/// A model structure that may become the baseline model, with the function that fits its parameters.
 struct Candidate {
   std::string description;
   std::optional<Regulator> regulator;
-  /// Fits the model to records with the output of the regulator as drive. A model without blocks predicts its
-  /// input.
+  /// Fits the model to records whose drive is the output of the regulator. The prediction of a model without
+  /// blocks is its input.
   std::function<FitPoint(const std::vector<Record>&)> fit;
 };
 
@@ -59,7 +60,8 @@ double mean_temperature(const std::vector<Record>& records) {
   return count > 0 ? sum / count : 20;
 }
 
-/// Fits a candidate to all units except one, and returns its residual for all records in bins.
+/// Fits a candidate to all cross-validation units except one. Returns its residual for all records, averaged
+/// over bins.
 /// @param model  receives the fitted model.
 Binned left_by(const Candidate& candidate, const std::vector<Record>& records, const Units& units,
                std::size_t unit, double bin_s, model::Model& model) {
@@ -83,7 +85,8 @@ Binned left_by(const Candidate& candidate, const std::vector<Record>& records, c
   return left;
 }
 
-/// Returns the candidate that consists of play operators and creep. Its input is the input of the records.
+/// Returns the candidate that consists of play operators and creep. Its input is the drive of the records
+/// that it is fitted to.
 Candidate play_candidate(Drive drive) {
   const BaseStructure play{
       .hysteresis = HysteresisForm::play, .delay = drive == Drive::command, .hinged_creep = true};
@@ -121,14 +124,15 @@ std::vector<Candidate> candidates(const std::vector<Record>& records, const Base
 }
 
 /// Returns the kinds of filter banks that are tried. If the pressure is not recorded, the filter bank may
-/// have to represent the valve and the finger.
+/// have to represent the valve in addition to the finger.
 std::vector<FilterKind> kinds_for(Judged judged, Drive drive) {
   if (judged == Judged::pressure) return {FilterKind::valve};
   if (drive == Drive::measured) return {FilterKind::finger};
   return {FilterKind::finger, FilterKind::valve_and_finger};
 }
 
-/// A candidate, its residuals after fits that leave out one unit each, and its fit to all units.
+/// The fit of a candidate to all records, and its residuals in the cross-validation. Each residual belongs to
+/// a fit that leaves out one unit.
 struct Fitted {
   std::vector<Record> driven;
   model::Model model;  ///< model that was fitted to all records
@@ -151,15 +155,16 @@ std::vector<Fitted> fit_all(const std::vector<Candidate>& all, const std::vector
   return fitted;
 }
 
-/// Selects the baseline model. The first candidate is the default. Another candidate replaces it only if it
-/// predicts left-out units significantly better. The regulator of a candidate is always fitted to all units;
-/// the fits that leave out a unit only change the rest of the candidate.
+/// Selects the baseline model. The first candidate is the default. Another candidate replaces the default
+/// only if it predicts left-out runs significantly better. The regulator of a candidate is fitted to all
+/// runs. The cross-validation changes only the other parameters of the candidate.
 void choose(Base& base, const std::vector<Candidate>& all, const std::vector<Record>& records,
             const BaseOptions& options) {
   const std::vector<FilterKind> kinds = kinds_for(base.judged, base.drive);
   const std::vector<Fitted> fitted = fit_all(all, records, base, options.threads);
   std::vector<FittedFilters> fits(all.size() * kinds.size());
-  // Candidates without a regulator have the same input, so they share the columns of the filter bank.
+  // All candidates without a regulator have the same input, so one set of filter columns is computed for all
+  // of them.
   std::vector<std::vector<std::size_t>> groups(1);
   for (std::size_t c = 0; c < all.size(); ++c) {
     if (all[c].regulator)
@@ -205,7 +210,7 @@ std::size_t order_for(const Base& base) {
   return std::max(whitening_order, static_cast<std::size_t>(std::lround(finger_memory_s / base.bin_s)));
 }
 
-/// Computes how much gain and zero vary between the units of the healthy records.
+/// Computes the variation of the gain and of the zero offset between the healthy runs.
 void spread(Base& base) {
   std::vector<PairSums> sums(base.units.count() * base.records.size());
   for (std::size_t r = 0; r < base.records.size(); ++r) {
@@ -258,8 +263,9 @@ Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double 
 }
 
 Record thinned_for(const Base& base, const Record& record) {
-  // Numbers of samples per bin. For a finger, they give an interval of 0.01 s with either input and the
-  // shortest bins. Faster oscillations or lags are identified by their form.
+  // Numbers of samples per bin. With the shortest bins, both numbers for a finger lead to a sampling interval
+  // of 0.01 s. Oscillations and lags that are faster than this interval need no samples, because the form of
+  // a cause describes them.
   constexpr double commanded_parts = 2, measured_parts = 5, valve_parts = 4;
   const double finger_parts = base.drive == Drive::measured ? measured_parts : commanded_parts;
   return thinned_to_centres(record,

@@ -1,7 +1,7 @@
 #pragma once
-// Fits the baseline model of a finger. This model is fitted to the logs of the healthy finger and then kept
-// constant. Its uncertainty is computed from differences between units; a unit is a run or half of a run
-// (sysid/evidence/units.h).
+// Fits the baseline model of a finger to the logs of the healthy finger. The parameters of this model do not
+// change afterwards. Its uncertainty is computed from the differences between units. A unit is a run or half
+// of a run (sysid/evidence/units.h).
 
 #include <cstdint>
 #include <functional>
@@ -23,7 +23,7 @@
 namespace softgrip::sysid {
 
 /// Quantity that is compared with the baseline model. For `pressure`, the model describes the path from the
-/// command to pressure_kpa, and all members below whose names end with _mm are in kPa.
+/// command to pressure_kpa. All members of Base with names that end with _mm are then in kPa.
 enum class Judged { displacement, pressure };
 [[nodiscard]] constexpr const char* name_of(Judged judged) {
   return judged == Judged::pressure ? "pressure" : "displacement";
@@ -35,7 +35,8 @@ enum class Judged { displacement, pressure };
 /// A model of the healthy finger: a structure with an optional regulator and an optional filter bank.
 struct HealthyModel {
   std::string description;  ///< description of the model
-  /// Model of the finger; if it has no blocks, the baseline consists of a regulator or a filter bank only.
+  /// Model of the finger. If the model has no blocks, the baseline model consists of a regulator, a filter
+  /// bank or both.
   model::Model model;
   FilterKind kind = FilterKind::finger;
   std::optional<Regulator> regulator;  ///< regulator between the command and the model; empty: none
@@ -54,7 +55,7 @@ struct Base : HealthyModel {
   double noise_mm = 0;        ///< standard deviation of the noise between consecutive readings
   Units units;                ///< division of the healthy records into units for cross-validation
   double span_mm = 0;
-  double gain_spread = 0;  ///< relative spread of the gain between units of the healthy logs
+  double gain_spread = 0;  ///< relative spread of the gain between the healthy runs
   double zero_mm = 0;      ///< mean difference between the healthy readings and the predictions
   double zero_spread_mm = 0;
   double bin_s = 0.05;
@@ -66,29 +67,31 @@ struct Base : HealthyModel {
 };
 
 struct BaseOptions {
-  /// Model that the user has; it is one of the candidates for the baseline model; not set: none.
+  /// Model that the user already uses, as an additional candidate for the baseline model. Not set: the user
+  /// has no model.
   std::optional<model::Model> given;
   std::uint64_t seed = 1;
   unsigned threads = 0;
   std::function<void(const std::string&)> progress;
 };
 
-/// Fits the baseline model.
+/// Fits the baseline model and computes its uncertainty.
 /// @param records  records of the healthy finger at the full sampling rate.
 [[nodiscard]] Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive,
                             const BaseOptions& options);
 
-/// Returns the bin length for a finger with a measured pressure [s].
+/// Returns the bin length for a finger whose pressure is measured [s].
 [[nodiscard]] double finger_bin_s(const std::vector<Record>& records);
-/// Returns the reading minus the prediction of a model with play operators and creep, in bins. Each unit is
-/// predicted by a fit to the other units. The first readings of a record, from which its initial state is
-/// estimated, are NaN.
+/// Returns the reading minus the prediction of a model with play operators and creep, as means over bins. The
+/// prediction of a cross-validation unit comes from a fit to all other units. The first readings of a record
+/// are NaN, because the initial state is estimated from them.
 /// @param records  records of the healthy finger with the input that `drive` selects.
 [[nodiscard]] Binned left_out_by_play(const std::vector<Record>& records, Drive drive, double bin_s,
                                       unsigned threads);
 
-/// Returns a thinned copy of the record for a search for changes, with several samples per bin. For a
-/// pressure, it has more samples per bin, because a valve responds faster than a finger.
+/// Returns a copy of the record with fewer samples, for the search for changes. Each bin contains several
+/// samples. If the pressure is evaluated, a bin contains more samples than for a displacement, because a
+/// valve responds faster than a finger.
 [[nodiscard]] Record thinned_for(const Base& base, const Record& record);
 
 /// Returns records whose reading is the measured pressure [kPa] and whose drive is the command.

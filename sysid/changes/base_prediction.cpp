@@ -19,7 +19,8 @@ std::vector<double> plain_prediction(const model::Model& model, const std::optio
   own.peak_before_kpa = start.peak_before_kpa;
   own.valley_before_kpa = start.valley_before_kpa;
   own.arrival_kpa_per_s = start.arrival_kpa_per_s;
-  // If an additional block has added a creep branch, this branch is settled at the start.
+  // If an additional block has added a creep branch, this branch is at equilibrium at the start of the
+  // record.
   std::copy_n(start.unsettled_mm.begin(), std::min(start.unsettled_mm.size(), own.unsettled_mm.size()),
               own.unsettled_mm.begin());
   return predict(model, record, own);
@@ -31,9 +32,10 @@ std::vector<double> simulated_with(const Driven& driven, const std::vector<model
   return plain_prediction(model, {}, driven.simulated, driven.start);
 }
 
-/// Returns the prediction of the baseline model and the filter bank, with the blocks of an extension. A block
-/// after the model also acts on the contribution of the filter bank. The simulation of the model is repeated
-/// only if a block changes the model or depends on the motion between samples.
+/// Returns the prediction of the baseline model plus the contribution of the filter bank, changed by the
+/// blocks of an extension. A block that follows the model also acts on the contribution of the filter bank.
+/// The model is simulated a second time only if a block changes the model or depends on the motion between
+/// samples.
 std::vector<double> extended_prediction(const Driven& driven, const std::vector<model::BlockSpec>& blocks) {
   std::vector<model::BlockSpec> within, behind;
   for (const model::BlockSpec& block : blocks) {
@@ -48,8 +50,8 @@ std::vector<double> extended_prediction(const Driven& driven, const std::vector<
   if (behind.empty()) return with_filters;
   with_filters = downstream(behind, driven.simulated, std::move(with_filters));
   if (is_downstream(behind, driven.model, driven.simulated)) return with_filters;
-  // For a block that depends on the motion between samples, the motion of the model is simulated between the
-  // samples. The contribution of the filter bank is assumed to be linear there.
+  // Some blocks depend on the motion between samples. For these blocks, the motion of the model between the
+  // samples is simulated. The contribution of the filter bank is assumed to be linear between the samples.
   const std::vector<double> without_filters_mm = downstream(behind, driven.simulated, plain);
   std::vector<double> exact = simulated_with(driven, blocks);
   for (std::size_t i = 0; i < exact.size(); ++i) exact[i] += with_filters[i] - without_filters_mm[i];
@@ -77,9 +79,9 @@ std::vector<double> driven_prediction(const Base& base, const Driven& driven, co
   return y;
 }
 
-/// Returns the output of the baseline model's regulator for a command that has passed the valve blocks; if
-/// there is no regulator, returns this command. After the valve blocks, the command is not linear between
-/// samples, so the regulator is simulated in finer steps.
+/// Applies the valve blocks to the command. If the baseline model has a regulator, returns the output of this
+/// regulator; otherwise returns the output of the valve blocks. The output of the valve blocks is not linear
+/// between samples, so the regulator is simulated with 5 steps per sample.
 std::vector<double> drive_of(const Base& base, const Record& record,
                              const std::vector<model::BlockSpec>& valve, const RegulatorFault& fault) {
   if (!base.regulator) return drive_behind(valve, record);
@@ -97,7 +99,7 @@ std::vector<double> drive_of(const Base& base, const Record& record,
   return drive_kpa;
 }
 
-/// Returns the readings without the contribution of the filter bank.
+/// Returns the record without the contribution of the filter bank to its readings.
 Record without_filters(const Driven& driven) {
   Record record = driven.simulated;
   for (std::size_t i = 0; i < record.size(); ++i)

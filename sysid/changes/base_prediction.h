@@ -16,36 +16,40 @@
 
 namespace softgrip::sysid {
 
-/// Returns the prediction of a baseline without a model: the output of the regulator, or 0 if there is no
-/// regulator.
+/// Returns the prediction of a baseline that has no finger model: the output of the regulator, or 0 if there
+/// is no regulator.
 [[nodiscard]] std::vector<double> without_model(const std::optional<Regulator>& regulator,
                                                 const Record& driven);
 
-/// Returns the estimated initial state of a run to which the model was not fitted. Sets the offset of the
-/// sensor reading in this state to 0 mm, because the comparison of runs estimates this offset.
+/// Returns the estimated initial state of a run that was not used to fit the model. The sensor offset in this
+/// state is set to 0 mm, because the comparison of runs estimates the offset.
 [[nodiscard]] StartState start_of(const model::Model& model, const Record& record);
 
-/// A record after the simulated valve of a baseline model, and the predictions of the model and of the filter
-/// bank.
+/// A record whose drive has passed the simulated valve of a baseline model, with the predictions of the model
+/// and of the filter bank.
 struct Driven {
   Record record;  ///< record whose drive is the input of the finger at each sample
-  /// Record with which `model` is simulated: equal to `record`, or with the command as drive.
+  /// Record that is the input of the simulation of `model`: either `record`, or the record with the command
+  /// as drive.
   Record simulated;
-  model::Model model;       ///< model of the baseline, including the valve blocks if they can be added to it
-  Eigen::VectorXd filters;  ///< contribution of the filter bank at each sample
-  StartState start;         ///< initial state of the model, without an offset
+  model::Model model;         ///< model of the finger in the baseline, including the valve blocks if they can
+                              ///< be added to it
+  Eigen::VectorXd filters;    ///< contribution of the filter bank at each sample
+  StartState start;           ///< initial state of the model, without an offset
   std::vector<double> plain;  ///< prediction of the model alone at each sample
 };
 /// Simulates the valve of the baseline model.
 /// @param valve  additional blocks between the command and the baseline model.
 /// @param fault  faults of the regulator of the baseline model.
-/// @param start  initial state of the record; nullptr: it is estimated from the first readings.
+/// @param start  initial state of the model; nullptr: the initial state is estimated from the first readings
+/// of the record.
 [[nodiscard]] Driven driven_by(const Base& base, const Record& record,
                                const std::vector<model::BlockSpec>& valve = {},
                                const RegulatorFault& fault = {}, const StartState* start = nullptr);
 
-/// Returns the prediction of the baseline model with the effects of `extension`, without an offset.
-/// @param driven  result of driven_by() for the record, or nullptr if the function has to compute it.
+/// Returns the prediction of the baseline model with the effects of `extension`. The prediction contains no
+/// zero offset.
+/// @param driven  result of driven_by() for the record; nullptr: the function computes this result.
 [[nodiscard]] std::vector<double> predict_base(const Base& base, const Record& record,
                                                const Extension& extension, const Driven* driven = nullptr);
 

@@ -22,7 +22,7 @@ constexpr std::size_t largest_json = std::size_t{16} * 1024 * 1024;
 tl::expected<Baseline, std::string> read_baseline(const std::string& folder) {
   const std::string path = (fs::path(folder) / "baseline.json").string();
   const auto text = read_file(path, largest_json);
-  if (!text) return Failure(folder + " is not a baseline: " + text.error());
+  if (!text) return Failure(folder + " is not a baseline folder: " + text.error());
   const Json json = parse_json<Json>(*text);
   if (!json.is_object() || !json.contains("logs") || !json["logs"].is_array() || !json.contains("model"))
     return Failure(path + " was not written by softgrip baseline");
@@ -59,7 +59,7 @@ tl::expected<Baseline, std::string> read_baseline(const std::string& folder) {
   const auto model = known(json["model"]);
   if (!model) return Failure(model.error());
   baseline.model = *model;
-  if (baseline.logs.empty()) return Failure(path + " names no logs");
+  if (baseline.logs.empty()) return Failure(path + " lists no healthy logs");
   return baseline;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-// Reads the folder that `softgrip baseline` has written. It contains healthy_1.csv and further healthy logs,
-// second_1.csv and further logs of a second run that checked the first run, gauge.csv, model.yaml and
-// baseline.json. baseline.json states the origin and the hash of each file.
+// Reads the folder that `softgrip baseline` has written. The folder contains the healthy logs (healthy_1.csv,
+// healthy_2.csv, ...), gauge.csv, model.yaml and baseline.json. It also contains the logs of a second run
+// (second_1.csv, ...) that checked the first run. baseline.json states the origin and the hash of each file.
 
 #include <string>
 #include <vector>
@@ -11,14 +11,16 @@
 namespace softgrip::sysid {
 
 struct Baseline {
-  std::vector<std::string> logs;    ///< paths of the healthy logs, relative to the folder, in their order
-  std::vector<std::string> second;  ///< paths of the logs of the second run; empty: there was no second run
+  std::vector<std::string> logs;    ///< paths of the healthy logs, including the folder, in the order of
+                                    ///< baseline.json
+  std::vector<std::string> second;  ///< paths of the logs of the second run, including the folder; empty:
+                                    ///< there was no second run
   std::string model;                ///< path of model.yaml
   std::string gauge;                ///< path of gauge.csv; empty: the sensor was not checked
 };
 
-/// Reads baseline.json and compares the hashes of the files with those in baseline.json. The error is a
-/// sentence if the folder is not a baseline or if a file was changed.
+/// Reads baseline.json and compares the hashes of the files with the hashes in baseline.json. Returns an
+/// error sentence if the folder is not a baseline or if a file was changed.
 [[nodiscard]] tl::expected<Baseline, std::string> read_baseline(const std::string& folder);
 
 }  // namespace softgrip::sysid

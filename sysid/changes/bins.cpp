@@ -12,12 +12,12 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Upper limits of the classes of the input rate. If all bins are sorted by their rate, these shares of the
-/// bins are below the limits.
+/// Shares of all bins at which one class of the input rate ends and the next class begins. The bins are
+/// sorted by their input rate. The fourth class has no upper limit.
 constexpr std::array class_ends{0.4, 0.7, 0.9};
 
-/// Subtracts the mean of the finite values from the series, because the zero offset of a run is estimated
-/// separately.
+/// Subtracts the mean of the finite values from the series, because a separate step estimates the zero offset
+/// of a run.
 void subtract_mean(std::vector<double>& series) {
   double sum = 0, count = 0;
   for (const double v : series) {

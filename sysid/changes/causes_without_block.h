@@ -1,5 +1,6 @@
 #pragma once
-// Declares causes of a change that no block of a model describes: faults of the air supply, and a load.
+// Declares the causes of a change that no block of a model describes: faults of the air supply, and a load on
+// the finger.
 
 #include <array>
 #include <string_view>
@@ -29,7 +30,8 @@ inline constexpr CauseWithoutBlock leak{
     causes::Leak::id,
     "Leak",
     {"the pressure falls while it should be constant",
-     {"Hold full pressure and listen or spray soapy water along tube, fittings and finger.",
+     {"Hold full pressure. Listen for a leak along the tube, the fittings and the finger, or spray them with "
+      "soapy water.",
       "Close the tube first at the valve and then at the finger. Note in which of the two cases the pressure "
       "still falls."},
      {{{HealthNumber::pressure_loss, Moves::up},
@@ -38,18 +40,18 @@ inline constexpr CauseWithoutBlock leak{
      {SizedBy::Of::number, "pressure loss per second while the line is closed", "kPa", "loss_kpa_per_s"}},
     Appears::held};
 
-/// A weight or a preload changes the gain and the zero offset together. The readings cannot separate this
-/// cause from a change of the finger that coincides with a change of the zero offset.
+/// A weight or a preload changes the gain and the zero offset at the same time. A change of the finger and a
+/// separate change of the zero offset can produce the same readings.
 inline constexpr CauseWithoutBlock payload{
     "payload",
     "Payload",
     {"a weight or a preload acts on the finger",
      {"Remove all objects that are attached to the finger or touch the finger, then record the same log "
       "again.",
-      "Record one log with the finger pointing down and one log with the finger pointing up: the effect of a "
-      "weight changes its sign."},
+      "Record one log with the finger pointing down and one log with the finger pointing up. The effect of a "
+      "weight has opposite signs in these two logs."},
      {},
-     {SizedBy::Of::span, "gain at full pressure, on average", "%", {}, 100}},
+     {SizedBy::Of::span, "mean change of the gain at full pressure", "%", {}, 100}},
     Appears::displaced};
 
 inline constexpr std::array causes_without_block{leak, blocked_line, payload};

@@ -18,9 +18,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A cause is dropped if its error reduction is below this share of the largest error reduction in pressure
-/// or displacement. Such a cause may be a consequence of the cause with the largest reduction, because the
-/// baseline model is less certain for an input to which it was not fitted.
+/// Smallest error reduction of a reported cause, as a share of the largest error reduction in pressure or
+/// displacement. A cause below this limit may be a consequence of the cause with the largest reduction. This
+/// cause changes the input of the baseline model. The prediction for the changed input is less certain,
+/// because the model was not fitted to such inputs.
 constexpr double beside_another = 0.02;
 
 using Failure = tl::unexpected<std::string>;
@@ -32,9 +33,10 @@ struct Prepared {
   SamplingEvidence sampling = {};
 };
 
-/// Returns the records of the logs. Outliers and repeated readings are hidden.
-/// @param healthy_noise_mm  lower limit of the noise, so that readings within the noise of the healthy logs
-/// are no outliers. The noise of later logs may be smaller, for example zero where a sensor saturates.
+/// Converts the logs to records. Outliers and repeated readings are excluded from the evaluation.
+/// @param healthy_noise_mm  noise of the healthy logs, which is the lower limit of the noise. The noise of
+/// later logs may be smaller, for example zero at the limit of a sensor. Readings within the noise of the
+/// healthy logs are not outliers.
 Prepared driven_records(const std::vector<Log>& logs, Drive drive, const ChangeOptions& options,
                         double healthy_noise_mm = 0) {
   Prepared p{.records = make_records(logs, {.drive = drive, .held = options.held})};
@@ -67,9 +69,10 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
           std::vector<std::string>& warnings) {
   const double now_kpa = largest_command_kpa(later), then_kpa = largest_command_kpa(healthy);
   if (now_kpa > 1.05 * then_kpa)
-    warnings.push_back("The later logs reach " + significant(now_kpa, 3) +
-                       " kPa, but the healthy logs reach only " + significant(then_kpa, 3) +
-                       " kPa: at higher pressures, the baseline model extrapolates and may be wrong");
+    warnings.push_back(
+        "The later logs reach " + significant(now_kpa, 3) + " kPa, but the healthy logs reach only " +
+        significant(then_kpa, 3) +
+        " kPa. Above this pressure, the baseline model extrapolates, so its prediction may be wrong");
   if (healthy.size() == 1)
     warnings.emplace_back(
         "One healthy log does not show how much healthy runs differ from each other. A change is therefore "
@@ -82,12 +85,13 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
 }
 
 std::string unused_pressure(const DriveChoice& choice) {
-  return "Left-out healthy runs are predicted better from the command than from the measured pressure (" +
+  return "For healthy runs that were left out of the fit, the prediction from the command is better than the "
+         "prediction from the measured pressure (RMS errors " +
          significant(choice.by_command_mm, 2) + " and " + significant(choice.by_pressure_mm, 2) +
-         " mm RMS), so pressure_kpa is not used";
+         " mm), so pressure_kpa is not used";
 }
 
-/// Adds the causes that are found in the readings without a fit: isolated wrong readings, and repeated
+/// Adds the two causes that are found in the readings without a fit: isolated wrong readings, and repeated
 /// readings.
 void judge_readings(const Prepared& healthy, const Prepared& later, ChangeDiagnosis& diagnosis) {
   const auto add = [&](std::string_view id, ChangeSize size, std::optional<Interval> interval,
@@ -106,7 +110,7 @@ void judge_readings(const Prepared& healthy, const Prepared& later, ChangeDiagno
   };
   const OutlierEvidence& outliers = later.outliers;
   if (outliers.present && outliers.share_low > healthy.outliers.share_high)
-    add(causes::Outliers::id, {"wrong samples", 100 * outliers.share, "%"},
+    add(causes::Outliers::id, {"share of wrong readings", 100 * outliers.share, "%"},
         Interval{100 * outliers.share_low, 100 * outliers.share_high}, outliers.excess_mm);
   const SamplingEvidence& sampling = later.sampling;
   constexpr double slower = 1.5;
@@ -118,8 +122,8 @@ void judge_readings(const Prepared& healthy, const Prepared& later, ChangeDiagno
         sampling.excess_mm);
 }
 
-/// Copies the intervals to the causes. For each quantity, both lists are in the order in which the causes
-/// were found.
+/// Copies the intervals to the causes. For each quantity, both lists have the order in which the search found
+/// the causes.
 void add_intervals(ChangeDiagnosis& diagnosis) {
   for (const JudgedChange& judged : diagnosis.readings) {
     auto next = judged.intervals.begin();

@@ -1,6 +1,6 @@
 #pragma once
-// Diagnoses how a finger has changed since it was healthy. A baseline model is fitted to the healthy logs and
-// kept constant. Each cause is fitted as a change of this model.
+// Diagnoses a change of a finger since it was healthy. A baseline model is fitted to the healthy logs, and
+// its parameters then stay constant. Each cause is fitted as a change of the baseline model.
 
 #include <cstdint>
 #include <functional>
@@ -47,28 +47,33 @@ struct ChangeCause {
   EffectIntervals intervals;
   double full_pressure_mm = 0;  ///< change of the displacement at full pressure due to the cause
   double effect_mm = 0;         ///< root mean square of the effect of the cause on the later readings
-  /// Share of the whitened error above that of the healthy logs that the cause explains.
+  /// Share of the excess error that the cause explains [%]. The excess error is the whitened mean square
+  /// minus 1, its value in the healthy logs.
   double share_percent = 0;
-  double gain = 0;  ///< reduction of the whitened mean square, whose healthy value is 1
+  double gain = 0;  ///< reduction of the whitened mean square by the cause; the whitened mean square is 1 in
+                    ///< the healthy logs
   double gain_lower = 0, gain_upper = 0;
-  std::vector<std::string> alternatives;  ///< ids of causes that explain the data equally well
+  std::vector<std::string> alternatives;  ///< ids of other causes that explain the later readings as well as
+                                          ///< this cause
 };
 
-/// A cause that was tested. If it was rejected, `rejected` states the reason.
+/// A cause that was tested as an explanation of the change. If it was rejected, `rejected` states the reason.
 struct TriedCause {
   std::string id, form;
   double gain = 0;          ///< reduction of the whitened mean square by the cause
-  double healthy_gain = 0;  ///< mean reduction in healthy units, each of which was left out of the fit
-  double tolerance = 0;     ///< smallest value of `gain` that counts as a change
-  /// Reason of the rejection; empty: the cause was not rejected or the reason is not known.
+  double healthy_gain = 0;  ///< mean error reduction by the cause in healthy runs, each of which was left out
+                            ///< of the fit
+  double tolerance = 0;     ///< limit of `gain` above which the cause counts as a change
+  /// Reason of the rejection; empty: the cause was not rejected, or no reason was recorded.
   std::string rejected;
 };
 
-/// RMS error of the baseline model in a run after subtraction of its mean, without the causes (`base`) and
-/// with them (`explained`).
+/// RMS errors of the baseline model in a run. `base` is the error without the causes, and `explained` is the
+/// error with the causes. The mean error of the run is subtracted first.
 struct RunLeft {
   std::string run;
-  bool is_healthy = false;  ///< true: a healthy run that was left out of the fit; it contains no cause
+  bool is_healthy = false;  ///< true: a healthy run that was left out of the fit; the two errors are then
+                            ///< equal
   double base = 0, explained = 0;
 };
 
@@ -85,22 +90,26 @@ struct JudgedChange {
   double input_factor = 1;
   /// RMS error of the baseline model in the later logs, after a fit of zero and gain.
   double later_mm = 0;
-  double explained_mm = 0;  ///< RMS error in the later logs if the model includes the causes
-  /// Mean squares of the whitened residual without and with the causes; 1 in the healthy logs.
+  double explained_mm = 0;  ///< RMS error in the later logs if the effects of the causes are added to the
+                            ///< baseline model
+  /// Mean square of the whitened residual in the later logs, without the causes (`loss_before`) and with the
+  /// causes (`loss_left`). It is 1 in the healthy logs.
   double loss_before = 1, loss_left = 1;
   double zero_mm = 0;  ///< change of the sensor's zero offset since the healthy logs
-  /// Change of the gain that is within the spread of the healthy logs.
+  /// Fitted deviation of the gain from the gain in the healthy logs [%]. It is within the spread of the
+  /// healthy logs, so it does not count as a change.
   double gain_percent = 0;
   bool left_over = false;
   std::vector<TriedCause> tried;
   /// Intervals of the causes, in the order in which the causes were found.
   std::vector<EffectIntervals> intervals;
-  /// Causes that were not tested, by id, each with a recording that would test it.
+  /// Causes that were not tested. Key: id of the cause. Value: description of a recording that would test the
+  /// cause.
   std::map<std::string, std::string> not_tested;
   double bin_s = 0.05;
   std::vector<RunLeft> runs;      ///< all runs; the healthy runs come first
   std::vector<std::string> logs;  ///< names of the later logs
-  /// Residuals in the later logs: `left` without the causes, `explained` with them.
+  /// Residuals in the later logs, averaged over bins: `left` without the causes, `explained` with the causes.
   Binned left, explained;
 };
 
@@ -118,10 +127,10 @@ struct ChangeDiagnosis {
                                                                          const std::vector<Log>& later,
                                                                          const ChangeOptions& options = {});
 
-/// Returns the size of a change as text, such as "more dead time 0.03 s".
+/// Returns the size of a change as text, for example "more dead time 0.03 s".
 [[nodiscard]] std::string size_text(const ChangeCause& cause);
-/// Returns the interval of the size in its unit, such as "0.0275 .. 0.0325". Returns "-" if there is no
-/// interval.
+/// Returns the interval of the size in the unit of the size, for example "0.0275 .. 0.0325". Returns "-" if
+/// there is no interval.
 [[nodiscard]] std::string interval_text(const ChangeCause& cause);
 
 /// Returns the verdict as one sentence for a technician.

@@ -14,7 +14,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A parameter of an effect, and the step of its numerical derivative.
+/// A parameter of an effect, and the step that its numerical derivative uses.
 struct Place {
   std::size_t effect = 0, number = 0;
   double by = 0;
@@ -34,8 +34,8 @@ std::vector<FittedEffect> moved(std::vector<FittedEffect> found, const Place& pl
   return found;
 }
 
-/// Returns the derivatives of white_and_gain() with respect to the parameters, in units of the steps in
-/// `places`.
+/// Returns the differences of white_and_gain() that result from one step of each parameter. `places` contains
+/// the steps.
 Eigen::MatrixXd slopes_of(const LaterReadings& readings, const std::vector<FittedEffect>& found,
                           const std::vector<Place>& places, const Eigen::VectorXd& white) {
   Eigen::MatrixXd slopes(white.size(), static_cast<Eigen::Index>(places.size()));
@@ -44,8 +44,8 @@ Eigen::MatrixXd slopes_of(const LaterReadings& readings, const std::vector<Fitte
   return slopes;
 }
 
-/// Returns the covariance of the gradient: the sum of the outer products of the gradients of all blocks. Each
-/// penalty row, which follows the rows of the readings, is a separate block with variance 1.
+/// Returns the covariance of the gradient: the sum of the outer products of the gradients of all blocks. The
+/// penalty rows follow the rows of the readings. Each penalty row counts as a separate block with variance 1.
 Eigen::MatrixXd spread_of_gradient(const LaterReadings& readings, const Eigen::MatrixXd& slopes,
                                    const Eigen::VectorXd& white) {
   const std::vector<std::size_t> blocks = blocks_of(readings);
@@ -88,8 +88,8 @@ std::optional<Interval> within(const EffectNumber& number, std::optional<Interva
   return interval;
 }
 
-/// Returns the fit of the effect's form in a healthy unit, or nullptr if the form does not reduce the error
-/// of this unit.
+/// Returns the fit of this form of the effect in a healthy cross-validation unit. Returns nullptr if the form
+/// does not reduce the error of the unit.
 const FittedEffect* same_form(const HealthyFits& unit, const FittedEffect& effect) {
   for (const ScoredEffect& each : unit.ranked) {
     const FittedEffect& fitted = each.fit.fitted;
@@ -100,7 +100,8 @@ const FittedEffect* same_form(const HealthyFits& unit, const FittedEffect& effec
 }
 
 /// Returns the variance between runs of a quantity that depends on the fitted form. It is the mean square
-/// over the healthy units, increased because another run is compared with their mean.
+/// over the n healthy units, multiplied by 1 + 1/n. The factor is necessary because a further run is compared
+/// with the mean of the healthy units.
 /// @param value_of  function that computes the quantity.
 template <class ValueOf>
 double between_runs(const std::vector<HealthyFits>& healthy, const FittedEffect& effect, ValueOf value_of) {
@@ -121,7 +122,7 @@ double healthy_variance(const std::vector<HealthyFits>& healthy, const FittedEff
   });
 }
 
-/// Returns the size of the effect with its current parameters.
+/// Returns the size of the effect with the current values of its parameters.
 double size_with(const LaterReadings& readings, const FittedEffect& effect) {
   return size_of(readings, effect, at_full_pressure(readings, readings.added({effect}))).value;
 }

@@ -59,9 +59,9 @@ void add(PairedLosses& losses, const PairedLosses& more) {
 }
 
 std::string other_start(const std::string& record) {
-  return "No healthy log begins like " + record +
-         " with respect to the pressure (pressurised or vented), so a slow change after the start of this "
-         "log is not evaluated. Record a healthy log that begins in the same way";
+  return "No healthy log begins in the same state (pressurised or vented) as " + record +
+         ", so a slow change after the start of this log is not evaluated. Record a healthy log that begins "
+         "in this state";
 }
 
 std::string unfamiliar_input(double factor) {
@@ -71,8 +71,8 @@ std::string unfamiliar_input(double factor) {
          significant(factor, 2) + " (mean square). Record a healthy log with such an input";
 }
 
-/// Evaluates the displacement or the pressure: fits the baseline model to the healthy records and finds the
-/// causes of a change in the later records.
+/// Evaluates one quantity, the displacement or the pressure. Computes the spread of the healthy records and
+/// finds the causes of a change in the later records.
 class Judge {
  public:
   Judge(Base base, const ChangeOptions& options, bool pressure_is_judged)
@@ -117,8 +117,8 @@ class Judge {
                                   each.tolerance,
                                   {}});
       }
-      // A further cause is searched for only if the remaining error exceeds the error that is expected in
-      // another healthy run.
+      // The search for a further cause continues only if the remaining error exceeds the error that is
+      // expected in a further healthy run.
       const double rms = readings.plain_rms(found);
       const bool is_comparable = step == 0 && other_starts.empty();
       if (is_comparable ? !spread_.admits_a_change(rms, judged.loss_left)
@@ -140,8 +140,8 @@ class Judge {
     if (options_.progress) options_.progress(text);
   }
 
-  /// Adds a temperature coefficient of the gain to the baseline model if the healthy logs show one. This
-  /// coefficient is a property of the finger, not a change.
+  /// Adds a temperature coefficient of the gain to the baseline model if the healthy logs show a dependence
+  /// on the temperature. This dependence is a property of the healthy finger and not a change.
   void learn_temperature() {
     std::vector<Effect> effects = effects_for(base_, base_.records, {}, pressure_is_judged_);
     std::erase_if(effects, [](const Effect& e) { return e.id != causes::ThermalGain::id; });
@@ -160,8 +160,8 @@ class Judge {
     return found;
   }
 
-  /// Returns, for each row of the readings, true if the cause must have an effect at the operating point of
-  /// this row.
+  /// Returns one value per whitened reading: true if the cause must have an effect at the operating point of
+  /// this reading.
   [[nodiscard]] std::vector<bool> required_rows(const LaterReadings& readings, Appears appears) const {
     Binned drive, rate;
     for (std::size_t r = 0; r < readings.records().size(); ++r) {
@@ -176,9 +176,9 @@ class Judge {
     return required_at(appears, conditions);
   }
 
-  /// Returns true if the effect makes predictions worse. It is fitted to all later units except one and then
-  /// predicts this unit. Units in which the effect does not occur give no evidence. For example, half of a
-  /// run may not reach the saturation of a sensor.
+  /// Returns true if the effect increases the prediction error of left-out later runs. The effect is fitted
+  /// to all runs except one and then predicts this run. The comparison ignores runs in which the effect does
+  /// not occur. For example, a run may not reach the saturation of a sensor.
   [[nodiscard]] bool predicts_worse(const LaterReadings& readings, const Effect& effect,
                                     const std::vector<FittedEffect>& found) const {
     PairedLosses losses;
@@ -195,8 +195,8 @@ class Judge {
     return is_better(compare(losses, 0, options_.seed));
   }
 
-  /// Returns the largest possible size of a cause whose size has the unit `unit`. It is the range of the
-  /// signal on which the cause acts.
+  /// Returns the largest possible size of a cause. `unit` is the unit of this size. The limit is the range of
+  /// the signal on which the cause acts.
   [[nodiscard]] double largest_size(const LaterReadings& readings, const std::string& unit) const {
     double length_s = 0;
     for (const Record& record : readings.records()) length_s = std::max(length_s, record.length_s());
@@ -226,8 +226,9 @@ class Judge {
     return veto_of(claim);
   }
 
-  /// Returns the best effect that fulfils all conditions and whose error reduction exceeds its tolerance;
-  /// nullopt if there is none. Stores the reasons why other effects were rejected.
+  /// Returns the cause of the effect with the largest error reduction. The effect must meet all conditions of
+  /// sysid/evidence/veto.h, and its error reduction must exceed its tolerance. Returns nullopt if no effect
+  /// qualifies. Stores the reasons why other effects were rejected.
   [[nodiscard]] std::optional<ChangeCause> first_change(const LaterReadings& readings,
                                                         std::vector<ScoredEffect> ranked,
                                                         const Eigen::VectorXd& without,
@@ -243,7 +244,8 @@ class Judge {
           compare(paired_losses(readings, without, each.fit.white),
                   each.tolerance + price_per_row(readings, each.fit.fitted.effect), options_.seed);
       if (is_better(against_none)) return false;
-      reject(each, "the improvement does not exceed the improvement in healthy runs");
+      reject(each,
+             "the error reduction in the later logs does not exceed the error reduction in healthy runs");
       return true;
     });
     const Ties ties = ties_in(readings, options_.seed);
@@ -257,7 +259,8 @@ class Judge {
   }
 
   /// Returns true if the zero offset of the later logs [mm] differs significantly from the mean zero offset
-  /// of the healthy runs. The difference must be larger than expected for a further healthy run.
+  /// of the healthy runs. A difference is significant if a healthy run would exceed it in less than 5 % of
+  /// the cases.
   [[nodiscard]] bool is_another_zero(double zero_mm) const {
     const auto units = static_cast<double>(base_.units.count());
     return std::abs(zero_mm - base_.zero_mm) >

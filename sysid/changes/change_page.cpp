@@ -20,7 +20,7 @@ Tone tone_of(ChangeVerdict verdict) {
 }
 
 void add_causes(Page& page, const ChangeDiagnosis& d) {
-  page.section("What changed");
+  page.section("Causes of the change");
   page.table(cause_table(d));
   for (const ChangeCause& cause : d.causes) {
     page.subsection("Next steps for " + cause.id);
@@ -29,8 +29,8 @@ void add_causes(Page& page, const ChangeDiagnosis& d) {
   }
 }
 
-/// Returns the figure of the residuals in the later logs, without and with the causes. The logs follow each
-/// other on the time axis.
+/// Returns the figure of the residuals in the later logs, without and with the causes. The logs are placed
+/// one after the other on the time axis.
 Figure residual_figure(const JudgedChange& judged, bool explained) {
   std::vector<Chart> charts;
   for (std::size_t r = 0; r < judged.left.size(); ++r) {
@@ -47,7 +47,7 @@ Figure residual_figure(const JudgedChange& judged, bool explained) {
       before.y.push_back(judged.left[r][b]);
     }
     Series after;
-    after.label = "with the causes";
+    after.label = "baseline model with the causes";
     after.x = before.x;
     after.y = judged.explained[r];
     after.colour = Colour::model;
@@ -65,7 +65,7 @@ Figure residual_figure(const JudgedChange& judged, bool explained) {
 Figure tried_figure(const JudgedChange& judged) {
   Chart chart;
   chart.title = name_of(judged.judged);
-  chart.y.label = "improvement";
+  chart.y.label = "error reduction";
   Series later, healthy, tolerance;
   later.label = "later logs";
   tolerance.label = "tolerance";
@@ -105,7 +105,8 @@ Figure runs_figure(const JudgedChange& judged, bool explained) {
   chart.y.label = std::string("error [") + unit_of(judged.judged, judged.output_unit) + "]";
   chart.series = {points_over_names("baseline model", Colour::error, std::move(before))};
   if (explained)
-    chart.series.push_back(points_over_names("with the causes", Colour::model, std::move(after)));
+    chart.series.push_back(
+        points_over_names("baseline model with the causes", Colour::model, std::move(after)));
   return {std::string("error by run ") + name_of(judged.judged),
           "RMS error of the baseline model in each run, after the mean error of the run is subtracted. To "
           "predict a healthy run, the model is fitted to the other healthy runs.",

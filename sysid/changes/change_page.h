@@ -7,8 +7,8 @@
 namespace softgrip::sysid {
 
 /// Returns the page.
-/// @param healthy, later  the logs, whose hashes are listed.
-/// @param given  the model in use.
+/// @param healthy, later  logs; the page lists their hashes.
+/// @param given  model in use.
 [[nodiscard]] Page change_page(const ChangeDiagnosis& diagnosis, const std::vector<Log>& healthy,
                                const std::vector<Log>& later, const model::Model& given);
 

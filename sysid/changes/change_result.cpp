@@ -33,7 +33,7 @@ Fields fields_of_cause(const ChangeCause& cause) {
           {"parameters", std::move(parameters)},
           {"size", "size", shown(size, size_text(cause))},
           {"", "95 % interval", interval_text(cause)},
-          {"full_pressure", "at full pressure",
+          {"full_pressure", "effect at full pressure",
            shown(cause.full_pressure_mm, significant(cause.full_pressure_mm, 2) + " " + unit)},
           {"effect_rms", cause.effect_mm},
           {"unit", unit},
@@ -46,10 +46,10 @@ Fields fields_of_cause(const ChangeCause& cause) {
 Fields fields_of_tried(const TriedCause& tried) {
   return {{"id", "cause", tried.id},
           {"form", tried.form},
-          {"gain", "improvement", decimals(tried.gain, 3)},
-          {"healthy_gain", "in healthy runs", decimals(tried.healthy_gain, 3)},
+          {"gain", "error reduction", decimals(tried.gain, 3)},
+          {"healthy_gain", "error reduction in healthy runs", decimals(tried.healthy_gain, 3)},
           {"tolerance", "tolerance", decimals(tried.tolerance, 3)},
-          {"rejected", "reason of rejection", result::or_null(tried.rejected)}};
+          {"rejected", "reason for the rejection", result::or_null(tried.rejected)}};
 }
 
 Fields fields_of_run(const RunLeft& run) {
@@ -57,8 +57,8 @@ Fields fields_of_run(const RunLeft& run) {
   if (run.is_healthy) explained.text = "-";
   return {{"run", "run", shown(run.run, name_with_state(run))},
           {"healthy", run.is_healthy},
-          {"base_rms", "base", number(run.base, 3)},
-          {"explained_rms", "with the causes", std::move(explained)}};
+          {"base_rms", "baseline model", number(run.base, 3)},
+          {"explained_rms", "error with the causes", std::move(explained)}};
 }
 
 std::string named(const ChangeCause& cause) {
@@ -76,21 +76,21 @@ Fields fields_of(const JudgedChange& judged) {
   return {
       {"reading", judged.judged == Judged::pressure ? "pressure_kpa" : "displacement_mm"},
       {"unit", unit},
-      {"base", "base", judged.base},
+      {"base", "baseline model", judged.base},
       {"noise", "noise of the readings", number(judged.noise_mm, 2, unit)},
       {"healthy_runs", "healthy logs", judged.healthy_runs},
       {"healthy_heldout_rms", "error of left-out healthy runs", number(judged.healthy_mm, 3, unit)},
-      {"allowed_rms", "largest error that another healthy run may have", number(judged.allowed_mm, 3, unit)},
+      {"allowed_rms", "largest error expected for a further healthy run", number(judged.allowed_mm, 3, unit)},
       {"input_factor", "increase of the permitted mean square error by an unfamiliar input",
        number(judged.input_factor, 3)},
       {"later_rms", "error of the later logs", number(judged.later_mm, 3, unit)},
-      {"explained_rms", "with the causes", number(judged.explained_mm, 3, unit)},
+      {"explained_rms", "error with the causes", number(judged.explained_mm, 3, unit)},
       {"whitened_loss", loss},
       {"misfit", loss},
       {"unexplained", judged.left_over},
       {"structure_left", judged.left_over},
-      {"zero", "offset change", number(judged.zero_mm, 2, unit)},
-      {"gain_percent", "gain within the healthy spread", number(judged.gain_percent, 2, "%")},
+      {"zero", "change of the zero offset", number(judged.zero_mm, 2, unit)},
+      {"gain_percent", "gain change that healthy runs show, too", number(judged.gain_percent, 2, "%")},
       {"not_tested", result::keyed(judged.not_tested)},
       {"runs", list_of(judged.runs, fields_of_run)},
       {"tried", list_of(judged.tried, fields_of_tried)}};
@@ -127,8 +127,8 @@ Table cause_table(const ChangeDiagnosis& d) {
 
 Table tried_table(const JudgedChange& judged) {
   return result::table_of(
-      "Tested causes, each alone; improvement: reduction of the whitened squared error per bin", judged.tried,
-      fields_of_tried);
+      "Tested causes, each alone; error reduction: reduction of the whitened squared error per bin",
+      judged.tried, fields_of_tried);
 }
 
 Table run_table(const JudgedChange& judged) {

@@ -1,6 +1,7 @@
 #pragma once
-// States the fields of the diagnosis of a change. diagnosis.json contains the keys of every diagnosis and
-// additional keys for a change. The page and the command show some of the fields in tables.
+// Converts the diagnosis of a change to the fields of diagnosis.json. diagnosis.json contains the keys of
+// every diagnosis and additional keys for a change. The report page and the command `softgrip diagnose` show
+// some of the fields in tables.
 
 #include "base/result/result.h"
 #include "sysid/changes/change.h"
@@ -9,19 +10,21 @@ namespace softgrip::sysid {
 
 /// Returns the content of diagnosis.json.
 [[nodiscard]] result::Fields fields_of(const ChangeDiagnosis& diagnosis);
-/// Returns the fields of one quantity. The titled fields state its errors and changes.
+/// Returns the fields of one quantity, the displacement or the pressure. Fields with a title are shown in a
+/// table: the errors and changes of the quantity.
 [[nodiscard]] result::Fields fields_of(const JudgedChange& judged);
 
-/// Returns the table of the causes: size, interval and share of the error.
+/// Returns the table of the causes: size, confidence interval and share of the error.
 [[nodiscard]] result::Table cause_table(const ChangeDiagnosis& diagnosis);
-/// Returns the table of all tested causes: error reduction, tolerance, and reason of a rejection.
+/// Returns the table of all tested causes: error reduction, tolerance, and reason of the rejection.
 [[nodiscard]] result::Table tried_table(const JudgedChange& judged);
 /// Returns the table of the RMS error of the baseline model in every run, without and with the causes.
 [[nodiscard]] result::Table run_table(const JudgedChange& judged);
-/// Returns the table of the causes that the logs cannot show, with a recording that would test each cause.
+/// Returns the table of the causes that the logs cannot show. For each cause, the table describes a recording
+/// that would test it.
 [[nodiscard]] result::Table not_tested_table(const JudgedChange& judged);
 
-/// Returns the name of a run, and whether the run is healthy.
+/// Returns the name of a run. If the run is healthy, " (healthy)" follows the name.
 [[nodiscard]] std::string name_with_state(const RunLeft& run);
 
 }  // namespace softgrip::sysid

@@ -13,15 +13,17 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Penalty per parameter of an effect, in whitened squares. An unnecessary parameter reduces the squares by
-/// more than this penalty with a probability of 0.5 % (chi-square with one degree of freedom).
+/// Penalty for each parameter of an effect, in the unit of the sum of the squared whitened residuals. An
+/// unnecessary parameter reduces this sum by more than the penalty with a probability of 0.5 % (chi-square
+/// with one degree of freedom).
 constexpr double price_of_a_number = 8;
 
 double beyond_usual(const ScoredEffect& scored) {
   return scored.gain - scored.usual;
 }
 
-/// Returns two numbers of parameters of an effect: those that determine its shape, and all of them.
+/// Returns two counts: the parameters that determine the shape of an effect, and all parameters of the
+/// effect.
 std::pair<std::size_t, std::size_t> numbers_of(const ScoredEffect& scored) {
   const Effect& effect = scored.fit.fitted.effect;
   return {effect.numbers.size() - effect.nuisance_numbers, effect.numbers.size()};

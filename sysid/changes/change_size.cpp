@@ -8,7 +8,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Returns the parameter of an effect with this name, or nullptr.
+/// Returns the value of the parameter with this name, or nullptr if the effect has no such parameter.
 const double* number(const FittedEffect& effect, std::string_view name) {
   for (std::size_t i = 0; i < effect.numbers.size(); ++i) {
     if (effect.effect.numbers[i].name == name) return &effect.numbers[i];
@@ -44,8 +44,8 @@ double at_full_pressure(const LaterReadings& readings, const Binned& added) {
 }
 
 ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect, double full_pressure_mm) {
-  // If only the gain has changed, the size of this change includes the gain that was fitted separately
-  // because it is within the healthy spread.
+  // If only the gain has changed, the reported size is the sum of two gains. The first one is the gain of the
+  // effect. The second one is the gain within the spread of the healthy logs, which is fitted separately.
   if (const double* gain = number(effect, "gain_change"); gain != nullptr && effect.numbers.size() == 1)
     return {"gain", 100 * (*gain + readings.nuisance({effect}).gain), "%"};
   const SizedBy size = effect.effect.size.value_or(sized_by(effect.effect.id));

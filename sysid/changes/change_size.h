@@ -9,7 +9,7 @@ namespace softgrip::sysid {
 [[nodiscard]] double at_full_pressure(const LaterReadings& readings, const Binned& added);
 
 /// Returns the size of an effect.
-/// @param full_pressure_mm  change of the displacement at full pressure.
+/// @param full_pressure_mm  change of the displacement at full pressure that the effect causes [mm].
 [[nodiscard]] ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect,
                                  double full_pressure_mm);
 

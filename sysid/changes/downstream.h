@@ -1,6 +1,6 @@
 #pragma once
-// Simulates blocks that follow all blocks of a baseline model. Their output depends only on the output of the
-// baseline model at the samples, so this model is not simulated again.
+// Simulates blocks that follow all blocks of a baseline model. The output of these blocks depends only on the
+// sampled output of the baseline model, so the baseline model is not simulated again.
 
 #include <vector>
 
@@ -9,14 +9,14 @@
 
 namespace softgrip::sysid {
 
-/// Returns true if all `blocks` come after the blocks of `base` in the signal path, and if their output at a
-/// sample depends only on the output of `base` at this sample. Returns false if the command is held or the
-/// initial state is unknown.
+/// Returns true if two conditions hold. All `blocks` come after the blocks of `base` in the signal path. The
+/// output of `blocks` at a sample depends only on the output of `base` at the samples. Returns false if the
+/// command is held or if the initial state is unknown.
 [[nodiscard]] bool is_downstream(const std::vector<model::BlockSpec>& blocks, const model::Model& base,
                                  const Record& record);
 
-/// Returns the result of predict() for the baseline model followed by the blocks, without a simulation of the
-/// baseline model.
+/// Returns the result of predict() for the baseline model followed by the blocks. The baseline model is not
+/// simulated.
 /// @param blocks  blocks for which is_downstream() is true.
 /// @param base_mm  prediction of the baseline model for the record.
 [[nodiscard]] std::vector<double> downstream(const std::vector<model::BlockSpec>& blocks,

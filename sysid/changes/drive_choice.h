@@ -8,17 +8,18 @@
 
 namespace softgrip::sysid {
 
-/// RMS errors in left-out healthy runs [mm] if the input of the model is the measured pressure or the
-/// command, and the input with the better predictions.
+/// RMS errors in left-out healthy runs [mm] with the measured pressure and with the command as model input.
+/// `drive` is the selected input.
 struct DriveChoice {
   Drive drive = Drive::measured;
   double by_pressure_mm = 0, by_command_mm = 0;
 };
 
-/// Selects the command as input if it predicts left-out healthy displacements significantly better than the
-/// measured pressure. In addition, the ratio of the squared errors must exceed run_to_run_factor(). The
-/// predictions come from a model with play operators and creep. A measured pressure does not determine the
-/// displacement if a flow moves the actuator, or if the pressure sensor is far from the actuator.
+/// Selects the input of the model. The default is the measured pressure. The command is selected if it
+/// predicts left-out healthy displacements significantly better than the measured pressure. In addition, the
+/// ratio of the squared errors must exceed run_to_run_factor(). The predictions come from a model with play
+/// operators and creep. A measured pressure does not determine the displacement if a flow moves the actuator,
+/// or if the pressure sensor is far from the actuator.
 /// @param by_pressure, by_command  records of the same healthy logs with each of the two inputs.
 [[nodiscard]] DriveChoice chosen_drive(const std::vector<Record>& by_pressure,
                                        const std::vector<Record>& by_command, std::uint64_t seed,

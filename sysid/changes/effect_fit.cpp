@@ -11,10 +11,10 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr int most_effect_steps = 9;
-/// Smallest damping of a parameter, as a share of the sum of all curvatures.
+/// Smallest damping of a parameter, as a share of the sum of the curvatures of all parameters.
 constexpr double least_curvature = 0.01;
-/// sized() is not applied to an effect with more start points than this number, because its start points are
-/// close together.
+/// Largest number of start points of an effect to which sized() is applied. If an effect has more start
+/// points, they are close together, so sized() is not necessary.
 constexpr std::size_t most_sized = 16;
 
 std::vector<double> within(const Effect& effect, std::vector<double> numbers) {
@@ -23,7 +23,8 @@ std::vector<double> within(const Effect& effect, std::vector<double> numbers) {
   return numbers;
 }
 
-/// Returns the unit of a parameter during the fit.
+/// Returns the scale of this parameter in the fit: one unit of the search coordinate, in units of the
+/// parameter.
 double unit(const FittedEffect& fitted, std::size_t i) {
   const double scale = std::min(fitted.effect.numbers[i].scale, fitted.effect.numbers[i].upper);
   return std::max(0.3 * std::abs(fitted.numbers[i]), 0.05 * scale);
@@ -43,8 +44,8 @@ class Fit {
     return fit;
   }
 
-  /// Returns the better one of two fits: the start point, and the start point scaled to the size of the
-  /// effect that fits best.
+  /// Fits the size of the effect by scaling the start point. Returns the better one of two fits, with and
+  /// without the scaling.
   [[nodiscard]] EffectFit sized(EffectFit fit, const Eigen::VectorXd& without) const {
     if (!std::isfinite(fit.sum_of_squares)) return fit;
     const Eigen::VectorXd change = fit.white - without;
@@ -67,8 +68,8 @@ class Fit {
                     .longest_step = std::numeric_limits<double>::infinity(),
                     .least_share = 1e-4,
                     .least_gain = 0.1,
-                    // If the fitted common gain can replace the gain of an effect, the gain of the effect has
-                    // no curvature.
+                    // The fitted common gain can replace the gain of an effect. The sum of squares then does
+                    // not depend on the gain of the effect, so the fit needs a damping.
                     .least_damping = least_curvature})
         .point;
   }
@@ -101,8 +102,8 @@ class Fit {
   }
 
  private:
-  /// Returns the value of the parameter at which the effect vanishes. If this value is far outside the data,
-  /// returns the value at which the effect begins.
+  /// Returns the value of the parameter for which the effect vanishes. For a limit, this value may be far
+  /// outside the range of the data. In this case, returns the end of the range, where the effect begins.
   [[nodiscard]] double limit_of_nothing(std::size_t i) const {
     const double nothing = effect_.nothing[i];
     double reach = std::numeric_limits<double>::infinity();
@@ -141,7 +142,8 @@ EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
   std::vector<EffectFit> looks;
   for (const std::vector<double>& start : effect.starts) {
     EffectFit first = fit.at(within(effect, start));
-    // If the prediction does not change with the effect, the result is the same for all start points.
+    // If the effect has no influence on the prediction at the first start point, the other start points give
+    // the same result.
     if (!effect.free_form && looks.empty() && first.white == without) return first;
     looks.push_back(dense ? std::move(first) : fit.sized(std::move(first), without));
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Fits an effect to later readings; the baseline model is constant.
+// Fits an effect to later readings. The parameters of the baseline model stay constant.
 
 #include <vector>
 
@@ -16,14 +16,13 @@ struct EffectFit {
   Eigen::VectorXd white;
 };
 
-/// Fits the parameters of an effect, starting from the best of its start points. The other effects stay
-/// constant.
-/// @param without  result of readings.white(others).
+/// Fits the parameters of an effect from the best of its start points. The other effects stay constant.
+/// @param without  whitened residual with the other effects only: result of readings.white(others).
 [[nodiscard]] EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
                                    const std::vector<FittedEffect>& others, const Eigen::VectorXd& without);
 
-/// Returns the step of a parameter for its numerical derivative: a small share of its value or of its typical
-/// value. The step stays within the bounds of the parameter.
+/// Returns the step of a parameter for its numerical derivative. The step is a small share of the parameter
+/// value or of its typical value, and it stays within the bounds of the parameter.
 [[nodiscard]] double small_move(const FittedEffect& fitted, std::size_t number);
 
 }  // namespace softgrip::sysid

@@ -25,14 +25,14 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_starts = 8;
 const EffectNumber gain_change{"gain_change", "", 0.01, -0.9, 9};
 
-/// Returns the cause of which this block is a form.
+/// Returns the cause that has this block as one of its forms.
 template <template <class> class Block>
 const Cause& cause_with() {
   return *cause_of(model::block_type<Block>());
 }
 
-/// Returns some of the start points, evenly distributed over the list. If the effect has a single parameter,
-/// all start points are kept, because the error may have a separate minimum at each of them.
+/// Returns at most most_starts start points, evenly distributed over the list. If the effect has one
+/// parameter, all start points are kept, because the error may have a separate minimum near each of them.
 std::vector<std::vector<double>> some(std::vector<std::vector<double>> all) {
   if (all.size() <= most_starts || all.front().size() == 1) return all;
   std::vector<std::vector<double>> kept;
@@ -40,7 +40,7 @@ std::vector<std::vector<double>> some(std::vector<std::vector<double>> all) {
   return kept;
 }
 
-/// Returns true if the block can be added to the baseline model.
+/// Returns true if the block can be added to the finger model of the baseline.
 bool is_carried(const Base& base, const model::BlockSpec& block) {
   if (base.model.blocks.empty()) return false;
   return model::validate(model::with_block(base.model, block)).empty();
@@ -84,9 +84,11 @@ class Collector {
     std::vector<model::BlockSpec> starts = form.starts(scales_);
     if (starts.empty()) return;
     const model::BlockDescriptor& descriptor = model::catalogue()[form.type];
-    // The free form of this cause is piecewise linear and can represent a sinusoidal drift too.
+    // The free form of sensor drift is piecewise linear. It can represent a sinusoidal drift too, so the
+    // sinusoidal form is not tried.
     if (form.type == model::block_type<model::SensorWander>()) return;
-    // add_softening() and add_crescent() add the effects of the next two blocks for any baseline model.
+    // The next two blocks are skipped here. add_softening() and add_crescent() add their effects for any
+    // baseline model.
     if (form.type == model::block_type<model::PseudoElasticSoftening>()) return;
     if (form.type == model::block_type<model::CrescentHysteresis>()) return;
     if (cause.station != model::Station::valve && !is_carried(base_, starts.front())) return;
@@ -117,7 +119,7 @@ class Collector {
     effects_.push_back(std::move(effect));
   }
 
-  /// Returns an effect for a form of a cause. The parameters are added later.
+  /// Returns an effect for this form of the cause, without parameters. The caller adds the parameters.
   static Effect form_of(const Cause& cause, std::string_view form) {
     Effect effect;
     effect.id = cause.id;
@@ -137,15 +139,16 @@ class Collector {
     effect.appears = cause.appears;
     return effect;
   }
-  /// Returns the effect of this cause that was added first, or nullptr if the cause cannot be added to the
-  /// baseline model.
+  /// Returns the effect that was added first for this cause. Returns nullptr if no effect of the cause can be
+  /// added to the baseline model.
   Effect* first_of(const Cause& cause) {
     const auto found =
         std::find_if(effects_.begin(), effects_.end(), [&](const Effect& e) { return e.id == cause.id; });
     return found == effects_.end() ? nullptr : &*found;
   }
 
-  /// Adds the effect of a gain that has changed since the healthy logs and is constant in the later logs.
+  /// Adds the effect of a gain that differs from the gain in the healthy logs and is constant in the later
+  /// logs.
   void add_gain() {
     Effect effect = form_of(cause_with<model::Ageing>(), "another_gain");
     effect.numbers = {gain_change};
@@ -170,8 +173,8 @@ class Collector {
     since.apply = [](Extension& e, const std::vector<double>& n) { e.softening = {n[0], 0}; };
     effects_.push_back(std::move(since));
   }
-  /// Adds the effect of a loop whose loading curve differs from its unloading curve. The effect does not
-  /// require a Bouc-Wen model.
+  /// Adds the effect of a hysteresis loop whose loading curve and unloading curve differ. The baseline model
+  /// need not be a Bouc-Wen model.
   void add_crescent() {
     Effect effect = form_of(cause_with<model::DuhemHysteresis>(), "crescent");
     effect.numbers = {{"share", "", 0.05, 0, 3}, {"exponent", "", 1, 1.2, 6}};
@@ -180,12 +183,12 @@ class Collector {
     effect.apply = [](Extension& e, const std::vector<double>& n) { e.crescent = {n[0], n[1]}; };
     effects_.push_back(std::move(effect));
   }
-  /// Adds the effect of stiffening. The displacement at which the gain has not changed is unknown, so a gain
-  /// is fitted together with the curvature.
+  /// Adds the effect of stiffening. The displacement at which stiffening leaves the gain unchanged is
+  /// unknown, so a gain is fitted together with the curvature.
   void add_stiffening() {
     Effect* const plain = first_of(cause_with<model::Stiffening>());
     if (plain == nullptr) return;
-    // A gain that increases with the displacement is not stiffening.
+    // Stiffening decreases the gain at larger displacements, so the parameter must not be negative.
     plain->numbers[0].lower = 0;
     std::erase_if(plain->starts, [](const std::vector<double>& start) { return start[0] < 0; });
     Effect effect = *plain;
@@ -200,7 +203,7 @@ class Collector {
     };
     effects_.push_back(std::move(effect));
   }
-  /// Adds the effect of a sensor scale with a curvature of one sign.
+  /// Adds the effect of a nonlinear sensor whose curve bends in one direction only.
   void add_bow() {
     const Effect* const bent = first_of(cause_with<model::SensorNonlinearity>());
     if (bent == nullptr) return;
@@ -212,8 +215,8 @@ class Collector {
     effect.apply = [bend = bent->apply](Extension& e, const std::vector<double>& n) { bend(e, {n[0], 0}); };
     effects_.push_back(std::move(effect));
   }
-  /// Adds the effect of the temperature on the gain. The temperature at which the gain has not changed is
-  /// unknown, so a gain is fitted together with the slope.
+  /// Adds the effect of the temperature on the gain. The temperature at which the gain equals the healthy
+  /// gain is unknown, so a gain is fitted together with the temperature coefficient.
   void add_thermal() {
     Effect effect = form_of(cause_with<model::ThermalGain>(), causes::ThermalGain::id);
     effect.numbers = {{"gain_per_c", "1/degC", 0.002, -0.2, 0.2}, gain_change};
@@ -244,7 +247,7 @@ class Collector {
     effects_.push_back(std::move(slow));
   }
 
-  /// Adds faults of the regulator that is part of the baseline model.
+  /// Adds the faults of the regulator. The baseline model must contain this regulator.
   void add_faults() {
     const double p = base_.largest_kpa, per_s = leaking_kpa_per_s(p);
     Effect leaking = form_of(leak);

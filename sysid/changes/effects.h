@@ -1,5 +1,5 @@
 #pragma once
-// Defines causes as changes of a constant baseline model. Each of them has few parameters.
+// Defines causes as changes of a constant baseline model. Each change has few parameters.
 
 #include <functional>
 #include <optional>
@@ -21,7 +21,7 @@ struct EffectNumber {
   double scale = 1, lower = 0, upper = 0;
 };
 
-/// An effect on the baseline model: one form of a cause.
+/// One form of a cause, stated as an effect on the baseline model.
 struct Effect {
   std::string id;  ///< id of the cause
   std::string title;
@@ -30,22 +30,24 @@ struct Effect {
   bool free_form = false;
   std::vector<EffectNumber> numbers;
   std::vector<std::vector<double>> starts;
-  /// Neutral value of each parameter; NaN: if the effect is neutral, the parameter has no influence.
+  /// Parameter values for which the effect vanishes. NaN: the other parameters remove the effect, so this
+  /// parameter has no neutral value.
   std::vector<double> nothing;
-  /// Adds the effect with these parameter values to an extension.
+  /// Adds the effect to an extension. The second argument contains the parameter values.
   std::function<void(Extension&, const std::vector<double>&)> apply;
-  /// Id of a cause with equal readings for every command; empty: none.
+  /// Id of a cause that leads to the same readings for every command; empty: there is no such cause.
   std::string indistinguishable = {};
-  /// Number of parameters that only define the reference of the effect.
+  /// Number of parameters that only define the reference of the effect, such as a gain that is fitted
+  /// together with a curvature.
   std::size_t nuisance_numbers = 0;
-  /// True if no mechanism matches this effect exactly.
+  /// True if the effect is a mathematical idealisation that no physical mechanism matches exactly.
   bool is_ideal = false;
   Appears appears = Appears::anywhere;
-  /// Quantity that states the size of this form; not set: the quantity of its cause is used.
+  /// Quantity that states the size of this form. Not set: the quantity of the cause is used.
   std::optional<SizedBy> size = {};
 };
 
-/// An effect with the values of its parameters.
+/// An effect and the fitted values of its parameters.
 struct FittedEffect {
   Effect effect;
   std::vector<double> numbers;
@@ -53,8 +55,8 @@ struct FittedEffect {
 
 [[nodiscard]] Extension extension_of(const std::vector<FittedEffect>& effects);
 
-/// Returns all effects that the later records can show.
-/// @param lines  significant lines in the spectrum of the residual of these records.
+/// Returns all effects that can be tested with the later records.
+/// @param lines  significant lines in the spectrum of the residual of the later records.
 [[nodiscard]] std::vector<Effect> effects_for(const Base& base, const std::vector<Record>& later,
                                               const std::vector<Line>& lines, bool pressure_is_judged);
 

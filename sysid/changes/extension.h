@@ -1,6 +1,6 @@
 #pragma once
-// Defines the parameters of changes since the healthy logs. These changes are added to a constant baseline
-// model.
+// Defines the parameters of changes since the healthy logs. The changes are added to a baseline model whose
+// own parameters stay constant.
 
 #include <optional>
 #include <vector>
@@ -10,8 +10,9 @@
 
 namespace softgrip::sysid {
 
-/// Pressure d that is lost while the valve does not move and is recovered while it moves: d' = rate p/largest
-/// - d (1/recovery + |command'|/way). p is the pressure.
+/// Pressure loss d. It increases while the valve does not move and decreases while the valve moves. The
+/// equation is d' = rate p/largest - d (1/recovery + |command'|/way), where p is the pressure and `largest`
+/// the largest pressure of the healthy records.
 struct PressureLoss {
   double rate_kpa_per_s = 0;
   double recovery_s = 5;
@@ -25,25 +26,27 @@ struct SlowLine {
   double venting_s = 0;
 };
 
-/// Softening at pressures p below the largest pressure m so far; the response at p = m does not change. The
-/// displacement is multiplied by 1 + share m/largest tanh((m - p)/range) (after Ogden and Roxburgh, Proc. R.
-/// Soc. A 455, 1999). If the range is 0, tanh() is replaced by 1, and the factor is equal at all pressures.
+/// Softening at pressures p below the previous maximum m of the pressure. The response at p = m does not
+/// change. The displacement is multiplied by 1 + share m/largest tanh((m - p)/range) (after Ogden and
+/// Roxburgh, Proc. R. Soc. A 455, 1999). If the range is 0, the factor 1 replaces tanh(), so the softening is
+/// equal at all pressures.
 struct Softening {
   double share = 0;
-  double range_kpa = 10;  ///< range [kPa]; 0: the factor does not depend on the pressure
+  double range_kpa = 10;  ///< range [kPa]; 0: the softening does not depend on the pressure
 };
 
-/// A loop between the loading curve (p/largest)^exponent and the unloading curve p/largest. The difference
-/// between the loop and the mean of both curves is added to the displacement, as a share of the span (a
-/// generalised play: Al Janaideh, Rakheja and Su, IEEE/ASME Transactions on Mechatronics 16, 2011).
+/// A hysteresis loop between the loading curve (p/largest)^exponent and the unloading curve p/largest. The
+/// loop minus the mean of both curves is added to the displacement, as a share of the span. The loop is a
+/// generalised play (Al Janaideh, Rakheja and Su, IEEE/ASME Transactions on Mechatronics 16, 2011).
 struct Crescent {
   double share = 0;
   double exponent = 3;
 };
 
-/// Faults of a regulator: ports that leak although they are closed, and a tube with a reduced conductance.
+/// Faults of a regulator: a leak from the finger, and a tube with a reduced conductance.
 struct RegulatorFault {
-  double leak_per_s = 0;  ///< conductance of the leak, defined like Regulator::leak_per_s
+  double leak_per_s = 0;  ///< conductance of a leak from the finger to the atmosphere; unit as in
+                          ///< Regulator::leak_per_s
   double blocked = 0;     ///< share of the conductance of the tube that is lost, below 1
   [[nodiscard]] bool operator==(const RegulatorFault&) const = default;
 };
@@ -61,12 +64,12 @@ struct Extension {
   SlowLine line;
 };
 
-/// Returns the pressure of a record after the valve blocks, at each sample.
+/// Returns the pressure at the output of the valve blocks at each sample of the record.
 [[nodiscard]] std::vector<double> drive_behind(const std::vector<model::BlockSpec>& valve,
                                                const Record& record);
 
-/// Returns a model that contains these valve blocks and whose input is the command. Returns nullopt if the
-/// model already contains such a block and the two blocks cannot be combined.
+/// Returns the model with these valve blocks in addition. The input of the result is the command. Returns
+/// nullopt if the model already contains a block of the same type and the two blocks cannot be combined.
 [[nodiscard]] std::optional<model::Model> with_valve(model::Model model,
                                                      const std::vector<model::BlockSpec>& valve);
 
@@ -74,11 +77,12 @@ struct Extension {
 [[nodiscard]] std::vector<double> softened(const Softening& softening, const Record& record,
                                            double largest_kpa);
 
-/// Returns the contribution of the loop to the displacement at each sample, as a share of the span.
+/// Returns the displacement that the hysteresis loop adds at each sample, as a share of the span.
 [[nodiscard]] std::vector<double> added_by(const Crescent& crescent, const Record& record,
                                            double largest_kpa);
 
-/// Returns the pressure after the effects of a slow line and a pressure loss.
+/// Returns the pressure at each sample after the effects of a slow line and of a pressure loss. The argument
+/// is the pressure without these effects.
 [[nodiscard]] std::vector<double> pressure_behind(const SlowLine& line, const PressureLoss& loss,
                                                   const Record& record, std::vector<double> pressure_kpa);
 

@@ -10,8 +10,8 @@ namespace {
 
 using Values = std::vector<double>;
 
-/// Time constants of the filters for a valve [s]. 0: the filter has no lag. The filter without lag is left
-/// out if the pressure is not recorded, because the finger then adds a lag.
+/// Time constants of the filters for a valve [s]. With the time constant 0, the output equals the input. This
+/// filter is left out if the pressure is not recorded, because the finger then adds a lag.
 constexpr std::array valve_lags_s{0.0, 0.015, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0, 2.0};
 
 template <class F>
@@ -26,7 +26,7 @@ Values play(const Values& x, double threshold) {
   return each(x, [&](std::size_t, double v) { return z = std::clamp(z, v - threshold, v + threshold); });
 }
 
-/// Returns the rate of x in kPa per 0.1 s.
+/// Returns the rate of x as the change during 0.1 s.
 Values rate(const Record& record, const Values& x) {
   return each(x, [&](std::size_t i, double v) {
     return i > 0 && record.duration_s[i] > 0 ? 0.1 * (v - x[i - 1]) / record.duration_s[i] : 0;
@@ -74,7 +74,7 @@ std::vector<Values> finger_signals(const Values& u, double largest_kpa) {
   return all;
 }
 
-/// Signals, and the time constants of the filters that are applied to each of them.
+/// A list of signals. Filters with all time constants in `lags_s` are applied to each signal.
 struct SignalBank {
   std::vector<Values> signals;
   std::span<const double> lags_s;

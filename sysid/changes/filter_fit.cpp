@@ -20,13 +20,14 @@ constexpr std::array ridges{1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
 
 using Factor = Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower>;
 
-/// A bin that contains a reading: its record, its index in this record, and its unit.
+/// A bin that contains a reading, stated by its record, its index in this record, and its cross-validation
+/// unit.
 struct Row {
   std::size_t record = 0, bin = 0, unit = 0;
 };
 
-/// Subtracts the mean of each record in each unit from the values, because a model does not predict the zero
-/// offset of a run.
+/// Subtracts the mean value of each record within each cross-validation unit. A model does not predict the
+/// zero offset of a run, so the offset must not count as an error.
 Eigen::VectorXd centred(Eigen::VectorXd values, const std::vector<Row>& rows) {
   std::map<std::pair<std::size_t, std::size_t>, std::pair<double, double>> sums;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -41,7 +42,8 @@ Eigen::VectorXd centred(Eigen::VectorXd values, const std::vector<Row>& rows) {
   return values;
 }
 
-/// The filtered signals of all records in bins, with the unit of each row.
+/// The filtered signals of all records, averaged over bins. A row is a bin and belongs to one
+/// cross-validation unit.
 class FilterBank {
  public:
   FilterBank(const std::vector<Record>& records, const Units& units, FilterKind kind, double bin_s,
@@ -57,9 +59,11 @@ class FilterBank {
 
   /// Residuals of a model, and the weights and errors of the filter bank that is fitted to them.
   struct Target {
-    /// Residuals after fits that leave out one unit each, and after the fit to all units.
+    /// Residuals of the model: one element per fit that leaves out a unit, and a last element for the fit to
+    /// all units.
     std::vector<Eigen::VectorXd> values;
-    /// Products of columns and values, summed over the rows of the fit.
+    /// Right-hand sides of the normal equations of the fits: products of columns and residuals, summed over
+    /// rows.
     std::vector<Eigen::VectorXd> moments;
     Eigen::VectorXd plain_left, left, weights;
     double left_mm = std::numeric_limits<double>::infinity();
@@ -84,8 +88,8 @@ class FilterBank {
     return target;
   }
 
-  /// Fits the filter bank to every target. The ridge parameter is the one with the smallest error in left-out
-  /// units.
+  /// Fits the filter bank to the residuals of every model. The ridge parameter is the one with the smallest
+  /// error in left-out cross-validation units.
   void fit(std::vector<Target>& targets) const {
     for (const double ridge : ridges) {
       std::vector<std::vector<Eigen::VectorXd>> weights(targets.size(), std::vector<Eigen::VectorXd>(units_));
@@ -109,8 +113,8 @@ class FilterBank {
     }
   }
 
-  /// Returns the weights if the filter bank improves the prediction significantly (is_better()). Otherwise
-  /// returns a result without weights.
+  /// Returns the weights if the filter bank improves the predictions of the model significantly
+  /// (is_better()). Otherwise returns a result without weights.
   [[nodiscard]] FittedFilters answer(Target target, const LeftByUnit& model, std::uint64_t seed) const {
     if (target.values.empty()) return {{}, model.back(), std::numeric_limits<double>::infinity()};
     const Binned plain = in_bins(target.plain_left, model.back()), left = in_bins(target.left, model.back());
@@ -131,7 +135,7 @@ class FilterBank {
       if (std::isfinite(readings[b]) && middle_s > begin_s(record))
         rows_.push_back({r, b, units.unit_of(r, middle_s)});
     }
-    // Each record gets an additional column for its offset.
+    // Each record gets an additional column for its zero offset.
     const auto count = static_cast<Eigen::Index>(rows_.size());
     columns_.conservativeResize(count, filter_count_ + static_cast<Eigen::Index>(records.size()));
     columns_.bottomRows(count - first).setZero();
@@ -162,7 +166,8 @@ class FilterBank {
     return values(rows_of(unit));
   }
 
-  /// Returns the residual of each unit. Model and weights were fitted without this unit.
+  /// Returns the residual of each cross-validation unit. The unit was left out of the fits of model and
+  /// weights.
   [[nodiscard]] Eigen::VectorXd left_out(const Target& target,
                                          const std::vector<Eigen::VectorXd>& weights) const {
     Eigen::VectorXd left(columns_.rows());
@@ -184,7 +189,8 @@ class FilterBank {
   [[nodiscard]] double rms_of(const Eigen::VectorXd& left) const {
     return std::sqrt(centred(left, rows_).squaredNorm() / static_cast<double>(left.size()));
   }
-  /// Returns the factorised normal equations of all units except `unit`, or of all units if `unit` is units_.
+  /// Returns the factorised normal equations without the rows of the cross-validation unit `unit`. If `unit`
+  /// equals units_, all rows are included.
   [[nodiscard]] Factor factor_without(std::size_t unit, double ridge) const {
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns_.cols(), columns_.cols());
     for (std::size_t u = 0; u < units_; ++u) {
@@ -198,7 +204,7 @@ class FilterBank {
   std::size_t units_;
   double bin_s_, largest_kpa_;
   Eigen::MatrixXd columns_;
-  std::vector<Eigen::MatrixXd> gram_;  ///< normal matrix of each unit
+  std::vector<Eigen::MatrixXd> gram_;  ///< normal matrix of each cross-validation unit
   std::vector<Row> rows_;
   Eigen::Index filter_count_ = 0;
 };

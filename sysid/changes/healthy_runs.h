@@ -1,5 +1,6 @@
 #pragma once
-// Errors and fits in the healthy runs. The search for a change compares the later readings with them.
+// Errors and fitted effects in the healthy runs. The search for a change compares the later readings with
+// these values.
 
 #include <algorithm>
 #include <cmath>
@@ -22,20 +23,22 @@ struct Disagreement {
   double loss = 0;         ///< of the whitened rows, per row
 };
 
-/// Returns the mean square of whitened readings over the bins; about 1 for healthy readings.
+/// Returns the sum of squares of the whitened readings divided by the number of bins. The result is about 1
+/// for healthy readings.
 [[nodiscard]] double per_bin(const LaterReadings& readings, const Eigen::VectorXd& white);
 
-/// Searches for effects in each healthy unit. The prediction comes from a fit to the other units.
+/// Searches for effects in each healthy cross-validation unit. The baseline model was fitted to the other
+/// units.
 [[nodiscard]] std::vector<HealthyFits> healthy_fits(const Base& base, bool pressure_is_judged,
                                                     unsigned threads);
 
-/// Returns the tolerance of the search from the error reductions in the healthy units.
+/// Computes the tolerance of the search from the error reductions that it finds in the healthy runs.
 /// @param more  increase of the expected loss per row that an unfamiliar input causes.
 [[nodiscard]] Tolerance tolerance_of(const std::vector<HealthyFits>& healthy, std::size_t runs,
                                      double more = 0);
 
-/// Errors of healthy units, each predicted by a fit to all other healthy units, and the largest permitted
-/// error of another healthy run.
+/// Errors of the healthy runs, and the error that is permitted in a further healthy run. The model that
+/// predicts a healthy run was fitted to all other healthy runs.
 class RunSpread {
  public:
   RunSpread() = default;
@@ -48,14 +51,15 @@ class RunSpread {
   [[nodiscard]] double input_factor() const {
     return 1 + std::max(more_.loss, mean_square_ > 0 ? more_.mean_square / mean_square_ : 0.0);
   }
-  /// Returns true if the error exceeds the largest error that is expected in another healthy run.
-  /// @param rms  RMS error of the readings without whitening.
-  /// @param loss  mean square of the whitened readings; 1 for healthy units.
+  /// Returns true if the error exceeds the largest error that is expected in a further healthy run.
+  /// @param rms  RMS error of the readings; the readings are not whitened.
+  /// @param loss  mean square of the whitened readings; about 1 for healthy runs.
   [[nodiscard]] bool is_exceeded(double rms, double loss) const {
     return rms > allowed_rms() || loss > factor_ * (1 + more_.loss);
   }
   /// Returns true if the error is large enough for a search for a change. If there are several healthy runs,
-  /// the tolerance of the search is known. The error then only has to exceed that of each healthy run.
+  /// the tolerance of the search prevents false causes. It is then sufficient that the error exceeds the
+  /// error of each healthy run.
   [[nodiscard]] bool admits_a_change(double rms, double loss) const {
     return is_exceeded(rms, loss) || (are_runs_ && (rms > worst_rms_ || loss > worst_loss_));
   }

@@ -14,7 +14,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Time constants [s] of the transient in a record that begins differently from all healthy records.
+/// Time constants [s] of the transient at the start of a record that begins differently from all healthy
+/// records.
 constexpr auto transient_lags_s = std::span(finger_lags_s).last<slow_lags>();
 
 bool begins_as_a_healthy_one(const Base& base, const Record& record) {
@@ -30,8 +31,8 @@ std::vector<double> transient(std::size_t bins, double bin_s, double lag_s) {
   return series;
 }
 
-/// Returns the largest relative gain that does not count as a change. Another run of an unchanged finger may
-/// have this gain.
+/// Returns the largest relative difference of the gain that does not count as a change. A further run of an
+/// unchanged finger may show this difference.
 double free_gain(const Base& base) {
   return t_quantile(static_cast<double>(base.units.count() - 1)) * base.gain_spread;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Residual that the constant baseline model and effects leave in later records.
+// Residual of later records. The prediction is the sum of a constant baseline model and effects.
 
 #include <string>
 #include <vector>
@@ -13,40 +13,42 @@
 
 namespace softgrip::sysid {
 
-/// Residuals that the baseline model leaves in later records. Two differences do not count as a change: a
-/// difference of the zero offset, and a difference of the gain within the variation of the healthy logs. Both
-/// differences are fitted and subtracted.
+/// Later records, and the difference between their readings and the prediction of the baseline model. Two
+/// deviations from the healthy logs do not count as a change: a zero offset, and a gain deviation within the
+/// spread of the healthy logs. Both are fitted and subtracted.
 class LaterReadings {
  public:
   /// @param later  later records, thinned by thinned_for().
-  /// @param left  their residuals in bins.
+  /// @param left  readings minus prediction, averaged over bins.
   LaterReadings(const Base& base, std::vector<Record> later, Binned left);
-  /// Returns the readings of one unit. The function without() returns the readings of all other units.
+  /// Returns the readings of one cross-validation unit. The function without() returns the readings of all
+  /// other units.
   [[nodiscard]] LaterReadings only(const Units& units, std::size_t unit) const;
   [[nodiscard]] LaterReadings without(const Units& units, std::size_t unit) const;
 
-  /// Returns the whitened residual of the baseline model with these effects. Zero and gain are fitted before.
-  /// The rows are those of rows(), followed by some rows with the penalties of the fitted zeros.
+  /// Returns the whitened residual of the baseline model with these effects. Zero offset and gain deviation
+  /// are fitted and subtracted first. The result contains the rows of rows(), followed by rows with the
+  /// penalties of the fitted zero offsets.
   [[nodiscard]] Eigen::VectorXd white(const std::vector<FittedEffect>& effects) const;
-  /// Returns the result of white() with one more row: the fitted gain that does not count as a change, in
-  /// units of the variation of the gain in the healthy logs.
+  /// Returns the result of white() with one additional row: the fitted gain deviation, divided by the spread
+  /// of the gain in the healthy logs.
   [[nodiscard]] Eigen::VectorXd white_and_gain(const std::vector<FittedEffect>& effects) const;
   [[nodiscard]] const WhiteRows& rows() const { return rows_; }
   [[nodiscard]] const Base& base() const { return base_; }
   [[nodiscard]] const std::vector<Record>& records() const { return later_; }
-  /// Returns the names of the records that begin under pressure although no healthy record does, or without
-  /// pressure although no healthy record does. The healthy records do not show the slow transient after such
-  /// a start, so this transient does not count as a change.
+  /// Returns the names of the records whose start state occurs in no healthy record (pressurised or vented).
+  /// The healthy records do not show the slow transient after such a start, so this transient does not count
+  /// as a change.
   [[nodiscard]] std::vector<std::string> other_starts() const;
   [[nodiscard]] const Binned& left() const { return left_; }
-  /// Returns the prediction of the unchanged baseline model, in bins.
+  /// Returns the prediction of the unchanged baseline model, averaged over bins.
   [[nodiscard]] const Binned& plain() const { return plain_; }
-  /// Returns the difference between two predictions, with and without the effects, in bins.
+  /// Returns the prediction with the effects minus the prediction without the effects, averaged over bins.
   [[nodiscard]] Binned added(const std::vector<FittedEffect>& effects) const;
-  /// Returns the root mean square of the residual with these effects, without whitening. One zero per record
-  /// and one common gain are fitted before.
+  /// Returns the root mean square of the residual with these effects. The residual is not whitened. One zero
+  /// offset per record and one common gain deviation are fitted and subtracted first.
   [[nodiscard]] double plain_rms(const std::vector<FittedEffect>& effects) const;
-  /// Common zero [mm] and relative gain that are fitted in addition to the effects.
+  /// Common zero offset [mm] and relative gain deviation that are fitted in addition to the effects.
   struct Nuisance {
     double zero_mm = 0, gain = 0;
   };
@@ -74,19 +76,20 @@ class LaterReadings {
   std::vector<Driven> driven_;
   WhiteRows rows_;
   Eigen::VectorXd target_;
-  /// Columns of the zeros and of the transients after unknown starts, and the matrix that computes their
-  /// sizes.
+  /// `nuisance_` contains the columns of the zero offsets and of the transients after unusual starts.
+  /// `solver_` is the matrix that computes the coefficients of these columns.
   Eigen::MatrixXd nuisance_, solver_;
   Eigen::VectorXd price_;  ///< for each column of `nuisance_`, the square root of its penalty
-  /// `motion_`: motion of the baseline model; `motion_left_`: this motion after subtraction of the fitted
-  /// zeros.
+  /// `motion_` is the whitened prediction of the baseline model. `motion_left_` is `motion_` after the fitted
+  /// zero offsets and transients are subtracted.
   Eigen::VectorXd motion_, motion_left_;
 };
 
-/// Returns the healthy records with the residual of each unit under a fit without this unit.
+/// Returns the healthy records with the residual of each cross-validation unit. The unit was left out of the
+/// fit.
 [[nodiscard]] LaterReadings healthy_readings(const Base& base);
 
-/// Returns the readings of later records.
+/// Thins the records, averages their residuals over bins, and returns both as later readings.
 /// @param records  records at the full sampling rate.
 /// @param left  result of residuals_of() for these records.
 [[nodiscard]] LaterReadings readings_of(const Base& base, const std::vector<Record>& records,

@@ -1,5 +1,6 @@
 #pragma once
-// Returns texts for an operator after a change: two next steps for each cause. The quicker step comes first.
+// Returns texts for an operator after a change. There are two next steps for each cause; the quicker step
+// comes first.
 
 #include <array>
 #include <string_view>
@@ -9,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// Returns the next steps for a cause. The texts are empty if no cause has this id.
+/// Returns the two next steps for a cause. The texts are empty if no cause has this id.
 [[nodiscard]] std::array<std::string_view, 2> next_steps(std::string_view cause_id);
 
 /// Returns a description of the cause for an operator, such as "the gain of the finger has changed".
@@ -17,7 +18,7 @@ namespace softgrip::sysid {
 
 /// Returns the ids of all causes that can develop while a finger is in operation.
 [[nodiscard]] std::vector<std::string_view> changes();
-/// Returns the signs of the cause: the indicators of recorded grips that it changes.
+/// Returns the health signs of the cause. They state which indicators of recorded grips the cause changes.
 [[nodiscard]] HealthSigns signs_of(std::string_view cause_id);
 /// Returns the quantity that states the size of the cause.
 [[nodiscard]] SizedBy sized_by(std::string_view cause_id);

@@ -7,15 +7,16 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double atmosphere_kpa = 101.325;
-/// Longest simulation step [s], and largest number of steps in one sampling interval. The number can be
-/// limited because the implicit steps are stable. Sampling intervals of more than 0.1 s do not resolve the
-/// dynamics of a regulator.
+/// Longest simulation step [s], and largest number of steps in one sampling interval. The number of steps can
+/// be limited because the implicit steps are stable. The limit applies to sampling intervals of more than
+/// 0.1 s, which do not resolve the dynamics of a regulator.
 constexpr double longest_step_s = 0.002;
 constexpr int most_steps = 50;
-/// Supply pressure that is assumed if it is not recorded, as a multiple of the largest command.
+/// Assumed supply pressure as a multiple of the largest command. It is used if the supply pressure is not
+/// recorded.
 constexpr double supply_unknown = 4;
-/// Returns the flow between two absolute pressures, divided by the conductance [kPa], by ISO 6358-1 with a
-/// critical pressure ratio of 0.3.
+/// Returns the flow between two absolute pressures, divided by the conductance [kPa]. The flow follows ISO
+/// 6358-1 with a critical pressure ratio of 0.3.
 double flow(double from_kpa, double to_kpa) {
   if (from_kpa < to_kpa) return -flow(to_kpa, from_kpa);
   constexpr double critical = 0.3, linear_above = 0.995;
@@ -29,7 +30,7 @@ double flow(double from_kpa, double to_kpa) {
   return from_kpa * (ratio < linear_above ? subsonic(ratio) : at_linear * (1 - ratio) / (1 - linear_above));
 }
 
-/// Simulates one regulator. The pressures of finger, valve and supply are absolute.
+/// Simulates one regulator. The pressures in finger, valve and supply are absolute.
 class Walk {
  public:
   Walk(const Regulator& regulator, double command_kpa)
@@ -55,16 +56,16 @@ class Walk {
   [[nodiscard]] double gauge_kpa() const { return finger_kpa_ - atmosphere_kpa; }
 
  private:
-  /// Returns the position of the spool at the end of a step. It is stated as the control error that leads to
-  /// this position [kPa].
+  /// Returns the position of the spool at the end of a step [kPa]. The position is stated as the control
+  /// error that holds the spool there at equilibrium.
   [[nodiscard]] double spool_with(double valve_kpa, double step_s) const {
     const Regulator& r = regulator_;
     const double most = r.dead_kpa + r.full_kpa;
     const double wanted = std::clamp(seen_kpa_ + atmosphere_kpa - valve_kpa + integral_kpa_, -most, most);
     return spool_kpa_ + (wanted - spool_kpa_) * step_s / (step_s + r.spool_lag_s);
   }
-  /// Returns the flow through the ports, stated as the rate of the finger's pressure that this flow would
-  /// cause [kPa/s].
+  /// Returns the flow through the ports, stated as the pressure rate that this flow would cause in the finger
+  /// [kPa/s].
   [[nodiscard]] double inflow(double spool_kpa, double valve_kpa, double supply_kpa) const {
     const Regulator& r = regulator_;
     const double open = std::min((std::abs(spool_kpa) - r.dead_kpa) / r.full_kpa, 1.0);
@@ -72,23 +73,24 @@ class Walk {
     return r.port_per_s * open *
            (spool_kpa > 0 ? flow(supply_kpa, valve_kpa) : -flow(valve_kpa, atmosphere_kpa));
   }
-  /// Returns the flow into the finger, stated as the rate of the finger's pressure [kPa/s]. In one step, the
-  /// flow can at most equalise the pressures at the two ends of the tube.
+  /// Returns the flow into the finger, stated as the pressure rate in the finger [kPa/s]. During one step,
+  /// the flow can at most equalise the pressures at the two ends of the tube.
   [[nodiscard]] double through_the_tube(double valve_kpa, double step_s) const {
     const double above = valve_kpa - finger_kpa_;
     if (above == 0) return 0;
     const double flows = regulator_.tube_per_s * flow(valve_kpa, finger_kpa_);
     return flows / (1 + step_s * flows / above);
   }
-  /// Returns the inflow through the ports minus the flows into the tube and the chamber.
+  /// Returns the flow through the ports, minus the flow into the tube, minus the flow that fills the chamber
+  /// [kPa/s].
   [[nodiscard]] double surplus(double valve_kpa, double supply_kpa, double step_s) const {
     const Regulator& r = regulator_;
     return inflow(spool_with(valve_kpa, step_s), valve_kpa, supply_kpa) -
            through_the_tube(valve_kpa, step_s) - r.chamber_share * (valve_kpa - valve_kpa_) / step_s;
   }
-  /// Returns the pressure before the tube at which surplus() is zero. surplus() decreases with this pressure.
-  /// The secant method starts at the pressure of the step before and nearly always converges. Otherwise the
-  /// method of false position is used.
+  /// Returns the pressure before the tube for which surplus() is zero. surplus() decreases when this pressure
+  /// increases. The secant method starts from the pressure of the previous step and nearly always converges.
+  /// If it does not converge, the method of false position is used.
   [[nodiscard]] double before_the_tube(double supply_kpa, double step_s) const {
     constexpr int most_secants = 6;
     constexpr double beside_kpa = 0.01, near_kpa = 1e-4;

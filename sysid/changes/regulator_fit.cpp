@@ -15,18 +15,19 @@ namespace {
 
 constexpr Eigen::Index numbers = 8;
 constexpr int most_regulator_steps = 15;
-/// Step of a logarithm for numerical derivatives, and largest change of a logarithm in one iteration.
+/// Step of the logarithm of a parameter for numerical derivatives, and largest change of this logarithm in
+/// one iteration.
 constexpr double beside_by = 0.03, longest_move = 1.5;
-/// Largest magnitude of a logarithm. It corresponds to a factor of 400.
+/// Largest absolute value of the logarithm of (parameter / typical value). It corresponds to a factor of 400.
 constexpr double largest_logarithm = 6;
 constexpr double least_progress = 0.003;
-/// Penalty for a parameter that differs from its typical value by a factor of e, as a share of the sum of
-/// squared residuals. The penalty is necessary because the lags of the filter bank can replace a wide tube. A
-/// parameter that the readings do not determine therefore keeps its typical value.
+/// Penalty if a parameter differs from its typical value by a factor of e, as a share of the sum of squared
+/// residuals. The penalty keeps a parameter that the readings do not determine at its typical value. For
+/// example, the lags of the filter bank can replace a wide tube.
 constexpr double prior_share = 0.003;
 
-/// Returns the regulator for the coordinates t. They are the logarithms of the parameters divided by their
-/// typical values.
+/// Returns the regulator with the coordinates t. A coordinate is the logarithm of (parameter / typical
+/// value).
 Regulator regulator_at(const Eigen::VectorXd& t, double largest_kpa) {
   const auto times = [&](Eigen::Index i) { return std::exp(t(i)); };
   return {0.002 * largest_kpa * times(0),
@@ -40,7 +41,8 @@ Regulator regulator_at(const Eigen::VectorXd& t, double largest_kpa) {
           0};
 }
 
-/// Readings in bins, and the signals that a finger or a pressure sensor behind the regulator can show.
+/// Readings averaged over bins, and the fit of a signal behind the regulator to these readings. The signal is
+/// that of a finger or of a pressure sensor.
 class BinnedReadings {
  public:
   BinnedReadings(const std::vector<Record>& records, double largest_kpa, ReadBy read_by)
@@ -105,7 +107,7 @@ class BinnedReadings {
   std::size_t bins_ = 0;
 };
 
-/// Search for the parameters of a regulator. The class has the functions that descend() calls.
+/// Search for the parameters of a regulator. The class provides the functions that descend() calls.
 class RegulatorSearch {
  public:
   struct Point {

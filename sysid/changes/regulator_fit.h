@@ -8,16 +8,16 @@
 
 namespace softgrip::sysid {
 
-/// Signal that was recorded behind a regulator.
+/// Quantity that was recorded behind a regulator.
 enum class ReadBy {
-  gauge,  ///< the pressure; the gain and the zero offset of its sensor are fitted
-  /// The displacement, described by a bank of plays and lags with weights that are refitted for each
+  gauge,  ///< the pressure; gain and zero offset of its sensor are fitted
+  /// The displacement. It is described by a bank of plays and lags, whose weights are fitted for each
   /// regulator.
   finger,
 };
 
-/// Returns the regulator that leaves the smallest residual of the readings.
-/// @param records  records with the command as drive.
+/// Returns the regulator with the smallest sum of squared residuals.
+/// @param records  records whose drive is the command.
 [[nodiscard]] Regulator fit_regulator(const std::vector<Record>& records, double largest_kpa,
                                       ReadBy read_by = ReadBy::finger);
 

@@ -7,27 +7,27 @@
 
 namespace softgrip::sysid {
 
-/// Losses of two hypotheses on the same blocks.
+/// Losses of two hypotheses, stated separately for each block of the data.
 struct PairedLosses {
-  std::vector<double> worse, better;  ///< sums of squared residuals of the two hypotheses in each block
+  std::vector<double> worse, better;  ///< sum of squared residuals of each hypothesis in each block
   std::vector<double> rows;           ///< number of rows (residuals) in each block
 };
 
 struct Comparison {
-  /// Share of the bootstrap samples in which the loss of `better` is smaller by more than the tolerance.
+  /// Share of the bootstrap samples in which the loss of `worse` exceeds the loss of `better` by more than
+  /// the tolerance.
   double share = 0;
-  double lower = 0, upper = 0;  ///< 95 % interval of the difference `worse` minus `better` per row
+  double lower = 0, upper = 0;  ///< 95 % interval of the loss difference (`worse` minus `better`) per row
 };
 
-/// Compares the weighted mean losses per row, with random weights of the blocks (Bayesian bootstrap: Rubin,
-/// Annals of Statistics 9, 1981).
-/// @param tolerance  difference of the losses per row that `better` must exceed.
+/// Compares the mean losses per row of two hypotheses by a Bayesian bootstrap over the blocks (Rubin, Annals
+/// of Statistics 9, 1981). Each bootstrap sample weights the blocks randomly.
+/// @param tolerance  largest loss difference per row that counts as zero.
 /// @param seed  seed of the random weights; equal seeds give equal results.
 [[nodiscard]] Comparison compare(const PairedLosses& losses, double tolerance, std::uint64_t seed);
 
-/// Returns true if `better` has the smaller loss in at least the share limits::probability of the bootstrap
-/// samples. A bootstrap sample counts if the losses of `better` and `worse` differ by more than the
-/// tolerance.
+/// Returns true if `better` wins in at least 95 % of the bootstrap samples (limits::probability). It wins in
+/// a sample if its loss is smaller by more than the tolerance of compare().
 [[nodiscard]] bool is_better(const Comparison& comparison);
 
 }  // namespace softgrip::sysid

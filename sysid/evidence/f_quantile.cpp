@@ -6,7 +6,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Computes the continued fraction of the incomplete beta function by Lentz's method (Abramowitz and Stegun
+/// Computes the continued fraction of the incomplete beta function with Lentz's method (Abramowitz and Stegun
 /// 26.5.8).
 double beta_fraction(double a, double b, double x) {
   constexpr double tiny = 1e-300;

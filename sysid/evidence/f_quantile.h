@@ -3,8 +3,8 @@
 
 namespace softgrip::sysid {
 
-/// Returns the value that an F-distributed ratio does not exceed with the given probability (Abramowitz and
-/// Stegun 26.6).
+/// Returns a quantile of the F distribution (Abramowitz and Stegun 26.6). A random value with this
+/// distribution is below the result with the given probability.
 /// @param probability  in (0, 1).
 /// @param above, below  degrees of freedom of numerator and denominator, >= 1.
 [[nodiscard]] double f_quantile(double probability, double above, double below);

@@ -19,8 +19,8 @@ struct Pair {
   Eigen::VectorXd command, reading;
 };
 
-/// Returns the samples in which both values are finite, scaled to zero mean and unit standard deviation. The
-/// result is empty if one of the series is constant.
+/// Returns the samples in which command and reading are finite. Both series are scaled to zero mean and unit
+/// standard deviation. The result is empty if one of the series is constant.
 Pair pairs_of(const std::vector<double>& command, const std::vector<double>& reading) {
   std::vector<double> u, y;
   for (std::size_t i = 0; i < std::min(command.size(), reading.size()); ++i) {
@@ -45,7 +45,8 @@ double squares_left(const Eigen::MatrixXd& columns, const Eigen::VectorXd& targe
   return (target - columns * columns.colPivHouseholderQr().solve(target)).squaredNorm();
 }
 
-/// Returns the interpolated lag at which sum(a(t) b(t + lag)) first changes its sign.
+/// Returns the smallest positive lag at which the correlation sum a(t) b(t + lag) changes its sign,
+/// interpolated between samples.
 std::optional<double> first_crossing(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   double before = a.dot(b);
   for (Eigen::Index lag = 1; lag < a.size(); ++lag) {
@@ -76,8 +77,8 @@ bool is_closed_loop(const std::vector<double>& command, const std::vector<double
   const Eigen::VectorXd target = u.tail(rows);
   const double own = squares_left(columns.leftCols(order), target), both = squares_left(columns, target);
   const auto free = static_cast<double>(rows - 2 * order);
-  // Past values of the command can predict the command up to rounding errors. The readings cannot reduce
-  // these rounding errors.
+  // Without this test, rounding errors would decide if past values of the command already predict the command
+  // exactly.
   if (!(own > 1e-12 * static_cast<double>(rows)) || !(both > 0)) return false;
   const double f = (own - both) / static_cast<double>(order) / (both / free);
   return f > f_quantile(limits::strict_probability, static_cast<double>(order), free);

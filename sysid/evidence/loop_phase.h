@@ -13,21 +13,23 @@
 
 namespace softgrip::sysid {
 
-/// Returns true if past readings improve the prediction of the command from its own past. This is Granger's
-/// test with three samples of each series, at limits::strict_probability. Readings do not improve the
-/// prediction of a command that was planned before the run.
-/// @param command, reading  series of equal length. Pairs with a NaN are skipped. With fewer than 50 pairs,
-/// the result is false.
+/// Returns true if past readings improve the prediction of the command. The prediction without the readings
+/// uses past values of the command. The function applies Granger's test with three past samples of each
+/// series at the level limits::strict_probability. If the command was planned before the run, past readings
+/// do not improve its prediction.
+/// @param command, reading  series of equal length. Samples with a NaN in one of the series are skipped. With
+/// fewer than 50 remaining samples, the result is false.
 [[nodiscard]] bool is_closed_loop(const std::vector<double>& command, const std::vector<double>& reading);
 
-/// Returns 1 for an odd cross-correlation and 0 for an even one. The result is |left - right| / (left +
-/// right), where left and right are the distances from lag 0 to the next zero crossing on each side. Returns
-/// nullopt if one side has no zero crossing or if one of the series is constant.
+/// Returns a measure of symmetry of the cross-correlation: 1 if it is odd, 0 if it is even. The measure is
+/// |left - right| / (left + right). `left` and `right` are the distances from lag 0 to the nearest zero
+/// crossing on each side. Returns nullopt if one side has no zero crossing or if one of the series is
+/// constant.
 [[nodiscard]] std::optional<double> phase_ratio(const std::vector<double>& command,
                                                 const std::vector<double>& reading);
 
-/// Returns true if the loop is closed and the phase shift between command and reading is within 30 degrees of
-/// 90 degrees. This indicates a sticking valve.
+/// Returns true if the signals indicate a sticking valve. Two conditions must hold: the loop is closed, and
+/// the phase shift between command and reading is between 60 and 120 degrees.
 [[nodiscard]] bool shows_stiction(const std::vector<double>& command, const std::vector<double>& reading);
 
 }  // namespace softgrip::sysid

@@ -8,7 +8,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Lowest value and range of a quantity in all bins.
+/// Lowest value of a quantity over all bins, and difference between its highest and lowest value.
 class Extent {
  public:
   Extent(const std::vector<OperatingPoint>& conditions, double OperatingPoint::*of) : of_(of) {
@@ -18,7 +18,7 @@ class Extent {
     low_ = (*low).*of;
     range_ = (*high).*of - low_;
   }
-  /// Returns the position of a value in its range, from 0 (lowest value) to 1 (highest value).
+  /// Returns the position of a value between the lowest value (0) and the highest value (1).
   [[nodiscard]] double share(const OperatingPoint& condition) const {
     return range_ > 0 ? (condition.*of_ - low_) / range_ : 0;
   }
@@ -85,7 +85,7 @@ std::string_view recording_for(Appears appears) {
     case Appears::anywhere:
       break;
   }
-  return "record the same run again";
+  return "record the same run again, as a separate log";
 }
 
 }  // namespace softgrip::sysid

@@ -1,6 +1,6 @@
 #pragma once
-// Divides repeated records into units for cross-validation. A model is fitted to all units except one, and
-// then predicts this unit.
+// Divides records of repeated runs into units for cross-validation. A model is fitted to all units except
+// one, and then predicts the unit that was left out.
 
 #include <cstddef>
 #include <vector>
@@ -11,8 +11,9 @@ namespace softgrip::sysid {
 
 struct Division;
 
-/// Division of a campaign into units. A unit is one run or, if there are many runs, several runs. If there is
-/// a single run, its two halves are the units, although they do not show the differences between runs.
+/// Division of repeated runs into units. A unit is one run. If there are more than limits::most_units runs, a
+/// unit consists of several runs. A single run is divided into two halves, which are then the units. The
+/// halves do not show the differences between runs.
 class Units {
  public:
   Units() = default;
@@ -22,12 +23,12 @@ class Units {
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   [[nodiscard]] std::size_t runs() const noexcept { return middle_s_.size(); }
   [[nodiscard]] bool are_runs() const noexcept { return runs() > 1; }
-  /// Returns the index of the unit to which a sample of a record belongs.
-  /// @param since_start_s  time of the sample since the first sample of the record.
+  /// Returns the index of the unit that contains a sample of a record.
+  /// @param since_start_s  time from the first sample of the record to this sample.
   [[nodiscard]] std::size_t unit_of(std::size_t record, double since_start_s) const noexcept;
-  /// Returns the records with the readings of one unit replaced by NaN. A record that belongs to the unit
-  /// completely is omitted.
-  /// @param unit  if it equals count(), nothing is omitted.
+  /// Returns the records without the readings of one unit. If the unit contains a complete record, this
+  /// record is omitted. Otherwise, the readings of the unit are replaced by NaN.
+  /// @param unit  unit that is left out; if it equals count(), nothing is left out.
   /// @param kept  receives the index of each returned record; may be nullptr.
   [[nodiscard]] std::vector<Record> without(const std::vector<Record>& records, std::size_t unit,
                                             std::vector<std::size_t>* kept = nullptr) const;
@@ -37,7 +38,8 @@ class Units {
   std::vector<double> middle_s_;  ///< for each record, the time from its start to its middle
 };
 
-/// Divides the records into blocks of limits::block_s seconds. All blocks of a unit are in the same fold.
+/// Divides the records into blocks of limits::block_s seconds for cross-validation. All blocks of a unit
+/// belong to the same fold.
 [[nodiscard]] Division divide_by_unit(const std::vector<Record>& records);
 
 }  // namespace softgrip::sysid

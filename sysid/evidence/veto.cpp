@@ -10,8 +10,8 @@ Veto veto_of(const Claim& claim) {
   if (claim.size) {
     const auto& [lower, upper] = *claim.size;
     if (!(lower > 0 || upper < 0)) return Veto::size_uncertain;
-    // The end of the interval that is nearer to zero is compared with the largest possible size. A cause is
-    // therefore rejected only if every size in the interval is too large.
+    // A cause is rejected only if every size in the interval is too large. Therefore the end of the interval
+    // that is nearer to zero is compared with the largest possible size.
     if (std::min(std::abs(lower), std::abs(upper)) > claim.largest_size) return Veto::size_beyond_range;
   }
   if (!(claim.error_with < claim.error_without)) return Veto::error_not_reduced;

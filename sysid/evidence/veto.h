@@ -1,6 +1,6 @@
 #pragma once
-// Defines the conditions that a cause must fulfil to be reported. They apply to every error reduction, even
-// to a large one.
+// Defines the conditions that a cause must meet before it is reported. They apply even to a cause with a
+// large error reduction.
 
 #include <optional>
 #include <string_view>
@@ -13,16 +13,16 @@ namespace softgrip::sysid {
 struct Claim {
   /// 95 % interval of the size of the cause; empty: the data do not determine the size.
   std::optional<Interval> size;
-  /// Largest possible size of the cause, in the unit of `size`: the span of the displacement [mm], the
-  /// largest pressure [kPa] or the length of the longest log [s]. For other units, it is infinity: every size
-  /// is possible.
+  /// Largest possible size of the cause, in the unit of `size`. It is the span of the displacement [mm], the
+  /// largest pressure [kPa] or the length of the longest log [s]. For all other units it is infinite, so
+  /// every size is possible.
   double largest_size = 0;
-  double error_without = 0;  ///< RMSE without the cause, over all readings that should show the cause
-  double error_with = 0;     ///< RMSE with the cause, over all readings that should show the cause
-  /// True: with the cause, the error of readings that were left out of the fit is larger.
+  double error_without = 0;  ///< RMSE of the model without the cause, over the evaluated readings
+  double error_with = 0;     ///< RMSE of the model with the cause, over the evaluated readings
+  /// True: the cause increases the prediction error on readings that were left out of the fit.
   bool predicts_worse = false;
-  bool condition_met = true;  ///< true: the data fulfil the condition under which the cause acts
-  /// True: the cause reduces the error of the readings that fulfil this condition.
+  bool condition_met = true;  ///< true: the data meet the condition under which the cause acts
+  /// True: the cause reduces the error of those readings that meet the condition under which it acts.
   bool shown_there = true;
 };
 
@@ -36,9 +36,10 @@ enum class Veto {
   absent_where_required,
 };
 
-/// Returns the first condition that the evidence does not fulfil; Veto::none if it fulfils all of them.
+/// Returns the first condition that the evidence does not meet. Returns Veto::none if the evidence meets all
+/// conditions.
 [[nodiscard]] Veto veto_of(const Claim& claim);
-/// Returns the reason of a rejection as a part of a sentence. Returns an empty text for Veto::none.
+/// Returns the reason why a cause is rejected, as a part of a sentence. Returns an empty text for Veto::none.
 [[nodiscard]] std::string_view reason_of(Veto veto);
 
 }  // namespace softgrip::sysid

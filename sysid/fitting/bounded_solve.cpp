@@ -7,10 +7,11 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Regularisation that is added to the unit diagonal, so that a singular matrix also has a unique minimum.
+/// Regularisation that is added to the unit diagonal of the scaled matrix. With this addition, the minimum is
+/// unique even if the matrix is singular.
 constexpr double regularisation = 1e-13;
 
-/// Primal active-set method on scaled variables.
+/// Finds the minimum by the primal active-set method, in scaled variables.
 class ActiveSet {
  public:
   ActiveSet(const Eigen::MatrixXd& gram, const Eigen::VectorXd& b, const Eigen::VectorXd& lower,
@@ -36,8 +37,8 @@ class ActiveSet {
  private:
   [[nodiscard]] bool held(Eigen::Index i) const { return held_[static_cast<std::size_t>(i)]; }
 
-  /// Moves x towards the minimum over the free variables. Returns true if a bound ended the step before the
-  /// minimum.
+  /// Moves x towards the minimum over the free variables. Returns true if x reached a bound before it reached
+  /// this minimum.
   bool advance() {
     std::vector<Eigen::Index> free;
     for (Eigen::Index i = 0; i < b_.size(); ++i) {

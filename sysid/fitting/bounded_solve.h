@@ -13,9 +13,9 @@ struct BoundedSolution {
   std::vector<bool> at_bound;  ///< true for each variable that is at a bound
 };
 
-/// Returns the minimum of x' G x / 2 - b' x subject to lower <= x <= upper.
-/// @param gram  G, symmetric and positive semidefinite. It may be badly scaled or singular, because the
-/// solver scales it to a unit diagonal and adds a small regularisation.
+/// Returns the minimum of x' G x / 2 - b' x subject to lower <= x <= upper. @param gram  G, symmetric and
+/// positive semidefinite. G may be badly scaled or singular, because the solver scales G to a unit diagonal
+/// and adds a small regularisation.
 [[nodiscard]] BoundedSolution solve_bounded(const Eigen::MatrixXd& gram, const Eigen::VectorXd& b,
                                             const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);
 

@@ -15,15 +15,16 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Possible sizes of a group of derivatives. The parameters of one cause fit into a small group. The
-/// parameters of a structure with two branches fit into a large group, together with the first parameters of
-/// a cause.
+/// Possible numbers of derivatives that one simulation computes together (a group). The parameters of one
+/// cause fit into a small group. The parameters of a structure with two branches fit into a large group,
+/// together with the first parameters of a cause.
 constexpr std::size_t least_group = 4;
 constexpr std::size_t small_group = 8;
 constexpr std::size_t large_group = 12;
 
-/// Returns the size of the next group if `left` derivatives remain. The sizes give the smallest number of
-/// groups, and for this number the smallest groups.
+/// Returns the size of the next group if `left` derivatives remain to be computed. The sizes are chosen for
+/// the smallest number of groups. If several choices need this number of groups, the smallest groups are
+/// chosen.
 std::size_t group_for(std::size_t left) {
   if (left <= least_group) return least_group;
   if (left <= small_group) return small_group;
@@ -77,8 +78,9 @@ class ChainResiduals final : public Residuals {
     bool values;  ///< true: the simulation also stores the residuals
   };
 
-  /// Returns the groups of derivatives with respect to model parameters and previous peaks. There is at least
-  /// one group, because the simulation of the first group also computes the residuals.
+  /// Returns the groups of derivatives with respect to the model parameters and to the pressure peaks before
+  /// the records. There is at least one group, because the simulation of the first group also computes the
+  /// residuals.
   [[nodiscard]] std::vector<Group> groups_of_derivatives() const {
     std::vector<std::size_t> dynamic;
     for (std::size_t i = 0; i < space_.size(); ++i) {
@@ -165,8 +167,8 @@ class ChainResiduals final : public Residuals {
     }
   }
 
-  /// Returns the elements of a row of the Jacobian that belong to the offsets. All rows of record k have the
-  /// same elements.
+  /// Returns those elements of a Jacobian row that are derivatives with respect to the offsets. These
+  /// elements are equal in all rows of record k.
   [[nodiscard]] std::vector<double> offset_columns(std::span<const double> z, std::size_t k) const {
     std::vector<double> line(space_.size());
     for (const std::size_t c : offsets_) {

@@ -1,6 +1,7 @@
 #pragma once
-// Descends to a minimum within bounds by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). All fits
-// that eliminate their linear parameters use this descent. Fits of all parameters use minimise().
+// Descends to a minimum within bounds by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). Fits
+// that eliminate their linear parameters use this descent. Fits that search over all parameters use
+// minimise() instead.
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,7 @@
 
 namespace softgrip::sysid {
 
-/// Derivatives of half the loss with respect to the coordinates of a search.
+/// Gradient and approximate curvature of half the loss, with respect to the coordinates of a search.
 struct NormalEquations {
   Eigen::VectorXd gradient;
   Eigen::MatrixXd curvature;  ///< Gauss-Newton approximation of the second derivatives
@@ -32,9 +33,9 @@ struct DescentOptions {
   /// The descent ends after a step that reduces the loss by less than least_share times the loss plus
   /// least_gain.
   double least_share = 0;
-  double least_gain = 0;  ///< absolute part of the limit that least_share describes
-  /// Smallest damping of a coordinate, as a share of the sum of all curvatures, multiplied by the current
-  /// damping.
+  double least_gain = 0;  ///< constant part of the limit below which a decrease of the loss ends the descent
+  /// Factor of the smallest damping of a coordinate. This damping is the factor times the current damping
+  /// times the sum of all curvatures.
   double least_damping = 0;
 };
 
@@ -47,7 +48,7 @@ struct Descent {
 };
 
 /// Returns one damped Gauss-Newton step. A coordinate at a bound stays at the bound if the loss would
-/// decrease beyond it.
+/// decrease beyond this bound.
 [[nodiscard]] Eigen::VectorXd damped_step(const NormalEquations& normal, const StepBounds& bounds,
                                           double damping, const DescentOptions& options);
 

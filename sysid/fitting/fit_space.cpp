@@ -19,11 +19,11 @@ bool is_logarithmic(const model::ParameterSpec& spec) {
   return spec.lower >= 0 && spec.neutral >= 1e6;
 }
 
-/// Largest dead time, lag or period of a fit, in units of time_unit_s().
+/// Largest dead time, lag or period that a fit permits, in units of time_unit_s().
 constexpr double largest_latency = 10;
 
-/// Largest magnitude of a gain or of a rate per kPa in a fit, in units of 1 / pressure_unit_kpa(). A larger
-/// rate describes a jump, which the readings cannot size.
+/// Largest magnitude of a gain or of a rate per kPa that a fit permits, in units of 1 / pressure_unit_kpa().
+/// The readings cannot distinguish a larger rate from a jump of the displacement.
 constexpr double largest_per_pressure = 10;
 
 FreeParameter model_parameter(const model::Model& model, std::size_t flat_index, double time_unit_s,
@@ -36,8 +36,8 @@ FreeParameter model_parameter(const model::Model& model, std::size_t flat_index,
   p.logarithmic = is_logarithmic(spec);
   p.scale = p.logarithmic ? 1 : spec.scale;
   p.lower = p.logarithmic ? std::max(spec.lower, 1e-9) : spec.lower;
-  // The bound excludes 0. A chain may skip a block whose parameter is 0, and the derivative with respect to
-  // this parameter would then be 0.
+  // The lower bound of this parameter is above 0. A chain may skip a block whose parameter is 0, and the
+  // derivative with respect to this parameter would then be 0.
   if (spec.lower == 0 && spec.neutral == 0) p.lower = 1e-6 * spec.scale;
   p.upper = spec.upper;
   if (spec.latency) {
@@ -53,7 +53,8 @@ FreeParameter model_parameter(const model::Model& model, std::size_t flat_index,
   return p;
 }
 
-/// Returns true if the play operators have envelopes. Without envelopes, their parameters have no effect.
+/// Returns true if the play operators have envelopes. Without envelopes, the envelope parameters have no
+/// effect.
 bool has_envelopes(const model::BlockSpec& plays) {
   return plays.values[model::parameter_index<model::PrandtlIshlinskii>("envelope_kpa")] > 0;
 }
@@ -188,8 +189,9 @@ std::vector<StartState> rest_starts(const model::Model& model, const std::vector
   const std::size_t branches = branch_time_constants_s(model).size();
   for (std::size_t r = 0; r < records.size(); ++r) {
     const double first = records[r].drive_kpa.front();
-    // The search starts with an unknown peak halfway between the first and the largest pressure. At the first
-    // pressure, the derivative with respect to the peak would be 0.
+    // If the peak is unknown, the search starts with a peak halfway between the first and the largest
+    // pressure. A start at the first pressure is unsuitable, because the derivative with respect to the peak
+    // is 0 there.
     starts[r].peak_before_kpa = records[r].start_unknown ? (first + records[r].largest_kpa) / 2 : first;
     starts[r].unsettled_mm.assign(branches, 0);
   }

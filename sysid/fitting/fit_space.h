@@ -29,7 +29,7 @@ struct FreeParameter {
 
   [[nodiscard]] double to_z(double value) const;
   [[nodiscard]] double to_value(double z) const;
-  /// Returns the derivative of the value with respect to z.
+  /// Returns the derivative of the parameter's value with respect to its coordinate z in the minimiser.
   [[nodiscard]] double slope(double z) const;
   [[nodiscard]] double lower_z() const { return to_z(lower); }
   [[nodiscard]] double upper_z() const { return to_z(upper); }
@@ -47,7 +47,7 @@ struct FitPoint {
   std::vector<StartState> starts;
 };
 
-/// The free parameters, in the order of the vector z.
+/// The free parameters of a fit. Their order is that of the coordinates in the vector z of the minimiser.
 class FitSpace {
  public:
   /// Makes two kinds of parameters free: those in `free_flat` (indices of flat_values(model)), and the
@@ -67,7 +67,7 @@ class FitSpace {
 
   [[nodiscard]] FitPoint point(std::span<const double> z) const;
   [[nodiscard]] std::vector<double> z(const FitPoint& point) const;
-  /// Returns the value of parameter `index` at a point.
+  /// Returns the value of parameter `index` at a point of the search.
   [[nodiscard]] double value(const FitPoint& point, std::size_t index) const;
 
  private:

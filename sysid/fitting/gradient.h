@@ -1,12 +1,13 @@
 #pragma once
 // A number with many derivatives (forward-mode automatic differentiation), stored for vector registers. The
-// Jet type of Ceres is equivalent, but the compiler does not inline its expressions into the steps of a
-// chain, which need most of the computing time.
+// Jet type of Ceres is equivalent. However, the compiler does not inline the expressions of Jet into the
+// steps of a chain, and these steps need most of the computing time.
 //
 // An operator returns an expression. The value of an expression is computed immediately. Its derivatives are
 // computed in pairs when a Gradient is constructed from the expression, so that a formula needs one loop over
-// the derivatives instead of one per operator. An expression refers to the Gradients that it contains.
-// Convert it to a Gradient while they exist, and never store it in an `auto` variable.
+// the derivatives instead of one loop per operator. An expression refers to the Gradients that it contains.
+// Convert an expression to a Gradient while these Gradients exist, and never store an expression in an `auto`
+// variable.
 
 #include <array>
 #include <cmath>
@@ -112,7 +113,7 @@ struct ScaledGradient {
   Held<X> x;
   [[nodiscard, gnu::always_inline]] DerivativePair pair(std::size_t i) const { return x.pair(i) * s; }
 };
-/// An expression with value `a` and derivatives s x' + t y'.
+/// An expression with value `a` and derivatives s x' + t y', where x' and y' are the derivatives of x and y.
 template <class X, class Y>
 struct CombinedGradient {
   static_assert(X::derivatives == Y::derivatives);
@@ -126,8 +127,8 @@ struct CombinedGradient {
     return x.pair(i) * s + y.pair(i) * t;
   }
 };
-/// The expression x + y or x - y, depending on `sign`. Both have the same type, so that a conditional
-/// expression can contain both.
+/// The expression x + y or x - y, depending on `sign`. A sum and a difference have the same type, so that a
+/// conditional expression can contain both.
 template <class X, class Y>
 struct AddedGradient {
   static_assert(X::derivatives == Y::derivatives);

@@ -1,7 +1,7 @@
 #pragma once
-// Cross-validates models: they are refitted without some blocks of the readings and evaluated on these
-// blocks. The hidden state of a model is always simulated from the start of the record. Readings never
-// correct it.
+// Cross-validates models: each model is refitted without some blocks of the readings, and its error on these
+// blocks is computed. The hidden state of a model is always simulated from the start of the record. Readings
+// never correct this state.
 
 #include <functional>
 #include <vector>
@@ -13,7 +13,8 @@
 
 namespace softgrip::sysid {
 
-/// A fit to records from which some readings were removed. It is called for several folds in parallel.
+/// Function that fits a model to records from which some readings were removed. The function is called for
+/// several folds in parallel.
 using Refit = std::function<FitPoint(const std::vector<Record>& rest)>;
 
 /// Returns the mean square of a residual over a block [mm^2]; 0 for a block without readings.

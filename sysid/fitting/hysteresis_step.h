@@ -1,7 +1,7 @@
 #pragma once
-// Computes one step of g, with all derivatives, for a monotonic change of the pressure p. h = beta g is the
-// Bouc-Wen state for exponent 1. Its equation is dg/dp = 1 - k g, with k = +-(gamma + eta) while |g| grows
-// and k = -+(gamma - eta) while |g| decreases.
+// Computes one step of the Bouc-Wen hysteresis with exponent 1, with all derivatives, for a monotonic change
+// of the pressure p. The hysteretic state is h = beta g. The equation of g is dg/dp = 1 - k g, with k =
+// +-(gamma + eta) while |g| grows and k = -+(gamma - eta) while |g| decreases.
 
 #include <cmath>
 
@@ -79,7 +79,7 @@ inline void step(Hysteresis& h, double change, double change_by_lag, double chan
     h.g = end;
     return;
   }
-  // After a pressure change of `to_zero`, g is zero. From there on, |g| grows.
+  // After a pressure change of `to_zero`, g is zero. After this change, |g| grows.
   const bool straight = std::abs(k * h.g) < 1e-6;
   const double to_zero = straight ? -h.g * (1 + k * h.g / 2) : std::log1p(-k * h.g) / k;
   const double zero_by_g = -1 / left;

@@ -25,9 +25,9 @@ void quieten_log() {
   });
 }
 
-/// Cost function that contains all residuals. Ceres would apply a loss function to the sum of squares of all
-/// residuals. Therefore Huber's loss is applied to each residual here. For |r| > d, the residual is replaced
-/// by f = sign(r) sqrt(2 d |r| - d^2), whose square is Huber's cost.
+/// Cost function of Ceres that contains all residuals. Ceres would apply Huber's loss to the sum of squares
+/// of all residuals. Therefore this class applies Huber's loss to each residual. For |r| > d, the residual is
+/// replaced by f = sign(r) sqrt(2 d |r| - d^2), whose square is Huber's cost.
 class WholeTrajectory final : public ceres::CostFunction {
  public:
   WholeTrajectory(const Residuals& residuals, double huber_mm) : residuals_(residuals), huber_mm_(huber_mm) {
@@ -112,7 +112,8 @@ Minimum minimise(const Residuals& residuals, std::vector<double> z, const Minimi
   solver.gradient_tolerance = 0;
   solver.initial_trust_region_radius = 1e3;
   // If there are bounds, Ceres by default searches along each step and computes the derivatives at each trial
-  // point. Without this line search, Ceres still limits the steps to the bounds.
+  // point. This line search is switched off here, because Ceres limits the steps to the bounds even without a
+  // line search.
   solver.max_num_line_search_step_size_iterations = 0;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);

@@ -19,10 +19,11 @@ struct MinimiseOptions {
   double huber_mm = std::numeric_limits<double>::infinity();
   /// Index of a parameter that is held constant; empty: none.
   std::optional<std::size_t> held;
-  /// True: use normal equations instead of an orthogonal factorisation. They are several times faster but
-  /// give only half as many digits. This accuracy is sufficient if only the error of the fit is used.
+  /// True: use normal equations instead of an orthogonal factorisation. The normal equations are solved
+  /// several times faster, but their solution has only half as many correct digits. This accuracy is
+  /// sufficient if only the error of the fit is used.
   bool normal_equations = false;
-  /// Relative change of the cost at which the search ends.
+  /// The search ends when a step changes the cost by less than this share of the cost.
   double tolerance = 1e-10;
 };
 

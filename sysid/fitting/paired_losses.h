@@ -13,7 +13,7 @@ namespace softgrip::sysid {
 /// Mean square error of each block [mm^2]. The fit that predicts a block did not use this block.
 using BlockLosses = std::vector<double>;
 
-/// A value with its standard error and its interval.
+/// A value with its standard error and its 95 % interval.
 struct Spread {
   double value = 0;
   double standard_error = 0;
@@ -21,44 +21,45 @@ struct Spread {
   double upper = 0;
 };
 
-/// Computes a statistic of the blocks with these indices.
+/// Function that computes a statistic from the blocks with the passed indices.
 using BlockStatistic = std::function<double(std::span<const std::size_t> indices)>;
 /// Returns the statistic of each bootstrap sample (Efron 1979). A bootstrap sample consists of `blocks`
-/// blocks, drawn with replacement. Because whole blocks are drawn, correlation within a block is permitted.
-/// Equal seeds give equal samples.
-/// @param blocks  number of blocks, at least 1.
+/// blocks, drawn with replacement. Whole blocks are drawn, so the readings within a block may be correlated.
+/// Equal seeds give equal samples. @param blocks  number of blocks, at least 1.
 [[nodiscard]] std::vector<double> statistic_of_draws(std::size_t blocks, std::size_t draws,
                                                      std::uint64_t seed, const BlockStatistic& statistic);
 
-/// Returns the mean over the blocks of the difference worse - better [mm^2], with its standard error and 95 %
+/// Returns the mean of the difference worse - better over the blocks [mm^2], with its standard error and 95 %
 /// interval.
 [[nodiscard]] Spread mean_difference(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed);
-/// Returns true if a component is necessary, from the losses of the models without and with it. The lower
-/// limit of the 95 % interval of mean_difference() must be above 0, and the mean must exceed `least_mm2`.
+/// Returns true if a component of a model is necessary. The losses of the models without and with the
+/// component are compared. The lower limit of the 95 % interval of mean_difference() must be above 0, and the
+/// mean must exceed `least_mm2`.
 [[nodiscard]] bool is_missed(const BlockLosses& without, const BlockLosses& with, double least_mm2,
                              std::uint64_t seed);
-/// Returns the mean over the blocks of log(worse / better), from the bootstrap samples of mean_difference().
-/// As ratios are averaged, one block with a very poor fit does not outweigh all others. A block in which one
-/// of the losses is 0 counts as a tie.
+/// Returns the mean of log(worse / better) over the blocks, from the bootstrap samples of mean_difference().
+/// The mean of logarithms compares ratios of losses, so one block with a very poor fit does not outweigh all
+/// other blocks. A block in which one of the losses is 0 counts as a tie.
 [[nodiscard]] Spread mean_log_ratio(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed);
 /// Returns the error reduction 100 (1 - rms(after)/rms(before)) [%], from the bootstrap samples of
 /// mean_difference().
 [[nodiscard]] Spread gain_percent(const BlockLosses& before, const BlockLosses& after, std::uint64_t seed);
-/// Returns the share of the bootstrap samples in which `ours` has the lower loss than the other model. A tie
-/// counts as one half.
+/// Returns the share of the bootstrap samples in which the loss of `ours` is lower than the loss of the other
+/// model. Equal losses count as one half.
 [[nodiscard]] double winning_share(const BlockLosses& ours, const BlockLosses& other, std::uint64_t seed);
 /// Returns the square root of the mean of the losses over the blocks [mm].
 [[nodiscard]] double rmse_mm(const BlockLosses& losses);
 
-/// Mean over the blocks of the difference worse - better, and the standard error of this mean [mm^2].
+/// Mean of the difference worse - better over the blocks, and the standard error of this mean [mm^2].
 struct LossDifference {
   double mean_mm2 = 0;
   double standard_error_mm2 = 0;
 };
 [[nodiscard]] LossDifference loss_difference(const BlockLosses& worse, const BlockLosses& better);
-/// Returns true if the mean loss of `better` is lower and the 95 % interval of the difference is above 0. It
-/// is sufficient if this holds for the losses or for their logarithms. With logarithms, a block that is
-/// difficult for both models does not outweigh the other blocks.
+/// Returns true if the mean loss of `better` is below the mean loss of `worse`, and if the 95 % interval of
+/// the difference is above 0. It is sufficient if both conditions hold for the losses, or if both hold for
+/// the logarithms of the losses. With logarithms, a block that is difficult for both models does not outweigh
+/// the other blocks.
 [[nodiscard]] bool is_clearly_less(const BlockLosses& better, const BlockLosses& worse);
 
 }  // namespace softgrip::sysid

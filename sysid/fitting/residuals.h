@@ -43,8 +43,9 @@ class Residuals {
 [[nodiscard]] std::unique_ptr<Residuals> chain_residuals(const std::vector<Record>& records, FitSpace space);
 
 /// Returns residuals for a chain that consists of Bouc-Wen with exponent 1, Kelvin-Voigt, at most one delay
-/// and at most one valve lag. The sensitivities of these blocks are computed in closed form. This gives the
-/// same values as chain_residuals() but is several times faster. Returns nullptr for any other chain.
+/// and at most one valve lag. The sensitivities of these blocks are computed in closed form. The values equal
+/// those of chain_residuals(), but the computation is several times faster. Returns nullptr for any other
+/// chain.
 [[nodiscard]] std::unique_ptr<Residuals> separable_residuals(const std::vector<Record>& records,
                                                              FitSpace space);
 

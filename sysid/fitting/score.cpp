@@ -14,7 +14,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// An excursion of the pressure: it rises from rest and returns to rest.
+/// An excursion of the pressure: the interval in which the pressure rises from rest and returns to rest.
 struct Excursion {
   std::size_t begin;
   double peak_kpa;
@@ -107,7 +107,7 @@ std::vector<std::string> divergences_of(const std::vector<Score>& scores) {
     if (!score.diverges) continue;
     const bool finite = std::all_of(score.prediction_mm.begin(), score.prediction_mm.end(),
                                     [](double value) { return std::isfinite(value); });
-    sentences.push_back("the prediction of " + score.name + " diverges: it " +
+    sentences.push_back("the prediction of " + score.name + " diverges, because the prediction " +
                         (finite ? "deviates from the readings by up to " +
                                       significant(score.largest_error_mm, 3) + " " +
                                       std::string(model::name_of(score.output_unit))

@@ -1,5 +1,5 @@
 #pragma once
-// Computes the error of the prediction of a log by a model.
+// Computes the error with which a model predicts a log.
 
 #include <string>
 #include <vector>
@@ -9,7 +9,8 @@
 
 namespace softgrip::sysid {
 
-/// A prediction is bad if its RMSE exceeds this percentage of the span. The noise does not affect this limit.
+/// Percentage of the span of the readings. A prediction is bad if its RMSE exceeds this percentage. The limit
+/// does not depend on the noise of the readings.
 inline constexpr double bad_percent = 10;
 
 /// A prediction and its errors. An error is reading minus prediction.
@@ -25,7 +26,8 @@ struct Score {
   double first_cycle_rmse_mm = 0;  ///< RMSE of the first cycle; NaN if the command does not repeat
   double settled_rmse_mm = 0;      ///< RMSE of the cycles after the first; NaN if there is only one cycle
   /// True if the prediction is not finite. Also true if its RMSE exceeds the span of the readings and the
-  /// prediction is not proportional to the readings. If it is proportional, a unit is probably wrong.
+  /// prediction is not proportional to the readings. If the prediction is proportional to the readings, a
+  /// unit is probably wrong, and the prediction does not count as divergent.
   bool diverges = false;
   StartState start;
 };
@@ -35,7 +37,7 @@ struct Score {
 [[nodiscard]] Score score_of(const model::Model& model, const Record& record, const StartState& start,
                              const std::vector<double>& readings);
 
-/// Returns a sentence such as "the prediction of sp1 diverges: ..." for each score that diverges.
+/// Returns a sentence such as "the prediction of sp1 diverges: ..." for each score whose prediction diverges.
 [[nodiscard]] std::vector<std::string> divergences_of(const std::vector<Score>& scores);
 
 /// Returns the indices of the samples at which the cycles of a command begin. The first index is 0. A cycle

@@ -20,10 +20,11 @@ namespace {
 /// Maximum number of iterations from one start point.
 constexpr int search_iterations = 60;
 constexpr int chain_search_iterations = 40;
-/// Number of samples in the coarse fits, which start at many points. A larger number does not improve their
-/// result.
+/// Number of samples in the coarse fits, which start at many points. With a larger number of samples, the
+/// coarse fits do not find better minima.
 constexpr std::size_t samples_of_a_look = 4000;
-/// Ratio of an RMSE to the lowest RMSE above which the search is repeated with a larger initial damping.
+/// A search is repeated with a larger initial damping if its RMSE exceeds the lowest RMSE of all searches by
+/// this factor.
 constexpr double higher = 1.02;
 constexpr double slow_damping = 10;
 /// A minimum is refined on all samples if its RMSE is at most this multiple of the lowest RMSE.
@@ -31,7 +32,8 @@ constexpr double not_far = 1.3;
 /// Two results count as the same minimum if their distance in the coordinates of the fit is below this value.
 constexpr double same_place = 0.02;
 
-/// Reports the progress of several threads. The calls are serialised.
+/// Reports the progress of a search that runs in several threads. Only one thread at a time calls the
+/// callback.
 class ProgressReporter {
  public:
   ProgressReporter(const ShowProgress& show, std::size_t starts)
@@ -55,7 +57,8 @@ double lowest_rmse_mm(const std::vector<SearchResult>& results) {
   return lowest;
 }
 
-/// Returns, for each result, the index of the first result that lies in the same minimum of the cost.
+/// Returns, for each search result, the index of the first result that belongs to the same minimum of the
+/// cost.
 std::vector<std::size_t> places(const FitSpace& space, const std::vector<SearchResult>& results) {
   std::vector<std::size_t> firsts;
   std::vector<std::vector<double>> at;
@@ -75,7 +78,7 @@ std::vector<std::size_t> places(const FitSpace& space, const std::vector<SearchR
   return place;
 }
 
-/// Searches from all start points on thinned records.
+/// Searches from all start points, on records from which most samples were removed.
 std::vector<SearchResult> look(const SeparableSearch& few, const std::vector<FitPoint>& starts,
                                unsigned threads, const ShowProgress& progress) {
   ProgressReporter reporter(progress, starts.size());

@@ -20,21 +20,20 @@ struct Progress {
   std::string stage;  ///< name of the current task; empty: the search from many start points
 };
 
-/// Callback that receives the progress. It is called from any thread, but never concurrently, and may be
-/// empty.
+/// Callback that receives the progress; may be empty. Any thread may call the callback, but never two threads
+/// at the same time.
 using ShowProgress = std::function<void(const Progress&)>;
 
 /// Searches from all start points and returns the results in the order of the start points. A separable chain
-/// is fitted by variable projection, first on thinned records from each start point. Each different minimum
+/// is fitted by variable projection, first on thinned records from each start point. Each distinct minimum
 /// whose RMSE is at most 1.3 times the lowest RMSE is then refined on all samples. Any other chain is fitted
-/// by minimise().
-/// @param threads  number of threads; 0: one for each core.
+/// by minimise(). @param threads  number of threads; 0: one for each core.
 [[nodiscard]] std::vector<SearchResult> search(const FitSpace& space, const std::vector<Record>& records,
                                                const std::vector<FitPoint>& starts, unsigned threads,
                                                const ShowProgress& progress);
 
-/// Sorts the creep branches of a point. The time constants then have the same order (rising or falling) as
-/// those in `like_s`.
+/// Sorts the creep branches of a point by their time constants. The order (rising or falling) is that of the
+/// time constants in `like_s`.
 void order_branches(const std::vector<double>& like_s, FitPoint& point);
 
 }  // namespace softgrip::sysid

@@ -16,14 +16,14 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Rate of a branch that consists of a dashpot without a spring. Such a branch never settles, so its state
-/// begins at zero.
+/// Rate k/c of a branch that consists of a dashpot without a spring [1/s]. The creep of such a branch never
+/// settles, so its state begins at zero.
 constexpr double without_spring_hz = 1e-30;
 
 constexpr std::size_t most_branches = 8;
 
-/// Response of a branch to a pressure segment of a given duration, and its derivatives with respect to the
-/// rate of the branch.
+/// Response of a branch to a pressure segment of a given duration, and the derivatives of this response with
+/// respect to the rate of the branch.
 struct BranchWeights {
   double loss, begin, rise, bend;
   double loss_by_rate, begin_by_rate, rise_by_rate, bend_by_rate;
@@ -57,7 +57,7 @@ struct Branch {
   double by_lag = 0;
 };
 
-/// Collects rows in blocks and passes each full block to the sink.
+/// Collects rows in blocks and passes each full block to the function `sink`.
 class Rows {
  public:
   Rows(Eigen::Index columns, SeparableRecord::Sink& sink)
@@ -216,7 +216,8 @@ class Walker {
     double by_delay = 0;
     double by_lag = 0;
     if (delayed_) {
-      // A longer delay shifts the response of a time-invariant chain, so dy/d(delay) = -y'.
+      // The output y comes from a time-invariant chain. A longer delay only shifts y in time, so dy/d(delay)
+      // = -y'.
       const double g = hysteresis_.g;
       const double k = g * rate_kpa_per_s >= 0 ? rates_.growing : rates_.shrinking;
       by_delay = rate_kpa_per_s * (point_.instantaneous - point_.beta * (1 - k * std::abs(g)));

@@ -2,8 +2,8 @@
 // Simulates a separable chain in closed form, with all sensitivities. The chain consists of at most one
 // transport delay and at most one valve lag, followed by Bouc-Wen with exponent 1 and Kelvin-Voigt branches.
 //
-// With h = beta g, the hysteresis follows g' = p' - gamma p' |g| - eta |p'| g, which does not contain beta.
-// The displacement
+// The hysteretic state is h = beta g. The equation of g is g' = p' - gamma p' |g| - eta |p'| g, which does
+// not contain beta. The displacement
 //
 //   y = A p - beta g + sum_b a_b w_b + offset + sum_b u_b exp(-r_b t),   w_b' = p - r_b w_b,
 //
@@ -34,7 +34,7 @@ struct SeparableShape {
   std::size_t branches = 0;
 };
 
-/// Returns the shape of a separable model; nullopt for any other model.
+/// Returns the indices of the blocks of a separable model; nullopt if the model is not separable.
 [[nodiscard]] std::optional<SeparableShape> separable_shape(const model::Model& model);
 
 /// The parameters of a separable chain. The names are the symbols in the equations at the top of this file.
@@ -52,8 +52,8 @@ struct SeparablePoint {
 
 [[nodiscard]] SeparablePoint to_separable(const SeparableShape& shape, const FitPoint& point);
 
-/// Indices of the columns in the rows of one record. The linear columns come first. Each of them contains the
-/// factor that its linear parameter multiplies.
+/// Indices of the columns of one record. The columns of the linear parameters come first. Such a column
+/// contains the factor of its parameter in the equation of y.
 struct SeparableColumns {
   std::size_t branches = 0;
   bool has_start = false;  ///< true: there are columns for unsettled creep and peak
@@ -67,8 +67,8 @@ struct SeparableColumns {
     return offset() + 1 + static_cast<Eigen::Index>(b);
   }
   [[nodiscard]] Eigen::Index linear() const { return has_start ? unsettled(branches) : offset() + 1; }
-  // The columns from here on contain the sensitivities of y to the nonlinear parameters, with the linear
-  // parameters held constant.
+  // From this index on, the columns contain the sensitivities of y to the nonlinear parameters, with the
+  // linear parameters held constant.
   [[nodiscard]] Eigen::Index growing() const { return linear(); }
   [[nodiscard]] Eigen::Index shrinking() const { return linear() + 1; }
   [[nodiscard]] Eigen::Index rate(std::size_t b) const { return linear() + 2 + static_cast<Eigen::Index>(b); }
@@ -86,9 +86,9 @@ class SeparableRecord {
   [[nodiscard]] const Record& record() const noexcept { return record_; }
   [[nodiscard]] const SeparableColumns& columns() const noexcept { return columns_; }
 
-  /// Receives up to `block_rows` consecutive rows, one per reading. The columns are linear() or all() of
-  /// those in SeparableColumns, followed by one more column. This last column is the reading, or prediction
-  /// minus reading if the sensitivities are included.
+  /// Function that receives up to `block_rows` consecutive rows, one per reading. A row consists of the
+  /// columns that SeparableColumns::linear() or all() counts, and of one more column. This last column is the
+  /// reading, or prediction minus reading if the sensitivities are included.
   class Sink {
    public:
     virtual ~Sink() = default;

@@ -167,7 +167,7 @@ MatrixXd SeparableSearch::coordinate_map(const SeparablePoint& point, std::size_
     const Coordinate& q = coordinates_[i];
     auto column = map.col(static_cast<Index>(i));
     switch (q.kind) {
-      case Coordinate::Kind::growing:  // eta is constant here, so gamma - eta changes by the same amount
+      case Coordinate::Kind::growing:  // eta is constant here, so gamma - eta changes as much as gamma + eta
         column(c.growing()) = column(c.shrinking()) = q.scale;
         break;
       case Coordinate::Kind::eta:

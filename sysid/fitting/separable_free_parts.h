@@ -1,6 +1,6 @@
 #pragma once
-// Assigns the free parameters of a separable chain. Include this header only in separable_search and
-// separable_coordinates.
+// Maps the parameters of a separable chain to their indices in the fit space. Include this header only in
+// separable_search and separable_coordinates.
 
 #include <algorithm>
 #include <utility>

@@ -15,7 +15,8 @@ using model::Segment;
 using Number = Dual<double>;
 
 /// Assigns an index to each distinct duration. A duration is compared only with the last 8 distinct
-/// durations. A log either alternates between a few durations, or it has many different ones.
+/// durations. This is sufficient, because a log either alternates between a few durations or has many
+/// different durations.
 class DurationTable {
  public:
   explicit DurationTable(std::vector<double>& durations) : durations_(durations) {}
@@ -66,7 +67,7 @@ void append_straight(PressureWalk& walk, double begin_kpa, double end_kpa, doubl
   walk.stretches.push_back(s);
 }
 
-/// Appends the linear pieces of the input pressure to `walk`. The model chain has no delay.
+/// Appends the linear pieces of the input pressure to `walk`, for a chain without delay.
 void append_undelayed(PressureWalk& walk, const std::vector<Piece>& pieces, DurationTable& durations) {
   double last = walk.first_kpa;
   for (const Piece& piece : pieces) {

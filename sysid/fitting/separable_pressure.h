@@ -1,6 +1,6 @@
 #pragma once
-// Computes the pressure at the actuator, behind delay and lag, as a sequence of segments. Also computes its
-// sensitivity to the time constant of the lag.
+// Computes the pressure at the actuator, behind delay and lag, as a sequence of segments. Also computes the
+// sensitivity of this pressure to the time constant of the lag.
 
 #include <cstdint>
 #include <limits>

@@ -15,7 +15,8 @@ namespace {
 /// a thread.
 constexpr std::size_t samples_worth_one = 4 * samples_worth_a_thread;
 
-/// Returns a matrix M. The rows of the Jacobian are the full columns of the record multiplied by M.
+/// Returns a matrix M that converts the columns of the chain to derivatives with respect to the fit
+/// parameters. A row of the Jacobian is a row of the full columns of the record, multiplied by M.
 Eigen::MatrixXd mapping(const SeparableShape& shape, const SeparableColumns& c, const FitSpace& space,
                         const FitPoint& point, std::span<const double> z, std::size_t record) {
   const auto& blocks = point.model.blocks;

@@ -105,8 +105,9 @@ NormalEquations SeparableSearch::normal(const SeparablePoint& point, const Linea
       }
     }
   }
-  // The curvature of the reduced problem is curvature - cross' G^-1 cross, where G contains the free linear
-  // parameters.
+  // Eliminates the free linear parameters. The curvature of the reduced problem is curvature - cross' G^-1
+  // cross. G is the Gram matrix of the columns of the free linear parameters. `cross` contains the products
+  // of these columns and the columns of the nonlinear parameters.
   std::vector<Index> free;
   for (Index i = 0; i < n; ++i) {
     if (!linear.at_bound[static_cast<std::size_t>(i)]) free.push_back(i);
@@ -157,8 +158,8 @@ struct SeparableSearch::Descending {
 SearchResult SeparableSearch::run(const FitPoint& start, int most_iterations, double damping) const {
   const SeparablePoint point = to_separable(shape_, start);
   const Descending problem{*this};
-  // The steps are limited, because the derivatives are not valid for larger changes. A rate may change by a
-  // factor of at most e^2, and another coordinate by at most twice its range.
+  // The steps are limited, because the derivatives describe the loss only near the current point. A rate may
+  // change by a factor of at most e^2, and another coordinate by at most twice its range.
   const auto end = descend(problem, problem.at(point, coordinates_of(point)),
                            {.most_steps = most_iterations,
                             .most_trials = 12,

@@ -21,18 +21,18 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double used_share = 0.05, used_at_least_s = 2, used_at_most_share = 0.5;
-/// Prior standard deviation of the unsettled creep of a branch, as a share of the settled creep of this
-/// branch over the range of the drive.
+/// Prior standard deviation of the unsettled creep of a branch, divided by the settled creep of this branch
+/// over the range of the drive.
 constexpr double unsettled_share = 0.3;
 /// An initial state at rest is rejected if the residual under this assumption exceeds this number of standard
 /// deviations.
 constexpr double rejected_at = 3;
 /// Duration after the first sample from which the speed of the drive is computed [s].
 constexpr double speed_over_s = 0.1;
-/// Numbers of steps of the search for the last reversals: on the first grid, and of halvings of the grid step
-/// after it.
+/// Two numbers of the search for the last reversals of the pressure: the number of steps of the first grid,
+/// and how often the grid step is halved afterwards.
 constexpr int grid_steps = 5, halvings = 4;
-/// The sum of the autocorrelation ends at the first lag whose value is below this limit.
+/// The autocorrelation is summed up to the first lag at which it is below this limit.
 constexpr double least_correlation = 0.05;
 /// Number of independent readings that is assumed before a residual has been computed.
 constexpr double independent_at_first = 5;
@@ -58,8 +58,8 @@ double independent_among(const Eigen::VectorXd& residual) {
   return std::max(1.0, static_cast<double>(n) / (1 + 2 * sum));
 }
 
-/// Weight of the readings relative to the priors. It depends on the mean square of the residual and on the
-/// effective number of independent readings.
+/// Weight of the readings relative to the priors. This weight depends on the mean square of the residual and
+/// on the effective number of independent readings.
 struct Trust {
   double mean_square_mm2 = 0;
   double independent = 1;
@@ -106,7 +106,8 @@ class StartSearch {
     return rest;
   }
 
-  /// Returns the readings minus the prediction from `start`, with zero offset and settled creep.
+  /// Returns the readings minus the prediction. The prediction begins at the state `start`, with zero offset
+  /// and settled creep.
   [[nodiscard]] Eigen::VectorXd unexplained(StartState start) const {
     start.offset_mm = 0;
     std::fill(start.unsettled_mm.begin(), start.unsettled_mm.end(), 0.0);
@@ -176,8 +177,8 @@ class StartSearch {
       best = best_of(around(best.start, peak_step, valley_step), best.left);
     }
     if (!under_pressure_) return best;
-    // A single stroke may not determine the initial state. The noise would then select a state, so the usual
-    // state is preferred.
+    // A single stroke may not contain enough information to determine the initial state. The noise would then
+    // select a state. Therefore the steady cycle over the range of the drive is preferred.
     const Trial usual = with_creep(turned(rest, highest_kpa_, lowest_kpa_), best.left);
     return usual.cost < best.cost + square(rejected_at) ? usual : best;
   }

@@ -2,18 +2,19 @@
 // Estimates the start state of a unit that was left out of the fit.
 //
 // A unit is a run, or a segment of a run. The start state of the unit and the offset of the sensor are
-// estimated, under priors, from the readings of its first 5 % (at least 2 s, at most half of the unit). No
-// other reading is used. The drive of the whole unit is known, because it is the input of the prediction.
+// estimated from the readings of the first 5 % of the unit (at least 2 s, at most half of the unit), with
+// priors. No other reading is used. The drive of the whole unit is known, because it is the input of the
+// prediction.
 //
 // The estimate uses the following priors. The offset has no prior, so that a shift of all readings changes
-// the estimated offset but no error. The last reversals of the pressure are assumed within the range of the
-// unit's drive. The unsettled creep of a branch has a standard deviation of 0.3 times the settled creep of
-// the branch over that range.
+// the estimated offset, but not the errors of the prediction. The last reversals of the pressure are assumed
+// within the range of the unit's drive. The unsettled creep of a branch has a standard deviation of 0.3 times
+// the settled creep of the branch over that range.
 //
 // Record::start determines which quantities are estimated. For a start at rest, this is only the offset. For
-// an unknown start, they are offset, hysteresis and creep. In the automatic mode, the unit is assumed to
-// begin at rest. This assumption is rejected if its residual exceeds 3 standard deviations of the noise and
-// of a model error of 5 % of the motion.
+// an unknown start, these quantities are offset, hysteresis and creep. In the automatic mode, the unit is
+// assumed to begin at rest. This assumption is rejected if its residual exceeds 3 standard deviations of the
+// noise and of a model error of 5 % of the motion.
 //
 // A single stroke does not determine the start state under pressure. If the first readings do not distinguish
 // between possible start states, the hysteresis is assumed to be in its steady cycle over the range of the

@@ -15,15 +15,15 @@ namespace softgrip::sysid {
 inline constexpr double valve_settling_s = 10;
 inline constexpr double creep_settling_s = 1e6;
 
-/// Largest duration of the pressure's motion at its arrival speed before the first sample [s].
+/// Largest assumed duration of the motion at the arrival speed before the first sample [s].
 inline constexpr double longest_arrival_s = 2;
 
-/// Number of cycles between valley and peak that are simulated before the first sample. After them, the
-/// hysteresis is in its steady cycle.
+/// Number of cycles between valley and peak that are simulated before the first sample. After these cycles,
+/// the hysteresis is in its steady cycle.
 inline constexpr int cycles_before = 15;
 
-/// Returns the pressure [kPa] at which the motion to the first sample began. It is not beyond the last
-/// reversal. If there is no arrival speed, it is the first pressure.
+/// Returns the pressure [kPa] at which the motion to the first sample began. The returned pressure is not
+/// beyond the last reversal. If the arrival speed is 0, the function returns the first pressure.
 inline double arrived_from_kpa(double first_kpa, double last_turn_kpa, double arrival_kpa_per_s) {
   const double from_kpa = first_kpa - arrival_kpa_per_s * longest_arrival_s;
   return arrival_kpa_per_s > 0 ? std::clamp(from_kpa, std::min(last_turn_kpa, first_kpa), first_kpa)
@@ -31,9 +31,10 @@ inline double arrived_from_kpa(double first_kpa, double last_turn_kpa, double ar
 }
 
 /// Brings a chain to the state at the start of a record, with the reversals in its StartState. The chain
-/// moves from rest at the peak to the valley, and from there to the first pressure. At the first pressure, it
-/// settles, or it arrives with the arrival speed. If there are no reversals, the chain is at rest at the
-/// first pressure.
+/// moves from rest at the peak to the valley, and from there to the first pressure. If the arrival speed is
+/// 0, the chain settles at the first pressure. Otherwise the chain settles at an earlier pressure and moves
+/// from there to the first pressure with the arrival speed. If there are no reversals, the chain is at rest
+/// at the first pressure.
 template <class T>
 void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kpa, const StartState& state) {
   const double first_kpa = record.drive_kpa.front();

@@ -9,9 +9,9 @@
 namespace softgrip::sysid::health {
 namespace {
 
-/// Limit of the CUSUM before a single value that raises the alarm, as a share of `pause_learning`. If the
-/// CUSUM exceeded this limit, the change starts where the CUSUM starts. Otherwise the change starts at the
-/// single value.
+/// Limit that decides where a change begins if a single value raises the alarm, as a share of
+/// `pause_learning`. If the CUSUM before this value exceeded the limit, the change begins where the CUSUM
+/// begins. Otherwise the change begins at the single value.
 constexpr double on_its_way_share = 0.6;
 
 /// Returns the limit that the magnitude of a standard normal value exceeds on average once in `once_in`

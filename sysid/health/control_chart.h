@@ -1,6 +1,6 @@
 #pragma once
-// A self-starting control chart: detects a change of the values of a healthy finger without a given
-// reference.
+// A self-starting control chart: detects a change of an indicator of a finger, and needs no reference that is
+// specified in advance.
 //
 // The chart compares every value with the mean of the earlier values (running_reference.h), in units of the
 // standard deviation of these values. The chart transforms the resulting Student's t value to a standard
@@ -14,10 +14,10 @@
 //
 // While a CUSUM exceeds `pause_learning`, the chart adds no values to the reference. Otherwise a change soon
 // after the start would become part of the reference before it is detected. The mean of a few reference
-// values has an error, and this error shifts all values that are compared with the mean. While learning is
-// paused, the allowance of the CUSUM is therefore larger. The increase is one standard deviation divided by
-// the square root of the number of reference values. After an alarm, the chart removes the values since the
-// change from the reference.
+// values has an error, and this error shifts all values that are compared with the mean. Therefore, the
+// allowance of the CUSUM is increased while learning is paused. The increase is one standard deviation
+// divided by the square root of the number of reference values. After an alarm, the chart removes the values
+// since the change from the reference.
 //
 // The weather lasts for days, so the values of neighbouring days are correlated. A CUSUM of correlated values
 // drifts farther than a CUSUM of independent values. The chart therefore estimates the lag-one correlation of
@@ -29,11 +29,11 @@
 //
 // 200,000 charts of independent values were simulated, with limits for a mean of 32850 values between two
 // false alarms. Within the first 90 values, 1.2 times as many charts alarmed as these limits imply. These
-// charts did not estimate the correlation. With the estimate, fewer charts alarm. A shift by 3 standard
-// deviations after 8 healthy values was detected within 30 values in 59 of 100 cases. A shift by 3 standard
-// deviations after 20 healthy values was detected in 95 of 100 cases, with a mean delay of 10 values. All
-// charts detected a shift by 6 standard deviations after 8 values (delay: 9 values) and a shift by 5 standard
-// deviations after 20 values (delay: 4 values).
+// charts did not estimate the correlation. With the estimate of the correlation, fewer charts alarm. A shift
+// by 3 standard deviations after 8 healthy values was detected within 30 values in 59 of 100 cases. A shift
+// by 3 standard deviations after 20 healthy values was detected in 95 of 100 cases, with a mean delay of 10
+// values. All charts detected a shift by 6 standard deviations after 8 values (delay: 9 values) and a shift
+// by 5 standard deviations after 20 values (delay: 4 values).
 
 #include <cstddef>
 #include <map>
@@ -106,8 +106,8 @@ class ControlChart {
 
  private:
   [[nodiscard]] std::optional<double> excess_of(const ChartValues& values) const;
-  /// Updates both tests. @param count, persistence  number of reference values and their lag-one correlation,
-  /// averaged over the recipes of the point.
+  /// Updates the CUSUM and the test for single large values. @param count, persistence  number of reference
+  /// values and their lag-one correlation, averaged over the recipes of the point.
   void judge(double z, double count, double persistence);
   void learn(const ChartValues& values);
   void measure_change();

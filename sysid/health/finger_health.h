@@ -53,7 +53,7 @@ struct HealthOptions {
 };
 
 struct HealthPoint {
-  /// The day, such as "2026-11-22", or the name of the run.
+  /// Label of the point: the day, such as "2026-11-22", or the name of the run.
   std::string label;
   std::size_t grips = 0;                                  ///< number of runs in this point
   std::size_t epoch = 0;                                  ///< number of maintenance records before this point
@@ -77,8 +77,8 @@ struct HealthAlarm {
   /// Names of the peer fingers if the difference of the finger from them has changed. The list is empty if
   /// the finger's own values have changed.
   std::vector<std::string> beside;
-  /// Index of the point at which the change of the difference was first reported, before it was attributed to
-  /// a finger. Equal to `noticed` if there was no such report.
+  /// Index of the point at which the change of the difference was first reported, before the change was
+  /// attributed to a finger. Equal to `noticed` if there was no such report.
   std::size_t warned = 0;
 };
 
@@ -98,7 +98,7 @@ struct HealthReference {
 };
 
 enum class FingerState : std::uint8_t {
-  learning,  ///< since the last maintenance record, too few points to judge any indicator
+  learning,  ///< since the last maintenance record, there are too few points to judge any indicator
   steady,
   alarm,
 };
@@ -107,7 +107,8 @@ enum class FingerState : std::uint8_t {
 struct FingerHealth {
   std::string finger;
   FingerState state = FingerState::learning;
-  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of the indicators that are listed in mm
+  model::OutputUnit output_unit = model::OutputUnit::mm;  ///< output unit of the finger, which replaces mm in
+                                                          ///< the units of the indicators
   std::vector<HealthPoint> points;
   std::vector<HealthAlarm> alarms;  ///< alarms of the whole history, ordered by the time of detection
   /// Differences from the peer fingers that have changed since the last maintenance record and whose change

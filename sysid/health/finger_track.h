@@ -41,7 +41,7 @@ struct FingerTrack {
 [[nodiscard]] FingerTrack track_of(const std::string& finger, const std::vector<ScoredRun>& runs,
                                    const std::vector<Note>& notes, const ScoreBase& base, bool by_day);
 
-/// Sets `moment` of every group. Returns the number of different moments of all fingers.
+/// Sets `moment` of every group. Returns the number of distinct moments over all fingers.
 std::size_t place_in_time(std::vector<FingerTrack>& tracks);
 
 }  // namespace softgrip::sysid::health

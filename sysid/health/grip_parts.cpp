@@ -9,9 +9,9 @@ namespace softgrip::sysid::health {
 namespace {
 
 constexpr double moving_share = 0.005;
-/// Distance below which a finger counts as clear of the object. Contact is reported some time after the
-/// finger has touched the object, and a released finger leaves it at an unknown displacement. The finger is
-/// therefore clear of the object only if its reading is below the reading at contact by this distance.
+/// Distance by which the reading must be below the reading at contact, so that the finger counts as clear of
+/// the object. The distance is necessary for two reasons: a contact is reported some time after the finger
+/// has touched the object, and a released finger leaves the object at an unknown displacement.
 constexpr double away_mm = 1.0;
 constexpr double away_share = 0.1;
 
@@ -32,8 +32,9 @@ Phase after(const RecordedEvent& event, Phase phase) {
   return Phase::lost;
 }
 
-/// Returns the time from which samples before HOLDING may not be free motion [s]. If a contact was reported
-/// before `holding_s`, this is `holding_s`. Otherwise it is the start of the step that ended in HOLDING.
+/// Returns the time from which it is uncertain that the samples before HOLDING are free motion [s]. If a
+/// contact was reported before `holding_s`, returns `holding_s`. Otherwise returns the start of the step that
+/// ended in HOLDING.
 double unsure_from(const std::vector<RecordedEvent>& events, const std::string& channel, double holding_s) {
   double step_s = 0;
   for (const RecordedEvent& event : events) {
@@ -65,8 +66,8 @@ void forget_approach(const sysid::Log& log, double contact_s, std::vector<Part>&
     at[i - 1] = Part::neither;
 }
 
-/// Assigns the samples of one channel to parts of the grip, in order of time, from the events of this
-/// channel.
+/// Assigns each sample of one channel to a part of the grip. The samples must be passed in order of time. The
+/// events of the channel determine the parts.
 class Walk {
  public:
   Walk(const Recording& recording, const sysid::Log& log, double full_kpa)

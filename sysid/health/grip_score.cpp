@@ -19,7 +19,7 @@ namespace {
 using sysid::HealthNumber;
 
 /// Smallest range and smallest RMS speed of a motion from which gain and lag are computed. The range is a
-/// share of the displacement at full pressure. The speed is such a share per second.
+/// share of the displacement at full pressure. The speed is a share of this displacement per second.
 constexpr double least_motion = 0.1;
 constexpr double least_speed_per_s = 0.02;
 /// A motion has a direction only if its speed is at least this value [share of the displacement at full
@@ -28,16 +28,18 @@ constexpr double still_per_s = 0.01;
 /// The loop width is computed only from a return with at least this speed [share of the displacement at full
 /// pressure, per second]. Slower samples are creep towards rest.
 constexpr double returning_per_s = 0.05;
-/// An indicator is computed only if its samples cover at least this time [s].
+/// An indicator is computed only if its samples cover at least this duration [s].
 constexpr double least_rest_s = 0.1;
 constexpr double least_motion_s = 0.5;
 constexpr double least_return_s = 0.03;
 constexpr double least_hold_s = 1.0;
 /// The contact indicator is computed from the readings up to this time after contact [s].
 constexpr double touch_window_s = 0.1;
-/// Time after the last change of the command that is not evaluated, because the valve is still settling [s].
+/// Duration after the last change of the command in which no sample is evaluated, because the valve is still
+/// settling [s].
 constexpr double settling_s = 0.3;
-/// The loop width is computed where the predicted displacement is between these shares of the free stroke.
+/// The loop width is computed from the samples whose predicted displacement is between these shares of the
+/// free stroke.
 constexpr double loop_lower = 0.15, loop_upper = 1 - loop_lower;
 
 /// Samples of a run, and the prediction of the baseline model for each sample.

@@ -6,8 +6,8 @@
 // that is free motion. The creep is computed from the longest segment of free motion with a constant command.
 // An indicator is absent if the recording lacks the samples for this indicator.
 // Divides a recorded grip into rest, free motion and holding. The indicators of the finger are computed from
-// the free motion. The indicators of its pressure line are computed from the time in which the part is held.
-// All other samples are not scored.
+// the free motion. The indicators of its pressure line are computed from the time in which the finger holds
+// an object. All other samples are not scored.
 
 #include <array>
 #include <cstddef>
@@ -54,7 +54,8 @@ struct GripScore {
 [[nodiscard]] double least_difference(sysid::HealthNumber number, const ScoreBase& base);
 
 enum class Part : std::uint8_t {
-  /// Neither rest, free motion nor HOLDING; for example in contact before HOLDING, or after a fault.
+  /// samples that are neither rest, free motion nor HOLDING, for example in contact before HOLDING, or after
+  /// a fault
   neither,
   rest,  ///< samples of a vented finger before its first motion
   free,
@@ -64,7 +65,7 @@ enum class Part : std::uint8_t {
 struct GripParts {
   std::vector<Part> at;  ///< part of the grip to which each sample belongs
   /// Times of events [s]; NaN if the recording has no such event.
-  double began_s = std::numeric_limits<double>::quiet_NaN();    ///< time of the first step
+  double began_s = std::numeric_limits<double>::quiet_NaN();    ///< time of the first step of the sequence
   double contact_s = std::numeric_limits<double>::quiet_NaN();  ///< time of the first contact
   double holding_s = std::numeric_limits<double>::quiet_NaN();  ///< time of the first HOLDING
 };

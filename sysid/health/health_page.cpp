@@ -35,8 +35,8 @@ bool has_days(const FingerHealth& health) {
                      [](const HealthPoint& point) { return day_of(point.label).has_value(); });
 }
 
-/// Returns the horizontal position of a point in the charts. It is the number of days since the first point
-/// if the labels are days. Otherwise it is the index of the point.
+/// Returns the horizontal position of a point in the charts. If the labels are days, the position is the
+/// number of days since the first point. Otherwise the position is the index of the point.
 double place_of(const FingerHealth& health, std::size_t point) {
   const auto first = day_of(health.points.front().label), now = day_of(health.points[point].label);
   if (!first || !now) return static_cast<double>(point);
@@ -63,8 +63,8 @@ void add_reference(const FingerHealth& health, std::size_t number, sysid::Chart&
   const auto& reference = health.references[number];
   if (!reference || reference->points < 2) return;
   sysid::Series band;
-  band.label = reference->slope ? "reference at this temperature, ± 3 standard deviations"
-                                : "reference since the last maintenance, ± 3 standard deviations";
+  band.label = reference->slope ? "reference value at this temperature, ± 3 standard deviations"
+                                : "reference value since the last maintenance, ± 3 standard deviations";
   band.style = sysid::Series::Style::band;
   band.colour = sysid::Colour::faint;
   for (std::size_t p = 0; p < health.points.size(); ++p) {
@@ -121,7 +121,7 @@ std::optional<sysid::Chart> chart_of(const FingerHealth& health, std::size_t num
 std::optional<sysid::Chart> chart_beside(const FingerHealth& health, std::size_t number) {
   const sysid::HealthNumberInfo& info = sysid::health_number_infos[number];
   sysid::Series series;
-  series.label = "deviation of the difference from its reference value";
+  series.label = "difference from the other fingers, minus the reference value of this difference";
   series.style = sysid::Series::Style::points;
   series.width = 2;
   for (std::size_t p = 0; p < health.points.size(); ++p) {
@@ -145,13 +145,13 @@ std::string slope_text(const FingerHealth& health, std::size_t number) {
   const TemperatureSlope& slope = *health.references[number]->slope;
   std::string text = std::string(info.title) + ": " + significant(slope.per_c, 3) + " " +
                      model::in_unit(info.unit, health.output_unit) + " per °C, standard error " +
-                     significant(slope.standard_error, 2) + ", measured from " + fixed(slope.lowest_c, 1) +
-                     " to " + fixed(slope.highest_c, 1) + " °C";
+                     significant(slope.standard_error, 2) + ", measured at temperatures from " +
+                     fixed(slope.lowest_c, 1) + " to " + fixed(slope.highest_c, 1) + " °C";
   const auto& now_c = health.points.back().temperature_c;
   if (now_c && (*now_c < slope.lowest_c || *now_c > slope.highest_c))
     text += "; the temperature of the last point, " + fixed(*now_c, 1) +
-            " °C, is outside this range, so half of the extrapolated correction counts as uncertainty of the "
-            "correction";
+            " °C, is outside this temperature range. Half of the extrapolated correction therefore counts as "
+            "uncertainty of the correction";
   return text;
 }
 
@@ -177,8 +177,8 @@ void add_allowances(sysid::Page& page, const FingerHealth& health, const std::ve
         "The temperature is recorded, but no indicator is known to depend on the temperature.");
   lines.emplace_back(
       has_peers(health)
-          ? "If the other fingers show a change in the same recordings, too, this change is not attributed "
-            "to this finger."
+          ? "If a change also appears at the other fingers in the same recordings, the change is not "
+            "attributed to this finger."
           : "The same recordings contain no other healthy finger for a comparison. An unrecorded change of "
             "the environment, such as temperature, may therefore look like a change of this finger.");
   page.list(lines);
@@ -195,7 +195,7 @@ void add_suspicion(sysid::Page& page, const Suspicion& suspicion, const std::str
     page.list(suspect.next_steps);
   }
   if (!suspicion.advice.empty()) page.list(suspicion.advice);
-  page.paragraph("Record the commissioning experiment again, and diagnose the change with this command:");
+  page.paragraph("To confirm the cause, record the commissioning experiment again and run this command:");
   page.code(settling_command(baseline));
 }
 
@@ -228,7 +228,7 @@ sysid::Page health_page(const FingerHealth& health, const Suspicion& suspicion, 
                              significant(source.base.full_mm, 4) + " " +
                              std::string(name_of(health.output_unit)) + " at this pressure"},
        {"false alarms", "on average one in " + significant(source.options.false_alarm_points, 4) +
-                            " points of a healthy finger, over all indicators"},
+                            " points of a healthy finger, counted over all indicators"},
        {"limits", "CUSUM " + significant(limits.cusum, 3) + " with allowance " +
                       significant(limits.allowance, 2) + ", single value " + significant(limits.single, 3) +
                       " standard deviations"}});
@@ -248,8 +248,8 @@ sysid::Page health_page(const FingerHealth& health, const Suspicion& suspicion, 
     if (auto beside = chart_beside(health, i)) {
       charts.push_back(std::move(*beside));
       caption +=
-          " Below: difference from the other fingers in the same recordings, minus the reference value of "
-          "this difference.";
+          " Lower chart: difference from the other fingers in the same recordings, minus the reference value "
+          "of this difference.";
     }
     page.figure({std::string(info.id), caption, sysid::stacked(std::move(charts))});
   }

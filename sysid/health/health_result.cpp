@@ -36,7 +36,7 @@ Fields alarm_fields(const FingerHealth& health, const HealthAlarm& alarm) {
           {"change", "change", number(alarm.change, 3, model::in_unit(info.unit, health.output_unit))},
           {"since", "since", health.points[alarm.since].label},
           {"noticed", "noticed", health.points[alarm.noticed].label},
-          {"grips_until_noticed", "grips until then", alarm.grips},
+          {"grips_until_noticed", "grips until the detection", alarm.grips},
           {"active", "active", active},
           {"stands", active},
           {"beside", alarm.beside},

@@ -1,7 +1,7 @@
 #pragma once
 // States the fields of the result of `softgrip health`. health.json contains all fields, and the pages of the
-// fingers show some of them in tables. User programs, `softgrip status`, `softgrip doctor` and Prometheus
-// read health.json. docs/how-to/watch-a-finger.md lists its keys.
+// fingers show some of these fields in tables. User programs, `softgrip status`, `softgrip doctor` and
+// Prometheus read health.json. docs/how-to/watch-a-finger.md lists its keys.
 
 #include "base/result/result.h"
 #include "base/time.h"
@@ -9,12 +9,12 @@
 
 namespace softgrip::sysid::health {
 
-/// Name of the file in the output folder.
+/// Name of the result file in the output folder.
 inline constexpr const char* health_file = "health.json";
 
 /// Returns the fields of an alarm of the finger.
 [[nodiscard]] result::Fields alarm_fields(const FingerHealth& health, const HealthAlarm& alarm);
-/// Returns the latest value of an indicator of the finger, and its reference.
+/// Returns the latest value of an indicator of the finger, and the reference of this indicator.
 [[nodiscard]] result::Fields number_fields(const FingerHealth& health, std::size_t number);
 /// Returns the fields of one finger.
 [[nodiscard]] result::Fields fields_of(const FingerHealth& health, const Suspicion& suspicion);

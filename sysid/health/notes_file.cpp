@@ -22,7 +22,11 @@ bool looks_like(const std::string& text, std::string_view shape) {
 std::string action_of(document::MapReader& reader) {
   const std::optional<std::string> deprecated = reader.optional_text("mended");
   if (!deprecated) return reader.text("action");
-  if (reader.optional_text("action")) reader.report("mended", "this repeats action", "action alone");
+  if (reader.optional_text("action"))
+    reader.report(
+        "mended",
+        "this key is the deprecated name of the key action, and the note already contains the key action",
+        "only the key action");
   return *deprecated;
 }
 

@@ -13,8 +13,8 @@ namespace {
 /// Smallest log likelihood ratio with which a change of the difference is attributed to a finger: odds of 20
 /// to 1.
 const double sure = std::log(20.0);
-/// Maximum number of a finger's values that are averaged since a change, and before it. The most recent
-/// values are used.
+/// Maximum numbers of values of a finger that are averaged after a change, and before the change. If there
+/// are more values, the most recent ones are used.
 constexpr std::size_t points_since = 3, points_before = 10;
 
 const RunningReference* longest(const ControlChart& chart) {
@@ -174,7 +174,8 @@ void NumberWatch::add_beside(std::size_t finger, std::size_t moment) {
   Watched& watched = watched_[finger];
   PeerFingers peers = peers_of(finger);
   if (peers != watched.peers) {
-    // After an alarm, the comparison that raised the alarm is kept.
+    // After an alarm of the finger, its chart with the earlier peer fingers is kept, because this chart may
+    // have raised the alarm.
     if (!watched.alarm) compare_again(finger, std::move(peers));
     return;
   }
@@ -361,7 +362,7 @@ void NumberWatch::close(std::size_t finger) {
     }
   }
   if (!watched.alarm) return;
-  // The size of the change also includes the points after its detection.
+  // The size of the change is computed from the points after its detection, too.
   const auto& now = watched.alarm->beside.empty() ? watched.own.alarm() : watched.beside.alarm();
   if (now) watched.alarm->change = now->change;
   health.alarms.push_back(*watched.alarm);

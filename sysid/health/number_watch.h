@@ -16,8 +16,8 @@ namespace softgrip::sysid::health {
 
 class NumberWatch {
  public:
-  /// @param number  index of the indicator. @param tracks  after place_in_time(). They must outlive this
-  /// object, which adds alarms, references and standard normal values to them.
+  /// @param number  index of the indicator. @param tracks  tracks that place_in_time() has processed. They
+  /// must outlive this object, which adds alarms, references and standard normal values to them.
   NumberWatch(std::size_t number, std::vector<FingerTrack>& tracks, const HealthOptions& options);
 
   /// Processes all points of all fingers in order of time and returns the shared changes. Must be called only
@@ -25,18 +25,21 @@ class NumberWatch {
   [[nodiscard]] std::vector<SharedChange> run(std::size_t moments);
 
  private:
-  /// The peer fingers of a finger. Each has its index and the number of its maintenance records so far.
+  /// The peer fingers of a finger. An element contains the index of a peer finger and the number of its
+  /// maintenance records so far.
   using PeerFingers = std::vector<std::pair<std::size_t, std::size_t>>;
 
   struct Watched {
     ControlChart own, beside;
-    /// Index in the health of the finger of each point in the own chart and in the difference chart.
+    /// For each point in the own chart and in the difference chart, its index in the list of points of the
+    /// finger.
     std::vector<std::size_t> own_at{}, beside_at{};
     PeerFingers peers{};
     std::size_t epoch = 0;
     std::size_t next = 0;  ///< index of the next point of the finger to be added
     std::optional<HealthAlarm> alarm{};
-    /// Index of the last shared change since the last maintenance record.
+    /// Index of the newest shared change; empty if there was no shared change since the last maintenance
+    /// record.
     std::optional<std::size_t> shared{};
     /// Temperature slope of each recipe since the last maintenance record, and largest standard deviation in
     /// this time. A shared change does not reset these values.
@@ -53,8 +56,8 @@ class NumberWatch {
   [[nodiscard]] bool is_shared(std::size_t finger) const;
   void raise(std::size_t finger, bool beside);
   void share(std::size_t finger);
-  /// Ends the time between two maintenance records of a finger: stores its differences and its alarm in the
-  /// health of the finger.
+  /// Ends an epoch of a finger, which is the time between two maintenance records. Stores the differences and
+  /// the alarm of this epoch in the health of the finger.
   void close(std::size_t finger);
   [[nodiscard]] HealthAlarm alarm_of(std::size_t finger, bool beside) const;
 
@@ -62,8 +65,8 @@ class NumberWatch {
   [[nodiscard]] std::vector<std::string> names_of(const PeerFingers& peers) const;
   [[nodiscard]] ChartValues difference_at(std::size_t finger, std::size_t point,
                                           const PeerFingers& peers) const;
-  /// Stores, for each point of the finger, the deviation of its difference from the reference of the
-  /// difference.
+  /// Stores, for each point of the finger, how much the difference from the peer fingers deviates from the
+  /// reference of this difference.
   void note_differences(std::size_t finger);
   void compare_again(std::size_t finger, PeerFingers peers);
 

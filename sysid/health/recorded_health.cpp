@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Version of the score computation. It is a prefix of the id of the baseline, so scores of earlier versions
-/// are not used.
+/// Version of the score computation. This version is a prefix of the id of the baseline, so scores of earlier
+/// versions are not used.
 constexpr const char* scoring = "1-";
 constexpr std::size_t id_letters = 12;
 

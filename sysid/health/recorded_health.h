@@ -21,7 +21,7 @@ struct HealthQuestion {
   std::string baseline;
   std::vector<Note> notes;
   HealthOptions options;
-  std::string scores;  ///< scores from an earlier call, as text; the recordings in it are not read
+  std::string scores;  ///< scores from an earlier call, as text; the recordings in this text are not read
   /// Called with a text that states the progress; may be empty.
   std::function<void(const std::string&)> progress = {};
 };

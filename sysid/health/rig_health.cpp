@@ -54,16 +54,16 @@ std::string change_text(sysid::HealthNumber number, double change, model::Output
 }
 
 std::string unclear_sentence(const FingerHealth& health, const HealthAlarm& unclear) {
-  return "Since " + health.points[unclear.since].label + " " + health.finger + " differs from " +
-         with_commas(unclear.beside) +
-         " in a new way: " + change_text(unclear.number, unclear.change, health.output_unit) +
+  return "Since " + health.points[unclear.since].label + ", the difference between " + health.finger +
+         " and " + with_commas(unclear.beside) +
+         " has changed: " + change_text(unclear.number, unclear.change, health.output_unit) +
          ". The indicators of the fingers do not yet show which finger has changed.";
 }
 
 std::string shared_sentence(const SharedChange& shared) {
-  return "Since " + shared.since + " all fingers of the rig show the same change: " +
+  return "Since " + shared.since + ", all fingers of the rig show the same change: " +
          change_text(shared.number, shared.change, shared.output_unit) +
-         ". Check first the parts that all fingers share: " +
+         ". First check what all fingers share: " +
          (shared.temperature_recorded ? "" : "the temperature (which is not recorded), ") +
          "the supply, the common air line and the gripped parts.";
 }

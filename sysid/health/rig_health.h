@@ -37,13 +37,14 @@ struct FingerRuns {
 /// A change that several fingers share.
 struct SharedChange {
   sysid::HealthNumber number = sysid::HealthNumber::gain;
-  double change = 0;           ///< change of the finger that showed it first, in the unit of the indicator
+  double change = 0;           ///< change of the finger in which the change was detected first, in the unit
+                               ///< of the indicator
   std::string since, noticed;  ///< labels of the first changed point and of the point of detection
   std::vector<std::string> fingers;
-  /// True: the temperature was recorded, and the change does not contain its known effect.
+  /// True: the temperature was recorded, and its known effect was removed from the change.
   bool temperature_recorded = false;
   /// True: the change is active. False: a later repair or a later shared change ended the change, or the
-  /// alarm of a finger explains it.
+  /// alarm of a finger explains the change.
   bool stands = true;
   model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of `change`
 };

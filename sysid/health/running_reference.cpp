@@ -15,8 +15,8 @@ constexpr double most_persistence = 0.95;
 /// at least this standard deviation.
 constexpr double least_for_slope = 6;
 constexpr double least_temperature_spread_c = 0.3;
-/// Relative standard deviation of the part of the line that is extrapolated beyond the temperatures of the
-/// earlier values.
+/// Standard deviation of the extrapolated part of the regression line, as a share of this part. The line is
+/// extrapolated beyond the temperatures of the earlier values.
 constexpr double extrapolation_uncertainty = 0.5;
 
 double persistence_of(const SerialSums& sums, double slope) {
@@ -74,8 +74,8 @@ double SerialSums::left(double slope) const {
 double SerialSums::correlation(double slope) const {
   const double squares = left(slope);
   if (!(squares > 0)) return 0;
-  // Returns the sum of the products of neighbouring values after subtraction of their mean. The formula
-  // relies on add(), which makes the first value 0.
+  // Returns the sum of the products of neighbouring values, after the mean is subtracted from all values. The
+  // formula requires that the first value is 0; add() ensures this.
   const auto together = [&](double products, double now, double before, double last_before) {
     return products - now * (before - last_before) / n_ - before * now / n_ +
            (n_ - 1) * now * before / n_ / n_;

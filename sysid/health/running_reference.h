@@ -9,8 +9,8 @@
 // distribution, as residuals from a mean do. The standard deviation includes the uncertainty of the slope. A
 // value at a temperature far from all earlier temperatures therefore has little weight. Outside the range of
 // the earlier temperatures, no value confirms the line. Half of the extrapolated part of the line is
-// therefore taken as its standard deviation. A slope is used only if its probability in values without a
-// slope is below 0.2 %.
+// therefore taken as its standard deviation. A slope is used only if values that do not depend on the
+// temperature would show such a slope with a probability below 0.2 %.
 
 #include <cstddef>
 #include <limits>
@@ -68,8 +68,8 @@ class RunningReference {
   /// first two values. @param least_spread  lower limit of the standard deviation that is used, > 0.
   [[nodiscard]] std::optional<double> judge(double value, double least_spread,
                                             double temperature_c = no_temperature) const;
-  /// Returns the expected next value. This is the mean if the temperature is unknown or has no significant
-  /// effect.
+  /// Returns the expected next value. The expected value is the mean if the temperature is unknown or has no
+  /// significant effect.
   [[nodiscard]] double expected(double temperature_c = no_temperature) const;
 
   [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(all_.count()); }

@@ -20,8 +20,8 @@ using sysid::Moves;
 /// the cause does not explain. Each sign that is present adds 1 to the score.
 constexpr double missing_sign = 0.25;
 constexpr double unexplained_alarm = 1 - missing_sign;
-/// Penalty of a cause that can be diagnosed only with an additional column. Recordings of grips may lack this
-/// column.
+/// Penalty of a cause that can be diagnosed only from recordings with an additional column. Recordings of
+/// grips may lack this column.
 constexpr double lacks_column = 0.05;
 /// A cause is a candidate only if its score is at most this much below the best score.
 constexpr double as_much = 0.1;
@@ -32,8 +32,8 @@ bool agrees(Moves moves, double change) {
 }
 
 /// Returns the changes of the indicators in alarm, and the shared changes that started no later than the
-/// latest of these alarms. Every change affects the time to grip. It is therefore included only if no other
-/// indicator has changed.
+/// latest of these alarms. Every change of a finger affects the time to grip. A change of the time to grip is
+/// therefore included only if no other indicator has changed.
 std::map<HealthNumber, double> changes_of(const FingerHealth& health,
                                           const std::vector<SharedChange>& shared) {
   std::map<HealthNumber, double> changes;
@@ -117,8 +117,8 @@ Suspicion suspicion_of(const FingerHealth& health, const std::vector<SharedChang
 std::string health_sentence(const FingerHealth& health, const Suspicion& suspicion) {
   const std::vector<HealthAlarm> alarms = health.standing();
   if (health.state == FingerState::learning)
-    return "There are too few grips to determine the usual values of " + health.finger + ".";
-  if (alarms.empty()) return "Nothing has changed at " + health.finger + ".";
+    return "There are too few grips to determine the reference values of " + health.finger + ".";
+  if (alarms.empty()) return "No indicator has changed at " + health.finger + ".";
   std::string sentence =
       health.finger + " has changed since " + health.points[alarms.front().since].label + ": ";
   for (std::size_t i = 0; i < alarms.size(); ++i)

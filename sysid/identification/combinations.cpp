@@ -89,7 +89,7 @@ std::string wrong_way_sentence(double beta_over_gain) {
                                 ? "= " + significant(beta_over_gain, 3) + " is above 1"
                                 : "is far above 1";
   return "beta / (alpha + 1/k0) " + ratio +
-         ": the model has an inverse response (it first moves opposite to the command), so it has no usable "
+         ", so the model has an inverse response (it first moves opposite to the command) and no usable "
          "inverse. The usual cause is a latency in the data";
 }
 

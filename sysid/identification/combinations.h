@@ -16,7 +16,8 @@ struct Combination {
   std::string name;  ///< name of the combination, including the unit
   std::string unit;
   std::string formula;  ///< formula of the combination as text, for display
-  double scale = 0;     ///< typical value; an interval that is narrow relative to this value counts as narrow
+  double scale = 0;     ///< typical value of the combination, with which the width of its interval is
+                        ///< compared
   std::function<double(const model::Model&)> value;
 };
 

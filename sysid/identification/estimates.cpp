@@ -12,8 +12,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A parameter is identifiable if half the width of its interval is at most this share of the parameter's
-/// value or typical change.
+/// A parameter is identifiable if half the width of its interval is at most this share of the larger of two
+/// numbers: the parameter's value and its typical change.
 constexpr double narrow_share = 0.5;
 
 Estimate estimate_of(const FittedPoint& fit, std::size_t index) {
@@ -203,7 +203,7 @@ std::vector<Estimate> combination_estimates(const FittedPoint& fit) {
       e.identifiable = (e.ci95->upper - e.ci95->lower) / 2 <=
                        narrow_share * std::max(std::abs(e.value), combination.scale);
     } else {
-      e.note = "this quantity depends only on parameters that are fixed or at a bound";
+      e.note = "this quantity depends only on parameters that are fixed or at a bound of their range";
     }
     estimates.push_back(std::move(e));
   }

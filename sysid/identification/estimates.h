@@ -31,9 +31,9 @@ void name_the_sum(std::vector<Estimate>& parameters);
 [[nodiscard]] std::vector<Estimate> combination_estimates(const FittedPoint& fit);
 
 /// Computes profile95 of every fitted model parameter in `estimates`, which has the order of
-/// parameter_estimates(). The threshold for the sum of squares is that of a likelihood-ratio test, multiplied
-/// by a factor for the correlation of the residuals. This factor is the increase of the variance of the
-/// parameter by the correlation.
+/// parameter_estimates(). The threshold for the sum of squares is the threshold of a likelihood-ratio test,
+/// multiplied by a factor for the correlation of the residuals. The factor is the variance of the parameter
+/// for correlated residuals, divided by its variance for white noise.
 void add_profiles(const Residuals& residuals, const std::vector<double>& z, const Uncertainty& uncertainty,
                   double huber_mm, unsigned threads, std::vector<Estimate>& estimates);
 

@@ -10,7 +10,7 @@ namespace softgrip::sysid {
 namespace {
 
 /// Returns prefixes of parameter names. A fit can determine the parameters with these prefixes only if the
-/// logs contain this excitation.
+/// logs contain the motion `excitation`.
 std::span<const std::string_view> that_need(Excitation excitation) {
   static constexpr std::string_view hysteresis[]{
       "bouc_wen.beta",       "bouc_wen.gamma",    "bouc_wen.eta",        "asymmetric_bouc_wen.",

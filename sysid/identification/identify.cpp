@@ -59,8 +59,8 @@ tl::expected<FreeIndices, std::string> free_indices(const model::Model& model,
   return free;
 }
 
-/// Returns 2.5 times the robust standard deviation of the residuals [mm]. It is computed from the median of
-/// their absolute values.
+/// Returns 2.5 times the robust standard deviation of the residuals [mm]. This standard deviation is computed
+/// from the median of the absolute residuals.
 double huber_width_mm(const Residuals& residuals, const std::vector<double>& z) {
   std::vector<double> r(residuals.count());
   if (!residuals.evaluate(z, r, {}) || r.empty()) return std::numeric_limits<double>::infinity();
@@ -141,9 +141,8 @@ class Run {
   Identification result_;
 };
 
-/// Returns the model with the exponent `exponent` and a hysteresis loop of about the same size as before. For
-/// this, the parameters gamma and eta are scaled, because they multiply the exponentiated hysteretic state
-/// h^n.
+/// Returns the model with the exponent `exponent`. Scales gamma and eta, which multiply the exponentiated
+/// hysteretic state h^n, so that the hysteresis loop keeps about its size.
 model::Model with_exponent(model::Model model, int exponent) {
   const auto position = model::position_of<model::BoucWen>(model);
   if (!position) return model;
@@ -238,7 +237,8 @@ tl::expected<Identification, std::string> identify(std::vector<Record> records, 
     auto result = Run(records, exponent == 0 ? from : with_exponent(from, exponent), options).go();
     if (!result) return Failure(result.error());
     if (exponent != 0) tried.emplace_back(exponent, result->rmse_mm);
-    // A further exponent is accepted only if it reduces the RMSE by more than 1 %.
+    // The result for the next exponent is accepted only if its RMSE is more than 1 % below that of the best
+    // earlier exponent.
     if (!best || result->rmse_mm < (1 - limits::negligible_share) * best->rmse_mm) best = std::move(*result);
   }
   best->exponent_rmse_mm = std::move(tried);

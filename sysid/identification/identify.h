@@ -50,8 +50,8 @@ struct IdentifyOptions {
   std::vector<std::string> fixed;  ///< paths of the parameters that keep the value of the start model
   /// Paths of the parameters that are fitted; empty: all parameters that are not fixed.
   std::vector<std::string> free;
-  /// Number of start points. They are the given model, random points around the given model, and random
-  /// points at the scale of the data.
+  /// Number of start points. The start points are the given model, random points around the given model, and
+  /// random points at the scale of the data.
   std::size_t starts = 20;
   std::vector<model::Model> start_points;  ///< models that are used as start points in place of random points
   std::uint64_t seed = 1;

@@ -51,7 +51,7 @@ Table estimate_table(const std::vector<Estimate>& list, std::string caption) {
   table.header = {"name", "value", "95 % interval"};
   table.numeric = {false, true, true};
   if (profiled) {
-    table.header.emplace_back("95 % by profile");
+    table.header.emplace_back("95 % interval by profile likelihood");
     table.numeric.push_back(true);
   }
   table.header.insert(table.header.end(), {"unit", "identified", formulas ? "formula" : "note"});
@@ -65,8 +65,8 @@ Table estimate_table(const std::vector<Estimate>& list, std::string caption) {
   return table;
 }
 
-/// Returns the chart of the autocorrelation of the errors of the first log, for lags up to a tenth of this
-/// log.
+/// Returns a chart that shows the autocorrelation of the errors of the first log. The lags go up to a tenth
+/// of the length of this log.
 Chart correlation_chart(const Identification& r) {
   Chart chart;
   chart.width = 380;
@@ -102,7 +102,7 @@ Chart multistart_chart(const Identification& r) {
   chart.width = 380;
   chart.height = 240;
   chart.title = "results of the start points";
-  chart.x.label = "start, best first";
+  chart.x.label = "start points, best first";
   chart.y.label = model::in_unit("RMSE [mm]", r.model.output_unit);
   std::vector<double> sorted = r.multistart.rmse_mm;
   std::sort(sorted.begin(), sorted.end());
@@ -125,7 +125,7 @@ void add_limits(Page& page, const Identification& r) {
   for (const Estimate& e : r.parameters) {
     const bool kept = !e.free && e.note.find("alpha") == std::string::npos;
     if (!e.identifiable && !kept)
-      items.push_back(e.name + (e.note.empty() ? ": the confidence interval is wide" : ": " + e.note));
+      items.push_back(e.name + (e.note.empty() ? ": the confidence interval is too wide" : ": " + e.note));
   }
   for (const LooseDirection& loose : r.loose) {
     std::string text = "Together, ";
@@ -133,11 +133,11 @@ void add_limits(Page& page, const Identification& r) {
       text += (i == 0 ? "" : ", ") + loose.names[i] + " (" + significant(loose.weights[i], 2) + ")";
     }
     items.push_back(text + " may change by " + significant(loose.deviation, 2) +
-                    " in the scale of the fit (logarithms of stiffnesses and dampings) without an increase "
-                    "of the error.");
+                    " in the scale of the fit (logarithms of stiffnesses and dampings), and the error does "
+                    "not increase.");
   }
   if (items.empty()) {
-    page.paragraph("Every free parameter is identified by these logs.");
+    page.paragraph("These logs determine every free parameter.");
   } else {
     page.list(items);
   }
@@ -149,12 +149,13 @@ void add_residuals(Page& page, const Identification& r) {
   page.paragraph(
       "Sample-to-sample noise of the readings " + significant(r.fast_noise_mm, 3) + " " + unit + "; RMSE " +
       significant(r.rmse_mm, 3) + " " + unit + "; correlation of the errors from one sample to the next " +
-      significant(r.noise.lag1_correlation, 3) + ". For the intervals, the samples are equivalent to " +
-      fixed(r.noise.effective_samples, 0) + " independent samples (autoregressive model of order " +
-      std::to_string(r.noise.coefficients.size()) + ").");
+      significant(r.noise.lag1_correlation, 3) +
+      ". For the confidence intervals, the samples are equivalent to " + fixed(r.noise.effective_samples, 0) +
+      " independent samples (autoregressive model of order " + std::to_string(r.noise.coefficients.size()) +
+      ").");
   if (r.huber_mm > 0) {
     page.paragraph("Robust fit: errors larger than " + significant(r.huber_mm, 3) + " " + unit +
-                   " count linearly.");
+                   " contribute linearly, not quadratically, to the loss of the fit.");
   }
   page.figure({"errors and search",
                "Autocorrelation of the errors, and the final error of the search from each start point: " +
@@ -173,15 +174,16 @@ void add_residuals(Page& page, const Identification& r) {
 /// Adds a section with the candidate structures and with the error reduction by each component of the chosen
 /// structure.
 void add_structure(Page& page, const StructureEvidence& s, model::OutputUnit unit) {
-  const std::string fitted = model::in_unit("RMSE fitted [mm]", unit);
-  const std::string held_out = model::in_unit("RMSE on held-out blocks [mm]", unit);
+  const std::string fitted = model::in_unit("RMSE on the fitted readings [mm]", unit);
+  const std::string held_out = model::in_unit("RMSE on the held-out blocks [mm]", unit);
   page.section("Structure");
   page.paragraph(
-      "Every structure was fitted to all readings, and in addition five times with a different fifth omitted "
-      "of " +
+      "Every structure was fitted to all readings. In addition, each structure was fitted five times, each "
+      "time without "
+      "a different fifth of " +
       std::to_string(s.blocks) +
       " interleaved blocks. The structures were compared by their errors on the omitted blocks. The simplest "
-      "structure with an error within one standard error of the smallest error was chosen.");
+      "structure was chosen whose error is at most one standard error above the smallest error.");
   Table tried{"Tested structures, the simplest structure first",
               {"structure", "", fitted, held_out},
               {false, false, true, true},
@@ -202,8 +204,8 @@ void add_structure(Page& page, const StructureEvidence& s, model::OutputUnit uni
   }
   if (!s.valve) return;
   page.paragraph(
-      "The pressure was measured, so the model has two parts: command to pressure, and pressure to "
-      "displacement. Valve: dead time " +
+      "The pressure was measured, so the model consists of a valve (command to pressure) and an actuator "
+      "(pressure to displacement). Valve: dead time " +
       significant(s.valve->delay_s, 3) + " s, time constant " +
       significant(s.valve->filling_time_constant_s, 3) + " s (filling) and " +
       significant(s.valve->venting_time_constant_s, 3) + " s (venting); RMSE " +
@@ -231,11 +233,11 @@ std::string verdict_of(const Identification& r) {
   const std::string size =
       "RMSE of " + significant(r.rmse_mm, 3) + " " + std::string(model::name_of(r.model.output_unit)) + ", " +
       (r.scores.size() == 1 ? significant(largest_percent(r), 2) + " % of the span of the log"
-                            : "at most " + significant(largest_percent(r), 2) + " % of a log's span");
+                            : "at most " + significant(largest_percent(r), 2) + " % of the span of each log");
   if (largest_percent(r) > bad_percent) {
     return "The model does not explain " + logs + ": " + size + ".";
   }
-  std::string text = is_noise(r) ? "The model explains " + logs + " to the noise: " + size + "."
+  std::string text = is_noise(r) ? "The model explains " + logs + " down to the noise: " + size + "."
                                  : "The model reproduces " + logs + " with an " + size +
                                        ", but the remaining error is larger than the noise. Search for the "
                                        "cause of this error with softgrip diagnose.";
@@ -248,7 +250,7 @@ Page identify_page(const IdentifyReport& report) {
   const Identification& r = report.result;
   Page page("Identification: " + r.model.name + " from " + logs_in_words(r), verdict_of(r), tone_of(r));
   auto provenance = provenance_of(report.logs, {{"start", &report.start}, {"identified model", &r.model}});
-  provenance.emplace_back("seed of the starts", std::to_string(report.seed));
+  provenance.emplace_back("seed of the start points", std::to_string(report.seed));
   page.provenance(std::move(provenance));
   if (!r.warnings.empty()) {
     page.section("Warnings");
@@ -258,7 +260,8 @@ Page identify_page(const IdentifyReport& report) {
   page.table(score_table(r.records, r.scores));
   if (!r.held_out.empty()) {
     Table table = score_table(r.records, r.held_out);
-    table.caption = "Held-out end of each log, predicted by a simulation from the start of the log";
+    table.caption =
+        "Held-out part at the end of each log, predicted by a simulation from the start of the log";
     page.table(table);
   }
   if (r.structure) add_structure(page, *r.structure, r.model.output_unit);

@@ -23,8 +23,8 @@ struct IdentifyReport {
   std::vector<std::string> call;
 };
 
-/// Returns the result as one sentence, such as "The model explains 3 logs to the noise: RMSE 0.050 mm, 0.17 %
-/// of the span."
+/// Returns the result as one sentence, such as "The model explains 3 logs down to the noise: RMSE of
+/// 0.050 mm, at most 0.17 % of the span of each log."
 [[nodiscard]] std::string verdict_of(const Identification& result);
 /// Returns the page for report.html.
 [[nodiscard]] Page identify_page(const IdentifyReport& report);

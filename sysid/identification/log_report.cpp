@@ -45,8 +45,8 @@ Fields fields_of_score(const Score& s, double span_mm) {
           {"", in_unit("span [mm]"), number(span_mm)},
           {"rmse_mm", in_unit("RMSE [mm]"), number(s.rmse_mm)},
           {"rmse_percent_of_span", "RMSE [% of span]", number(s.rmse_percent_of_span)},
-          {"first_cycle_rmse_mm", "first cycle", number(s.first_cycle_rmse_mm)},
-          {"settled_rmse_mm", in_unit("settled [mm]"), number(s.settled_rmse_mm)},
+          {"first_cycle_rmse_mm", "RMSE of the first cycle", number(s.first_cycle_rmse_mm)},
+          {"settled_rmse_mm", in_unit("RMSE after the first cycle [mm]"), number(s.settled_rmse_mm)},
           {"largest_error_mm", in_unit("largest error [mm]"), number(s.largest_error_mm)}};
 }
 
@@ -114,11 +114,14 @@ Chart error_by_pressure(const Record& record, const Score& score) {
 
 void add_log_figures(Page& page, const Record& record, const Score& score) {
   page.figure({record.name + " over time",
-               record.name + ": measured displacement and model over time, and the difference between them.",
+               record.name + ": measured displacement and prediction of the model over time, and the "
+                             "difference between the two curves.",
                stacked(overlay(record, score))});
-  page.figure({record.name + " over pressure",
-               record.name + ": hysteresis loops, and the error over the pressure.",
-               {{loops(record, score), error_by_pressure(record, score)}}});
+  page.figure(
+      {record.name + " over pressure",
+       record.name +
+           ": hysteresis loops (displacement over pressure), and the error of the model over the pressure.",
+       {{loops(record, score), error_by_pressure(record, score)}}});
 }
 
 Value logs_value(const std::vector<Log>& logs) {

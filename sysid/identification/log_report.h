@@ -1,6 +1,6 @@
 #pragma once
 // Reports a log and its prediction: their fields, the table of the scores, and the figures. identify.json,
-// validate.json and diagnosis.json use the same keys.
+// validate.json and diagnosis.json use the same keys for these fields.
 
 #include <string>
 #include <vector>

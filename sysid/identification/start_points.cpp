@@ -55,8 +55,8 @@ class Drawer {
         v[0] = time_unit_s_ * uniform(0.005, 0.3);
       }
     }
-    // The conversion to the coordinates of the fit and back sets all parameters that are not fitted to their
-    // given values.
+    // Converts the point to the coordinates of the fit and back. This conversion resets all parameters that
+    // are not fitted to their given values.
     return valid(space_.point(space_.z(point)), given);
   }
 
@@ -135,8 +135,8 @@ model::Model base_model(const std::vector<Record>& records, std::size_t branches
   model = model::with_block(std::move(model),
                             {model::block_type<model::BoucWen>(),
                              {0.6 * gain, 0.3 * gain, saturation_per_kpa, saturation_per_kpa, 1}});
-  // k0 is practically rigid, so alpha alone is the instantaneous gain. The data determine only the sum alpha
-  // + 1/k0.
+  // The spring k0 is practically rigid, so alpha alone is the instantaneous gain. The data determine only the
+  // sum alpha + 1/k0.
   std::vector<double> creep{1e9};
   const double slowest = std::max(scale.longest_s / 4, 1.0);
   for (std::size_t b = 0; b < branches; ++b) {

@@ -28,13 +28,14 @@ bool is_above_bound(const Validation& v, const Score& s) {
   return v.at_most_percent && !(s.rmse_percent_of_span <= *v.at_most_percent);
 }
 
-/// Returns a text such as ": 2 of them above the permitted 1 %". Returns "" if there is no bound or no log
-/// exceeds the bound.
+/// Returns a text such as ": 2 of these logs with an error above the permitted 1 %". Returns "" if there is
+/// no bound or no log exceeds the bound.
 std::string bound_text(const Validation& v) {
   const auto above =
       std::count_if(v.scores.begin(), v.scores.end(), [&](const Score& s) { return is_above_bound(v, s); });
   if (above == 0) return {};
-  const std::string which = v.scores.size() == 1 ? std::string() : std::to_string(above) + " of them ";
+  const std::string which =
+      v.scores.size() == 1 ? std::string() : std::to_string(above) + " of these logs with an error ";
   return ": " + which + "above the permitted " + significant(*v.at_most_percent) + " %";
 }
 
@@ -87,7 +88,7 @@ std::string verdict_of(const Validation& v) {
                                                 : significant(lowest, 3) + " to " + significant(highest, 3);
   return v.model.name + " predicts " + logs + " with an RMSE of " + size + " " +
          std::string(model::name_of(v.model.output_unit)) + ", at most " +
-         significant(largest_percent(v), 2) + " % of a log's span" + bound_text(v) + ".";
+         significant(largest_percent(v), 2) + " % of the span of each log" + bound_text(v) + ".";
 }
 
 Page validate_page(const Validation& v, const std::vector<Log>& logs) {

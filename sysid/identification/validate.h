@@ -33,8 +33,8 @@ struct Validation {
 /// bound, every RMSE is accepted. With a bound, a log whose readings are all equal is not accepted.
 [[nodiscard]] bool is_acceptable(const Validation& validation, const Score& score);
 
-/// Returns the result as one sentence, such as "3 logs predicted with an RMSE of 0.26 to 0.54 mm, at most 1.9
-/// % of a log's span: 1 of them above the permitted 1.5 %."
+/// Returns the result as one sentence, such as "bench_twin predicts 3 logs with an RMSE of 0.26 to 0.54 mm,
+/// at most 1.9 % of the span of each log: 1 of these logs with an error above the permitted 1.5 %."
 [[nodiscard]] std::string verdict_of(const Validation& validation);
 /// Returns the page for report.html.
 [[nodiscard]] Page validate_page(const Validation& validation, const std::vector<Log>& logs);

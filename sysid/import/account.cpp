@@ -8,8 +8,8 @@ namespace {
 struct Reason {
   std::string_view word;
   std::string_view text;
-  /// True: a row that is left out for this reason counts as lost. False: the user requested to leave the row
-  /// out, or the row is empty.
+  /// True: the rows that are left out for this reason count as lost. False: the rows do not count as lost,
+  /// because they are empty or because the user requested to leave them out.
   bool lost;
 };
 constexpr std::array<Reason, left_out_count> reasons{{
@@ -52,7 +52,7 @@ double RowAccount::lost_share() const {
 
 std::string RowAccount::sentence() const {
   std::string text = std::to_string(rows) + " rows: " + std::to_string(used) + " used";
-  if (joined > 0) text += ", " + std::to_string(joined) + " merged with another row of the same time";
+  if (joined > 0) text += ", " + std::to_string(joined) + " merged with another row that has the same time";
   const std::size_t out = sum_of(*this, false);
   if (out == 0) return text;
   std::string details;

@@ -49,7 +49,8 @@ struct RowAccount {
   [[nodiscard]] bool balanced() const;
   /// Returns the number of rows that were left out for a reason that the user did not request.
   [[nodiscard]] std::size_t lost() const;
-  /// Returns lost() divided by the number of rows. Empty rows and rows that the user excluded do not count.
+  /// Returns the share of the rows that are lost. Empty rows and rows that the user excluded do not count as
+  /// rows.
   [[nodiscard]] double lost_share() const;
   /// Returns the counts as a sentence, for example "1500 rows: 600 used, 900 left out (900 at the time of the
   /// row before)".

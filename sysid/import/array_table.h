@@ -12,8 +12,8 @@
 
 namespace softgrip::sysid {
 
-/// Error message for an array that is refused because the file would have more than most_values values with
-/// this array.
+/// Error message for an array that is refused, because the file would exceed most_values values with this
+/// array.
 inline constexpr const char* too_large = "with this array, the file has more than 134217728 values";
 
 /// Collects the arrays of a file. The table contains only the arrays of one length, the most frequent length.
@@ -28,7 +28,7 @@ class ArrayCollector {
   void add(const std::string& name, const std::string& unit, std::size_t rows, std::size_t columns,
            const std::vector<double>& values);
   void note(std::string what) { notes_.push_back(std::move(what)); }
-  /// Adds a note that the array `name` is skipped. `what` states the reason.
+  /// Adds a note that the array `name` is skipped. The text `what` states the reason.
   void skip(const std::string& name, const std::string& what);
   /// Returns true if the file has at most most_values values after an array of this size is added. Call this
   /// function before the values are read.

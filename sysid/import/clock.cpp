@@ -12,8 +12,8 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double day_s = 86400;
-/// Largest time step across an overflow, as a multiple of the usual step of the clock. If the step is larger,
-/// rows may be missing, so the overflow is not corrected.
+/// Largest time step across an overflow, as a multiple of the usual step of the clock. If the step is larger
+/// than this, rows may be missing, so the overflow is not corrected.
 constexpr double longest_step = 3;
 /// Two clocks with different origins count as one clock if their difference varies by at most this share of
 /// the usual time step.
@@ -111,8 +111,8 @@ bool names_its_role(const std::string& time_name, Role role, const std::string& 
   });
 }
 
-/// Returns, for each role, the index of its first column. If a role has no column, its element is the number
-/// of columns.
+/// Returns, for each role, the index of the first column with this role. If no column has the role, the index
+/// is the number of columns.
 std::array<std::size_t, role_count> columns_of_roles(const ForeignTable& table, const Mapping& mapping) {
   std::array<std::size_t, role_count> columns{};
   columns.fill(table.columns.size());

@@ -19,15 +19,15 @@ struct Overflow {
   double period = 0;      ///< range of the counter, in the unit of the clock
 };
 
-/// Corrects the overflows of a clock: adds the period of each overflow to all later values. The period is
-/// that of a counter with 16, 24 or 32 bits, or one day. One count of the counter is the unit of the clock,
-/// 1/1000 of this unit or 1/1,000,000 of this unit. If no period explains all backward steps of the clock,
-/// the clock is not changed.
-/// @param unit_s  unit of the clock [s].
+/// Corrects the overflows of a clock: adds the period of each overflow to all later values. Possible periods
+/// are the range of a counter with 16, 24 or 32 bits, and one day. One count of the counter is the unit of
+/// the clock, 1/1000 of this unit or 1/1,000,000 of this unit. If no period explains all backward steps of
+/// the clock, the clock is not changed. @param unit_s  unit of the clock [s].
 std::optional<Overflow> continue_overflows(std::vector<double>& clock, double unit_s);
 
 /// Returns the indices of the columns that probably contain times. Such a column contains dates, times of
-/// day, or increasing numbers. In the last case, the name or the unit of the column is that of a time.
+/// day, or increasing numbers. A column of increasing numbers is included only if its name or its unit is
+/// that of a time.
 [[nodiscard]] std::vector<std::size_t> time_columns(const ForeignTable& table);
 
 /// Returns the values of a time column [s]; NaN for a missing value. Returns nullopt if the unit of the
@@ -42,8 +42,8 @@ std::optional<Overflow> continue_overflows(std::vector<double>& clock, double un
 
 /// Returns the time column of each role. A time column belongs to the role that its name contains: "t_tip"
 /// belongs to the role of "tip". If the names do not determine the roles, the order of the columns does: each
-/// time column is left of its value columns. Returns nullopt if neither the names nor the order determine the
-/// roles.
+/// time column is to the left of its value columns. Returns nullopt if neither the names nor the order
+/// determine the roles.
 [[nodiscard]] std::optional<std::array<std::size_t, role_count>> times_of_roles(
     const ForeignTable& table, const Mapping& mapping, const std::vector<std::size_t>& times);
 

@@ -91,8 +91,8 @@ class Converter {
     return by_times ? samples_by_times(rows) : samples_of_rows(rows);
   }
 
-  /// Removes the rows without a value in any used column. In an MCAP recording, these rows are messages of
-  /// unused topics.
+  /// Removes the rows that have no value in any of the used columns. In an MCAP recording, these rows are
+  /// messages of unused topics.
   void leave_out_unused(std::vector<std::size_t>& rows) {
     const auto unused = [&](std::size_t row) {
       return std::none_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
@@ -137,7 +137,7 @@ class Converter {
                              std::to_string(overflow->count) + (overflow->count == 1 ? " time" : " times") +
                              ", first in " + (has_lines ? "line " : "sample ") +
                              std::to_string(has_lines ? table_.line[row] : static_cast<int>(row) + 1) +
-                             ": the clock is corrected");
+                             ", and the times after each overflow are corrected");
   }
 
   /// A time in one of several time columns.
@@ -147,8 +147,8 @@ class Converter {
     std::size_t row = 0;
   };
 
-  /// Returns one sample for each row and time column, sorted by time. Each sample contains only the values
-  /// that belong to its time column.
+  /// Returns one sample for each row and each time column, sorted by time. Each sample contains only the
+  /// values that belong to the time column of this sample.
   ForeignSamples samples_by_times(const std::vector<std::size_t>& rows) {
     const std::vector<std::size_t>& clocks = sources_.of_roles[static_cast<std::size_t>(Role::time)].columns;
     const auto of_roles = times_of_roles(table_, mapping_, clocks);
@@ -161,7 +161,7 @@ class Converter {
     ForeignSamples samples;
     if (!good) return samples;
     remarks_.account.rows += (clocks.size() - 1) * table_.rows();
-    // A skipped line counts once per time column. The account already contains the first of these counts.
+    // A skipped line counts once for each time column. The account already contains one of these counts.
     remarks_.account.leave_out(LeftOut::bad_line, (clocks.size() - 1) * (table_.rows() - rows.size()));
     leave_out_empty(*of_roles, entries);
     std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
@@ -179,7 +179,7 @@ class Converter {
     }
     remarks_.notes.push_back(
         "each row has " + std::to_string(clocks.size()) +
-        " times: the values are merged by time, and each different time counts as one row");
+        " times, so the values are merged by time, and each different time counts as one row");
     return samples;
   }
 
@@ -188,7 +188,7 @@ class Converter {
     const auto time_s = seconds_of(table_, mapping_, clock);
     const std::string name = "time: '" + document::shown(column.name, 40) + "' ";
     if (!time_s || column.short_clocks > 0) {
-      refuse(name + "has no unit", "--unit time=s (known are " + unit_names(Quantity::time) + ")");
+      refuse(name + "has no unit", "--unit time=s (known units: " + unit_names(Quantity::time) + ")");
       return false;
     }
     double last = -std::numeric_limits<double>::infinity();

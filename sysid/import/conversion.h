@@ -1,7 +1,7 @@
 #pragma once
 // Converts the table of an external file into a log. A mapping assigns the columns of the table to the
 // columns of the log.
-// Reports the columns of a table and the options of an import that have no effect on the log.
+// Reports the table columns and the import options that have no effect on the log.
 
 #include <optional>
 #include <string>
@@ -25,7 +25,8 @@ struct ImportedLog {
   RowAccount account;
 };
 
-/// Returns the value of a word for a missing value, such as 999; nullopt if the word is not a number.
+/// Returns the number that a word for a missing value represents, such as 999; nullopt if the word is not a
+/// number.
 [[nodiscard]] std::optional<double> missing_number(const std::string& word);
 
 /// Converts the table into a log by the rules of samples.h. Each row of the table is either in the log or

@@ -34,8 +34,8 @@ bool fits_a_displacement(const TableColumn& column) {
   return fitness_for(column, Role::displacement) > 0;
 }
 
-/// Returns the words in which two column names differ while all other words of the two names are equal.
-/// Considers only the columns for which `of_kind` returns true.
+/// Returns the words that distinguish columns: two column names differ in one such word, and all other words
+/// of the two names are equal. Considers only the columns for which `of_kind` returns true.
 template <class OfKind>
 std::set<std::string> words_apart(const ForeignTable& table, OfKind of_kind) {
   std::map<std::string, std::set<std::string>> by_pattern;
@@ -73,7 +73,7 @@ std::set<std::string> finger_set(const ForeignTable& table) {
     if (is_finger_word(word)) known.insert(word);
   }
   if (known.size() > 1) return known;
-  // The table may contain the pressures of two fingers but the displacement of one finger only.
+  // The table may contain the pressures of two fingers, but the displacement of only one of these fingers.
   for (const TableColumn& column : table.columns) {
     if (!fits_a_displacement(column)) continue;
     for (const std::string& token : tokens_of(column.name)) {

@@ -42,8 +42,8 @@ bool is_matlab_4(std::string_view bytes) {
          bytes[header] > ' ';
 }
 
-/// Returns the name of the file format if the import recognises the format but cannot read it; empty for all
-/// other data.
+/// Returns the name of a file format that the import recognises but cannot read; empty if the data have no
+/// such format.
 std::string_view known_but_unread(std::string_view bytes) {
   constexpr std::string_view encrypted{"E\0n\0c\0r\0y\0p\0t\0e\0d\0P\0a\0c\0k\0a\0g\0e", 31};
   if (bytes.starts_with("\xd0\xcf\x11\xe0"))

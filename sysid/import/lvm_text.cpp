@@ -26,7 +26,7 @@ std::vector<std::string> cells_of(std::string_view line, char separator) {
   return texts;
 }
 
-/// Values of each key in a header, from lines of the form "KEY value value ...".
+/// The values of each key in a header. A line of the header has the form "KEY value value ...".
 using Header = std::map<std::string, std::vector<std::string>>;
 
 class LvmReader {
@@ -103,8 +103,8 @@ class LvmReader {
     return starts;
   }
 
-  /// If the channels share one X column, checks that they have equal X0, Delta_X and start times, because the
-  /// times of the first channel are used for all channels.
+  /// If the channels share one X column, checks that they have equal X0, Delta_X and start times. This check
+  /// is necessary because the times of the first channel are used for all channels.
   bool has_one_clock(const Header& section, std::size_t line) {
     if (x_columns_ == "multi") return true;
     for (const char* const key : {"Delta_X", "X0"}) {
@@ -220,7 +220,7 @@ class LvmReader {
           names.size() == table_.columns.size() &&
           std::equal(names.begin(), names.end(), table_.columns.begin(),
                      [](const std::string& name, const TableColumn& c) { return c.name == name; });
-      if (!same) refuse(line, "the columns of this section differ from those of the first section");
+      if (!same) refuse(line, "the columns of this section differ from the columns of the first section");
       return same;
     }
     if (names.size() > most_values / lines_) {

@@ -43,17 +43,17 @@ inline constexpr std::array<RoleSpec, role_count> roles{{
   return roles[static_cast<std::size_t>(role)];
 }
 
-/// Source of the values of a role. The value in the log is (value in the column - zero), converted from
-/// `unit` to the unit of the log or multiplied by `scale`.
+/// Source of the values of a role. The value in the log is (value in the column - zero). This difference is
+/// converted from `unit` to the unit of the log, or multiplied by `scale`.
 struct ColumnMapping {
   /// Names of the columns, or their numbers counted from 1; empty: no column has the role. Several columns
   /// are averaged. Several time columns are not averaged: each time column applies to its own value columns
   /// (times_of_roles() in clock.h).
   std::vector<std::string> columns;
   std::string unit;  ///< unit of the column; empty: the unit that the header of the column states
-  /// Factor that converts a value of the column to the unit of the log. If it is set, it replaces the
-  /// conversion of `unit`. If `unit` is a unit of angle, the product of displacement and `scale` is in this
-  /// unit.
+  /// Factor that converts a value of the column to the unit of the log. If this factor is set, it replaces
+  /// the conversion of `unit`. If `unit` is a unit of angle, the product of displacement and `scale` is in
+  /// this unit.
   std::optional<double> scale;
   std::optional<double> zero;  ///< value that is subtracted before the conversion, in the unit of the column
   bool zero_first = false;     ///< true: the first value of the column is subtracted from all its values

@@ -44,10 +44,11 @@ class McapReader {
                              " bytes are left out");
     for (const auto& [topic, said] : skipped_)
       table_.notes.push_back("topic '" + document::shown(topic, 40) +
-                             "' is skipped: " + std::to_string(said.second) + " messages in '" +
+                             "' is skipped: " + std::to_string(said.second) + " messages are in '" +
                              document::shown(said.first, 40) + "', not in JSON");
     for (const std::string& name : arrays_)
-      table_.notes.push_back("'" + document::shown(name, 40) + "' is skipped: an array");
+      table_.notes.push_back("'" + document::shown(name, 40) +
+                             "' is skipped, because this value is an array");
     for (McapTopic& topic : read_.topics) {
       for (TableColumn& column : topic.columns) column.values.resize(topic.rows.size(), missing_value);
       combine_split_times(topic.columns, table_.notes);

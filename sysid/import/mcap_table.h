@@ -35,11 +35,11 @@ enum class McapOpcode : std::uint8_t {
 /// the only topic, the table has no channel. If no key contains a time, a column "log_time" contains the
 /// seconds since the first message.
 ///
-/// A topic can also be a single signal. This is assumed if two conditions are met: no topic has both a
-/// displacement and a drive (a command or a pressure), and all topics together have both. The topic
-/// "/pressure" with {"data": 1} then gives the column "pressure", and {"x": 1} in "/tip" gives "tip.x". The
-/// rows are ordered by the time key that all messages have, or by log_time if there is no such key. It is a
-/// problem if the offsets of two topics' times from log_time differ by more than 1 s. Topics in other
+/// A topic can also be a single signal. The reader assumes single signals if two conditions are met: no topic
+/// has both a displacement and a drive (a command or a pressure), and all topics together have both. The
+/// topic "/pressure" with {"data": 1} then gives the column "pressure", and {"x": 1} in "/tip" gives "tip.x".
+/// The rows are ordered by the time key that all messages have, or by log_time if there is no such key. It is
+/// a problem if the offsets of two topics' times from log_time differ by more than 1 s. Topics in other
 /// encodings, arrays and bytes after the last complete record are left out, and a note names them. Compressed
 /// chunks, wrong checksums and more than `most_values` values (table.h) are problems.
 [[nodiscard]] std::optional<ForeignTable> read_mcap_table(const std::string& file, std::string_view bytes,

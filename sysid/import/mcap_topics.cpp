@@ -89,7 +89,7 @@ std::optional<MergeProblem> check_clocks(const McapMessages& messages, const Tab
   };
   return MergeProblem{
       "the times '" + document::shown(time.name, 40) + "' of the topics " + topic(least) + " and " +
-          topic(most) + " come from two clocks: relative to log_time, the difference of these times is " +
+          topic(most) + " come from two clocks. Relative to log_time, these times differ by " +
           significant(*most - *least) + " s",
       "record the times of only one clock. If the messages contain no times, log_time is used"};
 }
@@ -188,7 +188,7 @@ std::optional<MergeProblem> merge_signals(McapMessages& messages, ForeignTable& 
   }
   table.notes.push_back("the messages of " + std::to_string(messages.topics.size()) +
                         " topics are merged by " + (key.empty() ? "log_time" : "'" + key + "'") +
-                        ": each message is a row");
+                        ", so each message is a row");
   table.channels.clear();
   table.has_rows_of_signals = true;
   return std::nullopt;

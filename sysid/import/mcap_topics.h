@@ -21,8 +21,8 @@ struct McapTopic {
   std::vector<std::size_t> rows;              ///< for each message, the row of the table that contains it
 
   [[nodiscard]] bool offers(Role role) const;
-  /// Returns true if the messages of this topic alone describe a finger: they contain a displacement, and a
-  /// command or a pressure.
+  /// Returns true if the messages of this topic alone describe a finger. Such messages contain a
+  /// displacement, and a command or a pressure.
   [[nodiscard]] bool is_finger() const;
   /// Returns the column of a key if this column contains a finite time for each message, otherwise nullptr.
   [[nodiscard]] const TableColumn* time(const std::string& key) const;

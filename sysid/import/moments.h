@@ -13,7 +13,7 @@
 
 namespace softgrip::sysid {
 
-/// A date with a time of day, or a time of day alone. The origin of the time depends on the text. Only the
+/// A date with a time of day, or a time of day alone. The origin of the time depends on the text, so only the
 /// difference of two times with the same origin is meaningful.
 struct Moment {
   /// Time since 1970 in UTC if the text has a date, otherwise time since midnight.

@@ -74,7 +74,7 @@ bool names_role(std::string_view name, Role role) {
 
 namespace {
 
-/// Returns the unit that a column states. The unit can belong to any quantity.
+/// Returns the unit that a column states, whether it is a unit of time, pressure or another quantity.
 std::string open_unit(const TableColumn& column) {
   return column.unit.empty() ? split_unit(column.name).unit : column.unit;
 }
@@ -84,8 +84,8 @@ std::string open_unit(const TableColumn& column) {
 int fitness_for(const TableColumn& column, Role role) {
   const RoleSpec& spec = spec_of(role);
   const bool time = spec.role == Role::time;
-  // A column can have a role if at most 10 % of its cells are unreadable. The import then reports these
-  // cells.
+  // A column can have a role only if at most 10 % of its cells are unreadable. The import reports the
+  // unreadable cells.
   if (column.is_part_of_time) return 0;
   if (column.bad_count * 10 > column.values.size() || (column.moments > 0 && !time)) return 0;
   const std::string unit = column.unit.empty() ? split_unit(column.name, spec.quantity).unit : column.unit;
@@ -237,8 +237,8 @@ void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposa
   std::vector<std::string> words;
   for (const std::size_t index : times) words.push_back(word_of(table, index));
   const auto of_roles = times_of_roles(table, proposal.mapping, times);
-  // The order of the columns alone is no reason to leave out the chosen column, because its name is that of a
-  // time.
+  // The chosen column has the name of a time. If the assignment by the order of the columns does not contain
+  // the chosen column, the user is asked.
   if (!of_roles || std::find(of_roles->begin(), of_roles->end(), chosen) == of_roles->end()) {
     proposal.questions.push_back(
         {"the times of the columns " + quoted(words) + " differ",
@@ -298,8 +298,8 @@ void choose(const ForeignTable& table, const RoleSpec& spec, const FingerChoice&
   proposal.guessed.push_back(spec.role);
 }
 
-/// Returns a text about the first time column that contains a time in an unknown format. Returns "" if there
-/// is no such column.
+/// Returns a text about the first time column whose times have an unknown format. Returns "" if there is no
+/// such column.
 std::string unread_time(const ForeignTable& table) {
   for (const TableColumn& column : table.columns) {
     if (!column.bad.empty() && names_role(column.name, Role::time))
@@ -321,8 +321,8 @@ void say_what_is_missing(const ForeignTable& table, Proposal& proposal) {
     proposal.missing.emplace_back("a displacement or a bending angle: --displacement COLUMN");
 }
 
-/// Returns the first, the middle and the last value of a column as text. Returns a phrase instead if the
-/// column contains dates or times of day.
+/// Returns the first, the middle and the last value of a column as text. For a column of dates or times of
+/// day, returns a phrase that states this.
 std::string glimpse(const TableColumn& column) {
   std::string text;
   const std::size_t rows = column.values.size();

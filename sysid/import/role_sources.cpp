@@ -99,7 +99,7 @@ class SourceResolver {
     }
     if (column.bad_count > column.bad.size())
       refuse(std::string(spec.word) + ": " + std::to_string(column.bad_count - column.bad.size()) +
-             " more of these");
+             " more cells are not numbers");
   }
 
   void find_unit(const RoleSpec& spec, const ColumnMapping& mapped, RoleSource& source) {
@@ -123,14 +123,14 @@ class SourceResolver {
       source.offset = unit->offset;
       if (spec.role == Role::displacement) sources_.output_unit = unit->output;
     } else if (text.empty()) {
-      refuse(
-          word + ": '" + document::shown(mapped.columns.front()) + "' has no unit",
-          "--unit " + word + "=" + std::string(spec.unit) + " (known are " + unit_names(spec.quantity) + ")");
+      refuse(word + ": '" + document::shown(mapped.columns.front()) + "' has no unit",
+             "--unit " + word + "=" + std::string(spec.unit) + " (known units: " + unit_names(spec.quantity) +
+                 ")");
     } else {
       refuse(
           word + ": '" + document::shown(text) + "' is not a unit of " + std::string(name_of(spec.quantity)),
           "--scale " + word + "=X, " + std::string(spec.unit) + " per " + document::shown(text) +
-              "; known are " + unit_names(spec.quantity));
+              "; known units: " + unit_names(spec.quantity));
     }
     if (mapped.zero) source.offset -= source.factor * *mapped.zero;
   }

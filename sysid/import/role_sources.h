@@ -24,7 +24,8 @@ struct RoleSource {
 /// Sources of all roles.
 struct RoleSources {
   std::array<RoleSource, role_count> of_roles;
-  /// Rows with a cell that cannot be read; filled only if such rows are to be skipped.
+  /// Rows with a cell that cannot be read. The list is filled only if the options request that such rows are
+  /// skipped.
   std::set<std::size_t> bad_rows;
   model::OutputUnit output_unit = model::OutputUnit::mm;
 

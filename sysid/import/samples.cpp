@@ -20,7 +20,7 @@ std::string counted(std::size_t count, const char* what) {
   return std::to_string(count) + (count == 1 ? " sample " : " samples ") + what;
 }
 
-/// Reduces the samples to those with the given indices, in the given order.
+/// Keeps only the samples with the given indices, in the given order.
 void keep(ForeignSamples& samples, const std::vector<std::size_t>& kept) {
   if (kept.size() == samples.size()) return;
   const auto of = [&](const auto& all) {
@@ -91,8 +91,8 @@ void join(ForeignSamples& samples, std::size_t into, std::size_t from) {
   }
 }
 
-/// Returns a sentence about repeated times. It states how many rows repeat a time, the step of the time
-/// stamps, and the remedy.
+/// Returns a sentence about repeated times. The sentence states how many rows repeat a time, the step of the
+/// time stamps, and the remedy.
 std::string about_repeats(const std::vector<double>& time_s, std::size_t repeated) {
   std::vector<double> steps;
   std::vector<std::size_t> changes;
@@ -113,7 +113,7 @@ std::string about_repeats(const std::vector<double>& time_s, std::size_t repeate
   return std::to_string(repeated) + " of " + std::to_string(time_s.size()) +
          " rows have the time of the previous row, because the time stamps have steps of " +
          significant(median_of(std::span<double>(steps))) + " s. If the rows are evenly spaced, --rate-hz " +
-         significant(rate) + " in place of --time keeps every row";
+         significant(rate) + " instead of --time keeps every row";
 }
 
 }  // namespace
@@ -126,7 +126,7 @@ std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSample
   }
   if (timed.empty()) return SampleProblem{0, "no sample has a time", {}};
   if (timed.size() < samples.size())
-    remarks.notes.push_back(counted(samples.size() - timed.size(), "without a time left out"));
+    remarks.notes.push_back(counted(samples.size() - timed.size(), "without a time (left out)"));
   remarks.account.leave_out(LeftOut::no_time, samples.size() - timed.size());
   keep(samples, timed);
   from_zero(samples[Role::time], remarks.notes);
@@ -158,7 +158,7 @@ std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSample
                          "the file lasts " + significant(time_s.back()) + " s"};
   remarks.account.leave_out(LeftOut::repeated_time, repeated);
   if (repeated > 0)
-    remarks.notes.push_back(counted(repeated, "with the time of the previous sample left out"));
+    remarks.notes.push_back(counted(repeated, "with the time of the previous sample (left out)"));
   if (static_cast<double>(repeated) > warned_share * static_cast<double>(samples.size()))
     remarks.warnings.push_back(about_repeats(time_s, repeated));
   keep(samples, kept);
@@ -170,13 +170,13 @@ void complete_drive(ForeignSamples& samples, ImportRemarks& remarks) {
   if (samples[Role::command].empty()) {
     samples[Role::command] = samples[Role::pressure];
     remarks.notes.emplace_back(
-        "no command column: the measured pressure is used instead (use --drive measured in a fit)");
+        "no command column, so the measured pressure is used instead (for a fit, use --drive measured)");
   }
   std::vector<double>& command = samples[Role::command];
   const auto first = std::find_if(command.begin(), command.end(), [](double v) { return std::isfinite(v); });
   if (const auto before = static_cast<std::size_t>(first - command.begin());
       before > 0 && first != command.end()) {
-    remarks.notes.push_back(counted(before, "before the first command left out"));
+    remarks.notes.push_back(counted(before, "before the first command (left out)"));
     remarks.account.leave_out(LeftOut::before_command, before);
     keep_range(samples, before, samples.size());
     const double begin_s = samples[Role::time].front();
@@ -190,7 +190,8 @@ void complete_drive(ForeignSamples& samples, ImportRemarks& remarks) {
     ++carried;
   }
   if (carried > 0)
-    remarks.notes.push_back(counted(carried, "without a command keep the command of the previous sample"));
+    remarks.notes.push_back(
+        counted(carried, "without a command (the command of the previous sample is used)"));
 }
 
 void cut_at_holes(ForeignSamples& samples, ImportRemarks& remarks) {
@@ -217,9 +218,9 @@ void cut_at_holes(ForeignSamples& samples, ImportRemarks& remarks) {
               significant(time_s[edges[k + 1] - 1], 6) + " s";
   }
   remarks.notes.push_back("the command changed during " + std::to_string(edges.size() - 2) +
-                          (edges.size() == 3 ? " hole" : " holes") + ": the longest segment is kept, " +
-                          significant(time_s[edges[longest]], 6) + " to " +
-                          significant(time_s[edges[longest + 1] - 1], 6) +
+                          (edges.size() == 3 ? " gap" : " gaps") +
+                          ", so only the longest segment is kept: " + significant(time_s[edges[longest]], 6) +
+                          " to " + significant(time_s[edges[longest + 1] - 1], 6) +
                           " s; to select another segment, use --from-s and --to-s: " + others);
   remarks.account.leave_out(LeftOut::hole, samples.size() - (edges[longest + 1] - edges[longest]));
   keep_range(samples, edges[longest], edges[longest + 1]);

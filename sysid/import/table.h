@@ -17,8 +17,8 @@ namespace softgrip::sysid {
 /// Largest size of an imported text after decompression [bytes]. Without this limit and the limits below, a
 /// small compressed file could exhaust the memory. Other commands read logs of at most 512 MiB.
 inline constexpr std::size_t most_text_bytes = std::size_t{512} << 20U;
-/// Largest length of a line [bytes]. It also limits the number of cells, because a cell can consist of one
-/// byte.
+/// Largest length of a line [bytes]. This limit also bounds the number of cells in a line, because a cell has
+/// at least one byte.
 inline constexpr std::size_t longest_line = std::size_t{1} << 20U;
 inline constexpr std::size_t most_rows = std::size_t{1} << 24U;  ///< largest number of rows; 4.6 h at 1 kHz
 /// Largest number of values in all columns or arrays together.
@@ -52,7 +52,8 @@ struct TableColumn {
   bool surely_minutes = false;  ///< true: one of the times with two fields cannot be hours and minutes
   std::vector<BadCell> bad;     ///< the first cells of the column that could not be read
   std::size_t bad_count = 0;
-  /// All rows with a cell of this column that cannot be read; filled only if such rows are to be skipped.
+  /// All rows in which the cell of this column cannot be read. The list is filled only if the options request
+  /// that such rows are skipped.
   std::vector<std::size_t> bad_rows;
 };
 

@@ -112,7 +112,7 @@ class TdmsReader {
     if (!signed_so) refuse(at, "does not begin with TDSm");
     if ((flags & is_big_endian) != 0) refuse(at, "is big-endian");
     if ((flags & is_daqmx) != 0) refuse(at, has_daqmx);
-    if (raw > next) refuse(at, "declares more metadata than it has bytes");
+    if (raw > next) refuse(at, "declares more bytes of metadata than the segment contains");
     if (raw > size && at == 0) refuse(at, "is cut off in its metadata");
     if (!refused.empty()) return at;
     if (raw > size) {
@@ -132,7 +132,7 @@ class TdmsReader {
     if (refused.empty()) refused = "the segment at byte " + std::to_string(at) + " " + why;
   }
   static std::string quoted(std::string_view name) { return "'" + document::shown(name, 40) + "'"; }
-  /// Stores the reason why the file is refused although its metadata are valid. Always returns false.
+  /// Stores the reason for which a file with valid metadata is refused. Always returns false.
   bool unread(const std::string& why) {
     if (unread_.empty()) unread_ = why;
     return false;
@@ -353,10 +353,11 @@ class TdmsReader {
   std::vector<std::size_t> listed_;  ///< indices of the channels that have values in this segment
   std::size_t steps_ = 0;
   std::size_t values_ = 0;
-  /// Number of bytes that the file lacks, compared with the length in the header of its last segment.
+  /// Number of bytes that are missing at the end of the file, according to the length in the header of its
+  /// last segment.
   std::uint64_t missing_bytes_ = 0;
   std::size_t cut_off_bytes_ = 0;
-  std::string unread_;  ///< reason why the file is refused although its metadata are valid
+  std::string unread_;  ///< reason for which a file with valid metadata is refused
 };
 
 }  // namespace

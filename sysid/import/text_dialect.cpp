@@ -36,7 +36,7 @@ Row row_of(std::string_view line, char separator, const TableOptions& options, s
 }
 
 /// Returns true if a line is a row of the table. Such a row has `width` cells. At least one cell is a number
-/// or a timestamp, and more than half of the cells are values.
+/// or a timestamp, and more than half of the cells contain a number, a timestamp or a missing value.
 bool is_data(const Row& row, std::size_t width) {
   return row.cells == width && row.numbers > 0 && 2 * row.values > row.cells;
 }
@@ -196,7 +196,8 @@ class Heading {
         {file_,
          {line.number, 1},
          std::string(line.text.substr(0, 200)),
-         std::to_string(names) + " names above " + std::to_string(dialect_.width) + " columns of numbers",
+         std::to_string(names) + " column names above " + std::to_string(dialect_.width) +
+             " columns of numbers",
          commas ? "decimal commas and commas between the columns cannot be distinguished: export the file "
                   "with ';' between the columns"
                 : ""});

@@ -55,7 +55,7 @@ class RowReader {
     for (std::size_t i = 0; i < skipped_.size() && i < bad_lines_named; ++i)
       lines += (lines.empty() ? "" : ", ") + std::to_string(skipped_[i]);
     table_.notes.push_back("--skip-bad-lines leaves out " + std::to_string(skipped_.size()) +
-                           " lines with a different number of cells: " + lines +
+                           " lines with too few or too many cells, in lines " + lines +
                            (skipped_.size() > bad_lines_named ? ", ..." : ""));
   }
 
@@ -65,7 +65,7 @@ class RowReader {
     if (comma_.number == 0 || point_.number == 0) return;
     const TextLine& later = comma_.number > point_.number ? comma_ : point_;
     report_.add("decimal", {later.number, 1}, later.text,
-                "numbers with a decimal comma and numbers with a decimal point in one file",
+                "the file contains numbers with a decimal comma and numbers with a decimal point",
                 "the second decimal mark is first used in line " +
                     std::to_string(std::min(comma_.number, point_.number)));
   }
@@ -88,7 +88,7 @@ class RowReader {
       skipped_.push_back(line.number);
     } else {
       report_.add("row", {line.number, 1}, line.text,
-                  closed ? std::to_string(cells_.size()) + " cells where the rows above have " +
+                  closed ? std::to_string(cells_.size()) + " cells, but the rows above have " +
                                std::to_string(dialect_.width)
                          : std::string("a quotation mark is not closed"),
                   "to leave out and count such lines, use --skip-bad-lines");
@@ -100,7 +100,8 @@ class RowReader {
     const std::string channel = cell_text(cells_[channel_].text);
     if (std::find(table_.channels.begin(), table_.channels.end(), channel) == table_.channels.end())
       table_.channels.push_back(channel);
-    // A column that has more different values than a rig has fingers contains readings, not names of fingers.
+    // If a column has more different values than a rig can have fingers, the column contains readings and
+    // does not identify the finger.
     if (table_.channels.size() > most_fingers && !is_log_channel_ && options_.channel.empty()) {
       channel_ = dialect_.width;
       table_.channels.clear();

@@ -74,7 +74,8 @@ constexpr std::array spellings{
 };
 constexpr std::array<std::string_view, 14> raw_units{
     "v", "mv", "volt", "volts", "ma", "a", "counts", "count", "lsb", "adc", "raw", "%", "percent", "digits"};
-/// Names of units that, after a blank or an underscore, can also be a word or an index.
+/// Names of units that are also words or indices. After a blank or an underscore, such a name may not be a
+/// unit.
 constexpr std::array<std::string_view, 10> doubtful{"in", "min", "a", "c",   "d",
                                                     "f",  "h",   "k", "raw", "count"};
 

@@ -44,14 +44,15 @@ class UnusedParts {
       if (is_time && used.empty()) {
         remarks_.warnings.push_back(name + " and is not used, because --rate-hz replaces this column");
       } else if (is_time && same_clock(table_, mapping_, used.front(), i)) {
-        remarks_.notes.push_back(name + " and contains the same times as the time column that is used");
+        remarks_.notes.push_back(name +
+                                 " and is not used, because the time column in use contains the same times");
       } else if (is_time) {
-        remarks_.warnings.push_back(name + " and is not used, because its times differ from those of '" +
+        remarks_.warnings.push_back(name + " and is not used, because its times differ from the times of '" +
                                     document::shown(table_.columns[used.front()].name, 40) + "'");
       } else if (names_role(column.name, Role::time) && column.bad_count * 2 > column.values.size()) {
         remarks_.warnings.push_back(name + " and cannot be read ('" +
                                     document::shown(column.bad.front().text, 30) +
-                                    "'), so this column is not used");
+                                    "'), so the column is not used");
       }
     }
   }

@@ -34,7 +34,7 @@ struct SheetCell {
   bool is_bool = false;
 };
 
-/// Number of cells, and the names of the first cells that were counted.
+/// Number of cells that were added, and the names of the first of these cells.
 struct NamedCells {
   std::size_t count = 0;
   std::string names;
@@ -115,7 +115,7 @@ class SheetReader {
         const auto said = row_number(number);
         if (!said || *said <= before)
           return fail({static_cast<int>(before + 1), 1},
-                      "a row has the number '" + document::shown(number) + "', above " +
+                      "a row has the number '" + document::shown(number) + "', but a number above " +
                           std::to_string(before) + " and at most " + std::to_string(most_sheet_rows) +
                           " is expected");
         row = *said;
@@ -276,8 +276,8 @@ class SheetReader {
     constexpr sys_days of_1904{year{1904} / 1 / 1};
     constexpr double a_year = 366;
     const double longest = cell.row < full_row_ ? cell.serial : longest_[cell.column];
-    // If all values of a column are shorter than one year, they are durations, and their text does not depend
-    // on the origin of the calendar.
+    // If all values of a column are below one year, they are durations. The origin of the calendar must not
+    // change their text, so it is always 1904.
     return iso_date(cell.serial, texts_.from_1904 || longest < a_year ? of_1904 : of_1900, longest >= 1);
   }
 

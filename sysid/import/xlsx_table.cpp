@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t most_sheets = 1000;
 constexpr const char* as_csv = "export the sheet as CSV";
 
-/// A reference from one part of the workbook package to another part.
+/// A reference from one part (file) of the workbook package to another part.
 struct Relation {
   /// Kind of the target, such as "worksheet": the last word of the address in the attribute Type.
   std::string type;
@@ -195,7 +195,7 @@ class WorkbookReader {
     return true;
   }
 
-  /// Returns the text of a sheet, or nullopt if it is refused.
+  /// Returns the text of a sheet, or nullopt if the sheet is refused.
   std::optional<SheetText> text_of(const Sheet& sheet) {
     if (!load(sheet.part, file_of(sheet))) return std::nullopt;
     auto text = sheet_text(document_, texts_);

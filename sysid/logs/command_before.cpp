@@ -108,7 +108,7 @@ Log with_command_before(const Log& log, double before_kpa) {
   longer.notes.push_back(
       {0, "the log begins when the command changes from " + significant(before_kpa, 3) + " to " +
               significant(log.pressure_command_kpa.front(), 3) +
-              " kPa, so a sample with the earlier command was added at the start of the log"});
+              " kPa, so a sample with the command before this change was added at the start of the log"});
   return longer;
 }
 

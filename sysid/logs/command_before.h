@@ -1,6 +1,6 @@
 #pragma once
-// Handles logs that begin at the moment at which the first command is set. The finger is then still at the
-// position of the previous command.
+// Handles logs whose first sample is the moment at which the command changes to its first value. At this
+// moment, the finger is still at the position of the previous command.
 
 #include <optional>
 #include <vector>
@@ -26,8 +26,8 @@ namespace softgrip::sysid {
 [[nodiscard]] std::optional<double> pressure_before_kpa(const Log& log);
 
 /// Returns the log with an additional first sample that has the command `before_kpa` and no reading. The
-/// additional sample is at time 0, so all other samples are delayed by the median interval. A note of the log
-/// states this change.
+/// additional sample is at time 0, so all other samples are delayed by the median interval. A note in the log
+/// states that the sample was added.
 [[nodiscard]] Log with_command_before(const Log& log, double before_kpa);
 
 /// Applies with_command_before() to each log for which pressure_before_kpa() returns a value.

@@ -1,9 +1,9 @@
 #pragma once
 // Divides the readings of records into held-out blocks. Only this file divides records or hides readings.
 //
-// Each validation method has its own function, because the methods are not equally difficult. It is easier to
-// predict a held-out block between fitted readings than a continuation (all readings after the fitted
-// readings) or a whole record.
+// Each validation method has its own function, because the predictions of the methods are not equally
+// difficult. It is easier to predict a held-out block between fitted readings than a continuation (all
+// readings after the fitted readings) or a whole record.
 
 #include <cstddef>
 #include <vector>
@@ -24,7 +24,7 @@ struct Block {
   std::size_t hidden_last = 0;
 };
 
-/// A division of the readings. Adjacent blocks belong to different folds.
+/// A division of the readings of all records into held-out blocks. Adjacent blocks belong to different folds.
 struct Division {
   std::vector<Block> blocks;
   std::size_t folds = 2;
@@ -46,7 +46,7 @@ struct Division {
 /// one fold with five blocks.
 [[nodiscard]] Division divide_into_halves(const std::vector<Record>& records);
 
-/// Removes the readings in [first, last) and updates the number of readings.
+/// Removes the readings in [first, last) from a record and updates its number of readings.
 void hide_readings(Record& record, std::size_t first, std::size_t last);
 /// Keeps the readings in the first `share` of the samples of each record and removes all other readings.
 /// Returns the resulting records.

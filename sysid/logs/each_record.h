@@ -21,8 +21,8 @@ inline constexpr std::size_t samples_worth_a_thread = 1000;
   return samples >= least_samples * records.size();
 }
 
-/// Calls work(i) for i from 0 to `count` - 1 in any order. Each call simulates records. If the records have
-/// at least `least_samples` samples on average, the calls run on idle threads.
+/// Calls work(i) for i from 0 to `count` - 1 in any order. Each call of work(i) simulates records. If the
+/// records have at least `least_samples` samples on average, the calls run on idle threads.
 template <class Work>
 void for_each_walk(const std::vector<Record>& records, std::size_t count, Work&& work,
                    std::size_t least_samples = samples_worth_a_thread) {

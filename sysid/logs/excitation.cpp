@@ -128,8 +128,8 @@ bool contains_rest(const std::vector<Log>& logs) {
 std::vector<std::size_t> turning_points(const std::vector<double>& values, double least) {
   std::vector<std::size_t> turns{0};
   std::size_t highest = 0, lowest = 0;
-  // The variables may_fall and may_rise are both true until the signal has moved by more than `least` in one
-  // direction.
+  // As long as the signal has not moved by more than `least` in one direction, both variables may_fall and
+  // may_rise are true.
   bool may_fall = true, may_rise = true;
   const auto turn = [&](std::size_t at) {
     if (at > turns.back()) turns.push_back(at);

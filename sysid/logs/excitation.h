@@ -1,6 +1,6 @@
 #pragma once
 // Finds motions that are missing in the commands of logs. Some effects are visible only during one kind of
-// motion. If this motion is missing, a fit cannot determine the effect.
+// motion. If no log contains this motion, a fit cannot determine the effect.
 // Finds the turning points of a signal, and approximates the signal by a monotone curve between them.
 
 #include <cstddef>
@@ -25,8 +25,8 @@ enum class Excitation : std::uint8_t {
 /// vacuum pressures, the lowest pressure therefore counts as the largest.
 [[nodiscard]] std::vector<Excitation> missing_excitation(const std::vector<Log>& logs);
 
-/// Returns a sentence about a missing motion. It names the effect that cannot be determined without this
-/// motion.
+/// Returns a sentence about a missing motion. The sentence names the effect that cannot be determined without
+/// this motion.
 [[nodiscard]] std::string without(Excitation missing);
 
 [[nodiscard]] bool contains_rest(const std::vector<Log>& logs);

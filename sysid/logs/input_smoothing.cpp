@@ -10,8 +10,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Reversals that are smaller than this multiple of the noise are removed. The noise that the smoothing
-/// leaves causes only smaller reversals.
+/// Reversals that are smaller than this multiple of the noise are removed after the smoothing. The noise that
+/// is left in the smoothed signal can cause only such small reversals.
 constexpr double least_turn = 5;
 /// A column is not smoothed if its noise is below this share of its range, because such noise hardly affects
 /// the response of a model.
@@ -29,15 +29,15 @@ double range_of(std::span<const double> values) {
   return high - low;
 }
 
-/// Degrees of freedom of the t distribution of the increments of the slope. The slope is mostly constant and
-/// sometimes jumps. With a normal distribution, a single fast vent would increase the estimated drift rate,
-/// and the smoothed signal would then follow the noise in the whole log.
+/// Degrees of freedom of Student's t distribution, which describes the increments of the slope. The slope is
+/// mostly constant and sometimes jumps. With a normal distribution, a single fast vent would increase the
+/// estimated drift rate, and the smoothed signal would then follow the noise in the whole log.
 constexpr double heavy_tail = 1;
 /// Number of iterations that estimate the scale of the drift rate in each step.
 constexpr int rounds = 12;
 
-/// Predicted level and slope before a measurement, the covariance of level and slope, and the innovation of
-/// the measurement.
+/// Predicted level and slope before a measurement, with their covariance, and the innovation of the
+/// measurement.
 struct Estimate {
   double level = 0, slope = 0;
   double ll = 0, ls = 0, ss = 0;
@@ -50,7 +50,8 @@ struct Estimate {
 struct Path {
   std::span<const double> time_s, values;
   double noise = 0;
-  /// Relative variance rates. Element i belongs to the step that ends at sample i.
+  /// Variance rate of each step, divided by `drift_rate`. Element i belongs to the step that ends at sample
+  /// i.
   std::vector<double> shares;
 
   [[nodiscard]] double step_s(std::size_t i) const { return time_s[i] - time_s[i - 1]; }
@@ -96,7 +97,8 @@ double filter(const Path& path, double drift_rate, std::vector<Estimate>* before
 double likeliest_drift_rate(const Path& path) {
   const auto& time_s = path.time_s;
   const double dt = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
-  // At this drift rate, the drift within one sampling interval has the standard deviation of the noise.
+  // With this drift rate, the standard deviation of the drift within one sampling interval equals the
+  // standard deviation of the noise.
   const double unit = path.noise * path.noise / (dt * dt * dt);
   double low = std::log(unit) - 20, high = std::log(unit) + 12;
   const double golden = (std::sqrt(5.0) - 1) / 2;

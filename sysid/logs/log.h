@@ -70,7 +70,7 @@ struct Log {
   [[nodiscard]] std::size_t size() const noexcept { return time_s.size(); }
 };
 
-/// Conditions that logs must meet.
+/// Conditions that a log must meet, so that the reader accepts it.
 struct LogOptions {
   std::string channel;  ///< channel that is read if a log has several channels; "": no channel is selected
   std::size_t bytes = std::size_t{512} * 1024 * 1024;
@@ -81,8 +81,8 @@ struct LogOptions {
   /// column displacement_mm may be absent.
   bool need_readings = true;
   /// If this unit is set, readings in a different unit are refused. `output_unit_of` names the origin of this
-  /// unit ("the model given.yaml"). If it is not set, all logs of a campaign must have the unit of the first
-  /// log.
+  /// unit ("the model given.yaml"). If this unit is not set, all logs of a campaign must have the unit of the
+  /// first log.
   std::optional<model::OutputUnit> output_unit;
   std::string output_unit_of;
   /// A log is refused if the share of clipped readings exceeds this value (1: never refused). If a smaller

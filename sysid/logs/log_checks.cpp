@@ -25,8 +25,8 @@ constexpr double largest_displacement_mm = 5000;
 /// Longest accepted median sampling interval [s]. Even slow processes, such as furnaces, are sampled at
 /// intervals of a few minutes.
 constexpr double longest_median_interval_s = 600;
-/// A gap between two samples is reported if it fulfils three conditions: it is longer than this time [s], it
-/// is longer than `hole_intervals` usual intervals, and the command changes during the gap.
+/// Limit of the duration of a gap between two samples [s]. A gap is reported if its duration exceeds this
+/// limit and `hole_intervals` usual intervals, and if the command changes during the gap.
 constexpr double hole_s = 0.5;
 constexpr double hole_intervals = 20;
 constexpr double gap_intervals = 5;
@@ -97,7 +97,9 @@ class Check {
                hint);
       }
     }
-    if (found > 3) refuse(log_.size(), source_.time_column, std::to_string(found - 3) + " more of these");
+    if (found > 3)
+      refuse(log_.size(), source_.time_column,
+             std::to_string(found - 3) + " more samples have a time that does not increase");
     return found == 0;
   }
 
@@ -129,13 +131,13 @@ class Check {
       if (interval > hole_s && interval > hole_intervals * sampling_.median_interval_s &&
           change > 0.02 * command_.width()) {
         refuse(i, source_.time_column,
-               "a hole of " + significant(interval) + " s in which the command changed by " +
+               "a gap of " + significant(interval) + " s in which the command changed by " +
                    significant(change) + " kPa",
                "cut the log at this gap and give the two parts as two logs");
       }
     }
     if (gaps > 0) {
-      note(longest, std::to_string(gaps) + " gaps in the sampling, of which the longest has " +
+      note(longest, std::to_string(gaps) + " gaps in the sampling; the longest gap lasts " +
                         significant(longest_s) + " s; the command is assumed to be linear during these gaps");
     }
     if (sampling_.jitter_s > 0.01 * sampling_.median_interval_s) {
@@ -166,7 +168,7 @@ class Check {
              "if the column is in Pa, divide the values by 1000");
     } else if (command_.width() > 0 && std::max(-command_.lowest, command_.highest) < small_pressure_kpa) {
       note(p, "the command stays below " + significant(small_pressure_kpa) +
-                  " kPa: check if the column is in bar");
+                  " kPa; check if the column is in bar");
     }
     if (std::abs(log_.displacement_mm[y]) > largest_displacement_mm) {
       refuse(y, source_.displacement_column,

@@ -43,7 +43,7 @@ void LogReporter::finish() {
                    last.first,
                    last.second,
                    kind + ": " + std::to_string(counts_[kind] - shown) +
-                       " more problems of this kind, the last one here",
+                       " more problems of this kind, of which this line contains the last problem",
                    {}});
   }
   last_.clear();

@@ -1,8 +1,8 @@
 #pragma once
 // Defines the columns of the log format: their names, their units, and the members of Log that store their
 // values.
-// Collects the problems of a log and shows only the first problems of each kind, so that a few lines report a
-// file with a million bad rows.
+// Collects the problems of a log. Shows only the first problems of each kind, so that the report of a file
+// with a million bad rows has only a few lines.
 
 #include <array>
 #include <cstddef>

@@ -66,7 +66,7 @@ class RowReader {
         return;
       }
       report_.add("row", {line_number, 1}, line,
-                  std::to_string(cells_.size()) + " cells where the header has " +
+                  std::to_string(cells_.size()) + " cells, but the header has " +
                       std::to_string(header_.names.size()),
                   cells_.size() == 2 * header_.names.size()
                       ? "if the numbers have a decimal comma, use a decimal point"

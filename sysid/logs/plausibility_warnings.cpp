@@ -29,7 +29,8 @@ constexpr double slow_sampling_s = 1;
 constexpr double atmosphere_kpa = 101.325;
 /// A correlation with a magnitude above this value counts as significant.
 constexpr double clear_correlation = 0.5;
-/// If the relative area of a loop is below this value, drift of the sensor cannot explain the loop.
+/// Limit of the mean relative area of the loops. An area below this negative limit means that the readings
+/// precede the pressure by more than a drift of the sensor can explain.
 constexpr double clear_loop_backwards = -0.02;
 
 PairSums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
@@ -71,7 +72,7 @@ void check_measured_pressure(const Log& log, std::vector<std::string>& warnings)
   if (sums.correlation() < -clear_correlation) {
     warnings.push_back("the measured pressure decreases when the command increases (correlation " +
                        significant(sums.correlation(), 3) +
-                       "): if the sign is wrong, use `softgrip import --scale pressure=-X`");
+                       "). If the sign is wrong, use `softgrip import --scale pressure=-X`");
     return;
   }
   if (sums.correlation() < clear_correlation) return;
@@ -80,7 +81,7 @@ void check_measured_pressure(const Log& log, std::vector<std::string>& warnings)
     warnings.push_back(
         "the measured pressure is " + significant(slope, 3) +
         " times the command, which is the conversion factor between " + units +
-        ": if the unit of one column is wrong, state the right unit with `softgrip import --unit`");
+        ". If the unit of one column is wrong, state the right unit with `softgrip import --unit`");
   constexpr int clearly_before = -2;
   if (best_lag(log.pressure_command_kpa, log.pressure_kpa) <= clearly_before)
     warnings.emplace_back(
@@ -117,7 +118,7 @@ void check_response(const Log& log, std::vector<std::string>& warnings) {
   if (correlation < -clear_correlation) {
     warnings.push_back(
         "the reading decreases when the pressure increases (correlation " + significant(correlation, 3) +
-        "): if the sensor is mounted in reverse, use `softgrip import --scale displacement=-X` with "
+        "). If the sensor is mounted in reverse, use `softgrip import --scale displacement=-X` with "
         "a negative factor" +
         (log.output_unit == model::OutputUnit::deg ? " and --unit displacement=deg" : std::string()));
     return;
@@ -138,8 +139,8 @@ void check_free_motion(const Log& log, std::vector<std::string>& warnings) {
   if (holding == 0) return;
   warnings.push_back("the finger holds a part in " +
                      significant(100 * static_cast<double>(holding) / static_cast<double>(log.size()), 2) +
-                     " % of the rows (column result): a model of free motion cannot be fitted to or tested "
-                     "with these rows; record a run without contact");
+                     " % of the rows (column result). A model of free motion cannot be fitted to or tested "
+                     "with these rows. Record a run without contact");
 }
 
 /// Returns a text about a column: its name, its largest value, and the option that states the probable unit.
@@ -185,7 +186,7 @@ void check_spans(const Log& log, std::vector<std::string>& warnings) {
   if (const auto p = extent_of(log.pressure_command_kpa); p && p->width() > 0) {
     if (p->lowest > 0.9 * atmosphere_kpa && p->lowest < 1.1 * atmosphere_kpa)
       warnings.push_back("the pressure never falls below " + significant(p->lowest) +
-                         " kPa, about 1 atmosphere: if the pressure is absolute, subtract the atmosphere "
+                         " kPa, about 1 atmosphere. If the pressure is absolute, subtract the atmosphere "
                          "with `softgrip import --zero`");
   }
   if (const auto y = extent_of(log.displacement_mm); y && y->width() > 0) {
@@ -247,8 +248,8 @@ std::vector<std::string> plausibility_warnings_among(const std::vector<Log>& log
     const auto first = std::find_if(logs.begin(), logs.begin() + static_cast<std::ptrdiff_t>(i),
                                     [&](const Log& log) { return same_samples(log, logs[i]); });
     if (first != logs.begin() + static_cast<std::ptrdiff_t>(i))
-      warnings.push_back(logs[i].name + ": the same samples as " + first->name +
-                         ", and repeated samples make the confidence intervals too narrow");
+      warnings.push_back(logs[i].name + ": the log contains the same samples as " + first->name +
+                         ". Repeated samples make the confidence intervals too narrow");
   }
   std::vector<double> clear = gains;
   std::erase(clear, 0);
@@ -258,7 +259,7 @@ std::vector<std::string> plausibility_warnings_among(const std::vector<Log>& log
     if (gains[i] <= 0) continue;
     if (const std::string mistake = mistaken_unit(gains[i] / usual, logs[i].output_unit); !mistake.empty())
       warnings.push_back(logs[i].name + ": the finger moves " + significant(gains[i] / usual, 3) +
-                         " times as far per kPa as in the other logs: " + mistake + "?");
+                         " times as far per kPa as in the other logs. Possible cause: " + mistake + "?");
   }
   return warnings;
 }
@@ -271,7 +272,7 @@ std::string scale_warning(const std::string& log_name, const std::vector<double>
   const std::string mistake = mistaken_unit(factor, unit);
   if (mistake.empty()) return {};
   return log_name + ": the readings are " + significant(factor, 3) +
-         " times the prediction of the model: " + mistake + "?";
+         " times the prediction of the model. Possible cause: " + mistake + "?";
 }
 
 }  // namespace softgrip::sysid

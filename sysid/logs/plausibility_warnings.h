@@ -8,8 +8,8 @@
 
 namespace softgrip::sysid {
 
-/// The column of a file from which a pressure of the log comes, and the name of this pressure in the options
-/// of `softgrip import`.
+/// The file column that supplies a pressure of the log, and the name of this pressure in the options of
+/// `softgrip import`.
 struct PressureColumn {
   std::string name = "pressure_command_kpa";
   std::string role = "command";

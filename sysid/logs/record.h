@@ -21,10 +21,10 @@ enum class Drive {
 /// Returns "command" or "measured pressure", the name of the drive in the results.
 [[nodiscard]] std::string name_of(Drive drive);
 
-/// Assumption about the state of the finger at the beginning of a log.
+/// Assumption about the state of the finger at the beginning of a log: settled, or unknown.
 enum class Start {
-  /// In a fit, `rest` if the first pressure is nearly 0, otherwise `unknown`. For a prediction, see
-  /// sysid/fitting/start_estimate.h.
+  /// In a fit, the same as `rest` if the first pressure is nearly 0, otherwise the same as `unknown`. For a
+  /// prediction, see sysid/fitting/start_estimate.h.
   automatic,
   /// The finger has settled at the first pressure, which was reached from zero pressure in a single rise.
   rest,
@@ -44,14 +44,14 @@ struct RecordOptions {
 struct StartState {
   double offset_mm = 0;  ///< offset of the sensor's zero
   /// Last peak of the pressure before the first sample. The hysteresis at the first sample depends on this
-  /// peak. A peak that is not above the first pressure has no effect.
+  /// peak. A peak at or below the first pressure has no effect.
   double peak_before_kpa = -std::numeric_limits<double>::infinity();
   /// For each Kelvin-Voigt branch, the creep at the first sample minus the settled creep. This difference
   /// decays with the time constant of the branch.
   std::vector<double> unsettled_mm;
   /// Last valley of the pressure between peak_before_kpa and the first sample. If the pressure rises at the
-  /// first sample, the hysteresis depends on this valley. A valley that is not below the first pressure has
-  /// no effect.
+  /// first sample, the hysteresis depends on this valley. A valley at or above the first pressure has no
+  /// effect.
   double valley_before_kpa = std::numeric_limits<double>::infinity();
   /// Rate of the pressure between its last reversal and the first sample. 0: the pressure has been constant
   /// for so long that all states have settled.
@@ -75,15 +75,16 @@ struct Record {
   std::vector<double> temperature_c;
   std::vector<double> supply_kpa;
   double sample_time_s = 0;  ///< nominal sampling interval; 0: the sampling is irregular
-  /// Shortest interval between two readings that contain independent information [s]. It is the mean interval
-  /// of the log, even if samples were removed from the record. If the remaining readings are means, it is the
-  /// interval of the remaining samples.
+  /// Shortest interval between two readings that contain independent information [s]. If samples were removed
+  /// from the record, this is still the mean interval of the log. If readings were averaged, this is the
+  /// interval between the averaged readings.
   double finest_interval_s = 0;
   double campaign_time_s = 0;     ///< start of the record, relative to the start of the first log
   double span_mm = 0;             ///< range of the readings
   double drive_noise_kpa = 0;     ///< standard deviation of the noise of a measured drive before smoothing
   double largest_kpa = 0;         ///< largest magnitude of the drive
-  double largest_before_kpa = 0;  ///< largest magnitude of the drive in all earlier records of the campaign
+  double largest_before_kpa = 0;  ///< largest magnitude of the drive in all records of the campaign before
+                                  ///< this one
   std::size_t readings = 0;       ///< number of readings
   bool held = false;
   Start start = Start::automatic;  ///< assumption about the initial state
@@ -94,7 +95,7 @@ struct Record {
   [[nodiscard]] std::size_t size() const noexcept { return time_s.size(); }
   /// Returns the time from the first to the last sample [s]. There must be at least one sample.
   [[nodiscard]] double length_s() const noexcept { return time_s.back() - time_s.front(); }
-  /// Returns the mean interval between samples [s]. It is also defined for irregular sampling.
+  /// Returns the mean interval between samples [s]. The mean interval is also defined for irregular sampling.
   [[nodiscard]] double mean_interval_s() const noexcept {
     return length_s() / static_cast<double>(size() > 2 ? size() - 1 : 1);
   }
@@ -112,20 +113,20 @@ struct Record {
 /// @param records  at least one record.
 [[nodiscard]] double time_unit_s(const std::vector<Record>& records);
 
-/// Returns the unit of pressure in which a fit searches for gains and rates per kPa [kPa]. It is 1 kPa if the
-/// largest pressure is at least 20 kPa, as it is for soft fingers. Otherwise it is a twentieth of the largest
-/// pressure, for example if the pressures of a log are in MPa.
-/// @param records  at least one record.
+/// Returns the unit of pressure in which a fit searches for gains and rates per kPa [kPa]. The unit is 1 kPa
+/// if the largest pressure is at least 20 kPa, as it is for soft fingers. Otherwise the unit is a twentieth
+/// of the largest pressure, for example if the pressures of a log are in MPa. @param records  at least one
+/// record.
 [[nodiscard]] double pressure_unit_kpa(const std::vector<Record>& records);
 
-/// Sets the reading of a sample to NaN and updates the number of readings.
+/// Sets the reading of a sample to NaN and updates the number of readings in the record.
 void hide_reading(Record& record, std::size_t sample);
 
-/// Rounds the duration of a step to 1e-12 s. This removes the rounding errors of times in files. Steps of
-/// equal duration then share their coefficients.
+/// Rounds the duration of a step to 1e-12 s, which removes the rounding errors of the times in files. Steps
+/// of equal duration then have identical values and share their precomputed coefficients.
 [[nodiscard]] double step_duration_s(double duration_s);
 
-/// Returns the noise of the readings [mm]. It is a robust estimate from second differences and assumes white
+/// Returns the noise of the readings [mm]. The estimate is robust, uses second differences, and assumes white
 /// noise.
 [[nodiscard]] double fast_noise_mm(const Record& record);
 

@@ -35,8 +35,8 @@ bool jumps_after(const Record& record, std::size_t at, std::size_t stride) {
 }
 
 /// Replaces a command that is held, or that jumps, by its local mean. Without this replacement, a jump
-/// between two kept samples would be early or late by up to one interval. A command whose slope changes
-/// without a jump is not replaced.
+/// between two kept samples would be early or late by up to one interval of the kept samples. A command whose
+/// slope changes without a jump is not replaced.
 void keep_mean_of_jumps(const Record& record, std::size_t stride, Record& thin) {
   if (record.held) {
     for (std::size_t to = 0; to + 1 < thin.size(); ++to) {

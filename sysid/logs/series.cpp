@@ -18,7 +18,7 @@ std::string cell(double value) {
 
 LogSeries series_of(const Log& log, const Record& record, bool all_held_out) {
   LogSeries series;
-  // If the record was averaged, it has other samples than the log.
+  // An averaged record has other samples than the log from which it was made.
   const bool own_samples = record.size() == log.size();
   series.name = log.name;
   series.output_unit = record.output_unit;

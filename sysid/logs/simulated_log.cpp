@@ -30,8 +30,8 @@ model::Surroundings surroundings_at(const Log& log, std::size_t i) {
 Log sampled_signal(model::SignalName signal, double rate_hz) {
   Log log;
   log.name = model::name_of(signal);
-  // The term 1e-6 ensures that a last sample is included even if rounding makes the duration slightly too
-  // short.
+  // The term 1e-6 compensates the rounding of the duration. Without this term, the last sample could be
+  // missing.
   const auto intervals = static_cast<std::size_t>(std::floor(model::duration_s(signal) * rate_hz + 1e-6));
   for (std::size_t i = 0; i <= intervals; ++i) {
     const double time_s = static_cast<double>(i) / rate_hz;

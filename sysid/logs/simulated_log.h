@@ -10,11 +10,13 @@
 
 namespace softgrip::sysid {
 
-/// Returns the samples of a test signal from 0 to its end. displacement_mm is empty.
+/// Returns a log with the command of a test signal at the sampling rate `rate_hz`, from time 0 to the end of
+/// the signal. The log contains no readings.
 [[nodiscard]] Log sampled_signal(model::SignalName signal, double rate_hz);
 
 struct SimulationSettings {
-  /// Standard deviation of white noise [mm]. It is added to the noise of the model's own sensor blocks.
+  /// Standard deviation of white noise [mm]. This noise is added to the noise of the model's own sensor
+  /// blocks.
   double noise_mm = 0;
   std::uint64_t seed = 1;  ///< seed of the added noise and of the noise of the model
   /// True: the command of a sample is held until the next sample, as a board holds its output. A reading then

@@ -15,7 +15,7 @@ namespace softgrip::sysid {
 [[nodiscard]] std::string pressure_units_apart(double factor);
 
 /// Returns the probable mistake if the readings are `factor` times the expected values: "psi in a pressure
-/// column taken for kPa (a factor of 6.895)". Returns "" if `factor` is not the ratio of two units.
+/// column read as kPa (a factor of 6.895)". Returns "" if `factor` is not the ratio of two units.
 /// @param factor  above 0.
 /// @param unit  unit of the readings.
 [[nodiscard]] std::string mistaken_unit(double factor, model::OutputUnit unit);

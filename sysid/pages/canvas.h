@@ -10,7 +10,7 @@
 
 namespace softgrip::sysid {
 
-/// Horizontal point of a text that is placed at the given position: the start, the middle or the end of the
+/// Part of a text that is placed at the given horizontal position: the start, the middle or the end of the
 /// text.
 enum class Anchor { start, middle, end };
 
@@ -18,8 +18,8 @@ enum class Anchor { start, middle, end };
 /// the reader's system is unknown.
 [[nodiscard]] double text_width(std::string_view text);
 
-/// A sequence of SVG elements. All lengths are in pixels. A parameter `more` contains additional attributes
-/// and begins with a blank.
+/// A sequence of SVG elements. All lengths are in pixels. The parameter `more` of a function contains
+/// additional SVG attributes and begins with a blank.
 class Canvas {
  public:
   void line(Pixel from, Pixel to, Colour colour, std::string_view more = {});

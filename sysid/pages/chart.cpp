@@ -18,7 +18,7 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double line_px = 16;       ///< height of one line of text in the title or the legend
-constexpr double tick_line_px = 13;  ///< height of one line of text of a tick label
+constexpr double tick_line_px = 13;  ///< height of one text line in a tick label
 
 /// Returns the SVG attribute of a dash pattern.
 std::string_view dashes_of(Dash dash) {
@@ -192,9 +192,9 @@ class Painter {
     }
   }
 
-  /// Draws each point as a stroke of length 0 with round ends. In the colours `error` and `other`, the
-  /// strokes have square ends and a small length. The length is necessary because PDF renderers draw a square
-  /// end only if the stroke has a direction.
+  /// Draws each point as a stroke of length 0 with round ends. In the colours `error` and `other`, a point is
+  /// a short stroke with square ends instead. The length of this stroke is above 0, because PDF renderers
+  /// draw a square end only if the stroke has a direction.
   void points(const std::vector<Pixel>& curve, Colour colour, double radius) {
     const bool square = colour == Colour::error || colour == Colour::other;
     const auto dots = distinct_dots(curve);
@@ -250,7 +250,7 @@ class Painter {
         canvas_.words_on_curve({right_ - 4, y.px(mark.at) - 4}, Anchor::end, mark.label);
     } else {
       canvas_.line({x.px(mark.at), upper_}, {x.px(mark.at), lower_}, Colour::text, dashes);
-      // The label is placed on the side of its line on which there is enough space for the label.
+      // The label of a line is placed on the side of the line that has enough space for the label.
       const bool fits = x.px(mark.at) + 4 + text_width(mark.label) <= right_;
       const double at = fits ? x.px(mark.at) + 4 : x.px(mark.at) - 4;
       if (!mark.label.empty())

@@ -27,7 +27,7 @@ struct Series {
     bars,   ///< bars from 0 to y that touch each other
     steps,  ///< a line that keeps the value of y until the next x
   };
-  std::string label;  ///< text in the legend; "": the curve is not in the legend
+  std::string label;  ///< text in the legend; "": the legend does not contain the curve
   std::vector<double> x;
   std::vector<double> y;
   std::vector<double> y_upper;  ///< upper edge of a band; used if the style is `band`
@@ -45,7 +45,7 @@ struct Mark {
   std::string label;
 };
 
-/// An axis of a chart. If it has no limits, it covers the range of the data.
+/// An axis of a chart. An axis without limits covers the range of the data.
 struct Axis {
   std::string label;  ///< name and unit of the axis: "displacement [mm]"
   std::optional<double> lower;

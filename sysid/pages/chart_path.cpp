@@ -26,8 +26,8 @@ bool x_increases(const std::vector<Pixel>& curve) {
   return true;
 }
 
-/// Largest numbers of strokes and dots of a curve. A reader cannot distinguish a larger number of strokes or
-/// dots from a filled area.
+/// Largest numbers of strokes and dots of a curve. If there were more, a reader could not distinguish the
+/// curve from a filled area.
 constexpr std::size_t most_strokes = 9000;
 constexpr std::size_t most_dots = 6000;
 
@@ -109,8 +109,8 @@ std::vector<Pixel> thinned_by_stroke(const std::vector<Pixel>& curve, double lea
   return kept;
 }
 
-/// Returns vertical strokes that cover the area of the points. In each pixel column, one stroke covers all
-/// neighbouring points that are at most `gap` apart.
+/// Returns vertical strokes that cover the area of the points. In each pixel column, neighbouring points that
+/// are at most `gap` apart share one stroke.
 std::vector<Pixel> covered(const std::vector<Pixel>& curve, double gap) {
   constexpr double dot = 0.7;  // length of the stroke that covers a single point
   std::vector<Pixel> cloud;

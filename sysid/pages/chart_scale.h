@@ -26,8 +26,8 @@ class Scale {
   [[nodiscard]] double px(double value) const;
   [[nodiscard]] double lower() const { return lower_; }
   [[nodiscard]] double upper() const { return upper_; }
-  /// Returns about `most` ticks or fewer. The ticks are at 1, 2 or 5 times a power of ten, or at powers of
-  /// ten on a logarithmic axis.
+  /// Returns about `most` ticks or fewer, at multiples of 1, 2 or 5 times a power of ten. On a logarithmic
+  /// axis, the ticks are at powers of ten.
   [[nodiscard]] std::vector<Tick> ticks(int most) const;
 
  private:

@@ -40,8 +40,8 @@ std::vector<Column> columns_of(const ChartRows& rows) {
   const std::vector<double>* last_x = nullptr;
   for (const auto& row : rows) {
     for (const Chart& chart : row) {
-      // If charts are stacked, only the lowest chart has a label on its x axis. The columns of the other
-      // charts use this label too.
+      // If charts are stacked, only the lowest chart has a label on its x axis. In the CSV file, the x
+      // columns of all charts use this label.
       const std::string& x_label = chart.x.label.empty() ? rows.back().front().x.label : chart.x.label;
       for (const Series& s : chart.series) {
         if (last_x == nullptr || *last_x != s.x) columns.push_back({x_label, &s.x, &chart.x.categories});

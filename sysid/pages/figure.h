@@ -21,7 +21,8 @@ struct Drawing {
 };
 
 struct Figure {
-  /// Short name of the figure: "error over time tp1". It is also part of the names of the figure's files.
+  /// Short name of the figure: "error over time tp1". This name is also part of the names of the figure's
+  /// files.
   std::string name;
   std::string caption;  ///< caption of one or more sentences
   ChartRows charts;

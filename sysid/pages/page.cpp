@@ -13,8 +13,9 @@ namespace {
 
 using result::element, result::escaped, result::html_of;
 
-/// Numbers of bytes that must remain free below the size limit of a page. A figure must leave `kept_for_text`
-/// bytes free. A copy of a figure, which the reader can save, must leave `kept_for_figures` bytes free.
+/// Two numbers of bytes that must remain free below the size limit of a page. After a figure is added,
+/// `kept_for_text` bytes must be free. After a copy of a figure that the reader can save is added,
+/// `kept_for_figures` bytes must be free.
 constexpr std::size_t kept_for_text = 150'000;
 constexpr std::size_t kept_for_figures = 450'000;
 /// A page has a table of contents if it has at least this number of sections.

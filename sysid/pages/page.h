@@ -1,9 +1,9 @@
 #pragma once
 // Builds the self-contained HTML page of a report: the verdict first, then the provenance, then the sections.
 //
-// The page has no JavaScript and no references to other files. It can be printed. On a screen, it uses the
-// reader's colour scheme. Every text is escaped. Only pictures that the code in this folder draws are
-// inserted as markup. Figures are numbered in the order of the page.
+// The page has no JavaScript and no references to other files. The page can be printed. On a screen, the page
+// uses the reader's colour scheme. Every text is escaped. Only pictures that the code in this folder draws
+// are inserted as markup. Figures are numbered in the order of the page.
 // States the provenance of a result: software, logs and models.
 
 #include <cstddef>
@@ -38,7 +38,8 @@ class Page {
   /// Adds entries below the verdict, such as versions, files and hashes.
   void provenance(Terms entries);
   void section(std::string_view title);
-  /// Begins a section for readers who want to verify the result. In print, the section begins on a new sheet.
+  /// Begins a section with details, for readers who want to verify the result. In print, the section begins
+  /// on a new sheet.
   void appendix(std::string_view title);
   void subsection(std::string_view title);
   void paragraph(std::string_view text);
@@ -50,7 +51,7 @@ class Page {
   /// Adds a text in a fixed-width font with its line breaks, for example a model file.
   void code(std::string_view text);
 
-  /// Returns all figures that were added, including figures that a sentence replaces.
+  /// Returns all figures that were added, including the figures in whose place the page shows a sentence.
   [[nodiscard]] const std::vector<Figure>& figures() const noexcept { return figures_; }
   /// Returns the page as HTML. The page has a table of contents if it has at least three sections.
   [[nodiscard]] std::string to_html() const;

@@ -32,12 +32,12 @@ enum class Colour {
 /// Returns the colour code of the light scheme, such as "#0072b2".
 [[nodiscard]] std::string_view light_code(Colour colour);
 
-/// Returns attributes that set the colours of an SVG element, with a leading blank. The element inherits the
-/// other attributes.
+/// Returns attributes that set the colours of an SVG element. The text begins with a blank. If a colour is
+/// not passed, the element inherits the attribute of this colour.
 [[nodiscard]] std::string stroked(Colour stroke);
 [[nodiscard]] std::string filled(Colour fill, std::optional<Colour> stroke = std::nullopt);
 
-/// Returns CSS that defines the colours of both schemes as variables of `selector`. It also defines the
+/// Returns CSS that defines the colours of both schemes as variables of `selector`. The CSS also defines the
 /// classes that use these variables.
 [[nodiscard]] std::string scheme_css(std::string_view selector);
 

@@ -1,6 +1,7 @@
 #pragma once
-// Checks whether a fitted model is plausible. In a fit to a single stroke, large terms of the model may
-// cancel each other. In the next stroke, they may not cancel.
+// Tests if the predictions of a fitted model stay plausible beyond the data. In a fit to a single stroke,
+// large terms of the model may cancel each other. During a second stroke, the same terms may no longer
+// cancel.
 
 #include <vector>
 
@@ -10,8 +11,8 @@
 namespace softgrip::sysid {
 
 /// Simulates the drive of each record twice in succession. Returns true if the response to each record stays
-/// within the range of the readings, extended on both sides by the width of this range. A repeated stroke
-/// differs from the first one only by creep and training, which are smaller than the stroke.
+/// within the range of its readings, extended on both sides by the width of this range. Only creep and
+/// training can make the second stroke differ from the first one, and both effects are smaller than a stroke.
 [[nodiscard]] bool stays_bounded(const FitPoint& point, const std::vector<Record>& records);
 
 }  // namespace softgrip::sysid

@@ -11,7 +11,8 @@ namespace {
 
 using Segment = model::Segment<double>;
 
-/// The delay of a structure and its lag or regulator, if it has them.
+/// The delay of a structure and its lag or regulator. A component that the structure does not have passes its
+/// input on unchanged.
 class Valve {
  public:
   Valve(const Record& record, const BaseStructure& structure, const NonlinearNumbers& n, double first_kpa)

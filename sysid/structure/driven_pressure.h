@@ -1,6 +1,6 @@
 #pragma once
-// Computes the pressure in the finger. This is the drive of a record after the delay and the lag (or
-// regulator) of a structure.
+// Computes the pressure in the finger: the drive of a record after the delay and the lag of a structure. A
+// regulator may replace the lag.
 
 #include <cstddef>
 #include <vector>
@@ -11,12 +11,12 @@
 
 namespace softgrip::sysid {
 
-/// Pressure in the finger during one record, as a sequence of segments. It is exact if the drive is linear or
-/// constant between samples.
+/// Pressure in the finger during one record, as a sequence of segments. The segments contain no approximation
+/// if the drive is linear or constant between samples.
 struct DrivenPressure {
   double first_kpa = 0;                          ///< pressure at the first sample
   std::vector<model::Segment<double>> segments;  ///< segments with durations in s and pressures in kPa
-  /// For each sample: number of segments that end at or before this sample.
+  /// For each sample: number of segments that end at the time of this sample or before.
   std::vector<std::size_t> until;
 
   [[nodiscard]] double at_kpa(std::size_t sample) const {
@@ -27,8 +27,8 @@ struct DrivenPressure {
 /// Computes the pressure and stores it in `driven`. The function reuses the memory of `driven`, because a
 /// search calls it thousands of times.
 /// @param index  index of the record in `numbers.jumped_from_kpa`.
-/// @param numbers  nonlinear parameters. Only the parameters of components that `structure` contains (delay,
-/// lag, regulator) are used.
+/// @param numbers  nonlinear parameters. The function reads only the parameters of delay, lag and regulator,
+/// and only if `structure` contains the component.
 void drive(const Record& record, std::size_t index, const BaseStructure& structure,
            const NonlinearNumbers& numbers, DrivenPressure& driven);
 

@@ -43,12 +43,12 @@ std::string chosen_by_means(const std::vector<Record>& averaged) {
   double mean_s = 0;
   for (const Record& record : averaged) mean_s = std::max(mean_s, record.mean_interval_s());
   return "more than " + std::to_string(enough_readings) +
-         " readings, so the structure was chosen with means over " + significant(1e3 * mean_s, 2) +
-         " ms, and its parameters were fitted to all samples";
+         " readings, so the structure was chosen with means of the readings over " +
+         significant(1e3 * mean_s, 2) + " ms, and its parameters were fitted to all samples";
 }
 
 /// Adds the estimates of the free parameters to the result. A parameter that is 0 or at a bound has no
-/// interval.
+/// confidence interval.
 void add_estimates(const StructureTrial& trial, Identification& result) {
   FitSpace space(trial.point.model, result.records, free_numbers(trial.point.model));
   space.hold_arrivals(trial.point.starts);
@@ -86,7 +86,8 @@ void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Id
   StructureEvidence::Valve valve{
       stage.delay_s,      stage.filling_s,         stage.venting_s,          stage.rmse_kpa,
       stage.rmse_percent, stage.held_out_rmse_kpa, pressure_noise_kpa(logs), {}};
-  // Valve and finger are simulated in series. Each log begins at its first measured pressure.
+  // Valve and finger are simulated in series. The simulation of each log begins at the first measured
+  // pressure of the log.
   std::vector<Log> driven = logs;
   for (Log& log : driven) log.pressure_kpa = predicted_pressure_kpa(stage, log, options.record.held);
   RecordOptions measured = options.record;
@@ -95,13 +96,13 @@ void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Id
   for (std::size_t k = 0; k < records.size(); ++k) {
     valve.from_command.push_back(
         score_of(result.fitted, records[k], result.scores[k].start, logs[k].displacement_mm));
-    // In these records, the pressure is computed from the command.
+    // The pressure in `records` is the output of the valve model, so the input of this score is the command.
     valve.from_command.back().drive = Drive::command;
   }
   result.model = with_valve(result.fitted, stage);
   if (stage.is_far_off()) {
     result.warnings.push_back(
-        "a model of dead time and lag does not describe the valve: the error between this model and the "
+        "a model of dead time and lag does not describe the valve. The difference between this model and the "
         "measured pressure is " +
         significant(stage.rmse_kpa, 3) + " kPa RMS, " + significant(stage.rmse_percent, 2) +
         " % of the pressure range");

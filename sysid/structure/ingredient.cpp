@@ -80,8 +80,8 @@ BaseStructure without(BaseStructure s, Ingredient ingredient) {
 }
 
 bool has(const BaseStructure& s, Ingredient ingredient) {
-  // If the structure contains only one of delay and lag, the removal of this component is evaluated
-  // separately.
+  // If the structure has only one of delay and lag, the removal of `latency` would repeat the removal of this
+  // component.
   if (ingredient == Ingredient::latency) return s.delay && s.lag;
   return without(s, ingredient) != s;
 }

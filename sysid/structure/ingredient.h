@@ -8,10 +8,11 @@
 
 namespace softgrip::sysid {
 
-/// Components of a structure. Each is removed once to measure how much it reduces the error.
+/// Components of a structure. An ablation removes each component once, to measure the error reduction by this
+/// component.
 enum class Ingredient {
   hysteresis,
-  play_operators,  ///< play operators; the Bouc-Wen element replaces them
+  play_operators,  ///< play operators; after their removal, the structure has the Bouc-Wen element
   creep,
   slow_creep,
   pressure_dependent_creep,
@@ -19,14 +20,15 @@ enum class Ingredient {
   lag,
   second_lag,
   rate_limit,
-  latency,      ///< delay and lag together, because a delay can largely replace a lag, and a lag a delay
-  regulator,    ///< regulator; a structure without it has a lag
-  venting_lag,  ///< separate time constant for venting; a structure without it has one time constant
-  /// Characteristic and envelopes together, because one of them can largely replace the other.
+  latency,      ///< delay and lag together, because each of them can largely replace the other
+  regulator,    ///< regulator; after its removal, the structure has a lag
+  venting_lag,  ///< separate time constant for venting; after its removal, the lag has one time constant
+  /// Characteristic and envelopes together, because each of them can largely replace the other.
   characteristic,
   resonance,
   linear_modes,
-  envelopes  ///< generalised play operators; a structure without them has ordinary play operators
+  envelopes  ///< nonlinear envelopes of the play operators; after their removal, the operators are ordinary
+             ///< ones
 };
 inline constexpr std::array all_ingredients{Ingredient::hysteresis,
                                             Ingredient::play_operators,
@@ -46,13 +48,13 @@ inline constexpr std::array all_ingredients{Ingredient::hysteresis,
                                             Ingredient::envelopes};
 [[nodiscard]] std::string_view name_of(Ingredient ingredient);
 
-/// Returns the structure after removal of a component. If the structure does not contain the component, it is
-/// returned unchanged.
+/// Returns a copy of the structure without this component. If the structure does not contain the component,
+/// returns the structure unchanged.
 [[nodiscard]] BaseStructure without(BaseStructure s, Ingredient ingredient);
 
-/// Returns true if the structure contains the component. Ingredient::latency counts only if the structure has
-/// both a delay and a lag. If it has one of them, the removal of this one is already another entry of an
-/// ablation.
+/// Returns true if the structure contains the component. For Ingredient::latency, returns true only if the
+/// structure has both a delay and a lag. With only one of them, `latency` would repeat the entry for this
+/// component.
 [[nodiscard]] bool has(const BaseStructure& s, Ingredient ingredient);
 
 }  // namespace softgrip::sysid

@@ -25,11 +25,11 @@ namespace {
 
 constexpr int periods = 8;
 constexpr std::array damping_ratios{0.1, 0.5};
-/// Shortest period of the search, in sampling intervals. The samples do not determine the amplitude of a sine
-/// with a shorter period.
+/// Shortest period of the search, in sampling intervals. If the period is shorter, the samples do not
+/// determine the amplitude of a sine.
 constexpr double shortest_in_intervals = 6;
-/// Longest period of the search. It is limited to a share of the longest record and to a number of units of
-/// time_unit_s().
+/// Upper limits of the periods in the search: `longest_share` as a share of the longest record, and
+/// `longest_in_units` in units of time_unit_s(). The smaller one applies.
 constexpr double longest_share = 0.1;
 constexpr double longest_in_units = 10;
 
@@ -39,9 +39,10 @@ void put(FitPoint& point, double period_s, double damping_ratio) {
       model::block_of<model::Inertia>({{"period_s", period_s}, {"damping_ratio", damping_ratio}}));
 }
 
-/// Returns the point with the dead time added to the lags, less the latency of a mode. The fit without the
-/// mode represents the slow rise of the mode partly by a dead time, and this dead time prevents the search
-/// from finding the mode. Returns nullopt if the model has no dead time or no lag.
+/// Returns a copy of the point without dead time. The time constants of the lag are increased by the dead
+/// time minus the latency of the mode. This is necessary because the fit without the mode represents the slow
+/// rise of the mode partly by a dead time. This dead time prevents the search from finding the mode. Returns
+/// nullopt if the model has no dead time or no lag.
 std::optional<FitPoint> with_dead_time_as_lag(FitPoint point, double mode_latency_s) {
   const auto delay = model::position_of<model::TransportDelay>(point.model);
   if (!delay) return std::nullopt;
@@ -55,7 +56,8 @@ std::optional<FitPoint> with_dead_time_as_lag(FitPoint point, double mode_latenc
   return point;
 }
 
-/// Returns the indices of the parameters of resonance, delay and lags in the list of all parameters.
+/// Returns the indices of the parameters of resonance, delay, lags and rate limit in the list of all
+/// parameters.
 std::vector<std::size_t> latencies(const model::Model& model) {
   constexpr std::array movable{
       model::block_type<model::TransportDelay>(),     model::block_type<model::ValveLag>(),
@@ -84,7 +86,8 @@ ResonantFit minimised(const FitPoint& from, const std::vector<Record>& records, 
   return {space.point(minimum.z), minimum.rmse_mm};
 }
 
-/// Continues a fit of the dynamics with all parameters, if they are requested and the error decreases.
+/// Continues the fit `found` with all parameters if `fit` requests them. Returns the new fit only if its
+/// error is smaller.
 ResonantFit completed(ResonantFit found, const std::vector<Record>& records, ResonanceFit fit) {
   if (fit != ResonanceFit::complete || found.point.model.blocks.empty()) return found;
   ResonantFit complete = minimised(found.point, records, fit);
@@ -102,8 +105,9 @@ ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& rec
   const double from_s = shortest_in_intervals * interval_s;
   const double to_s =
       std::max(from_s, std::min(longest_share * length_s, longest_in_units * time_unit_s(records)));
-  // For each damping ratio and form of the latency, the best start point. The forms are not compared, because
-  // the fit without the mode favours the form that it has.
+  // Best start point for each damping ratio, with and without a dead time. In the form without a dead time,
+  // the lag is larger. The two forms are not compared with each other, because a fit without the mode favours
+  // the form with the dead time.
   std::array<ResonantFit, 2 * damping_ratios.size()> best;
   for (int i = 0; i < periods; ++i) {
     const double period_s = from_s * std::pow(to_s / from_s, static_cast<double>(i) / (periods - 1));

@@ -1,6 +1,6 @@
 #pragma once
-// Adds a second-order mode of mass and spring (model/blocks/inertia.h) to a fitted structure, and fits the
-// mode.
+// Adds a second-order mode (a mass on a spring, model/blocks/inertia.h) to a fitted structure, and fits the
+// parameters of the mode.
 
 #include <limits>
 #include <vector>
@@ -17,18 +17,20 @@ struct ResonantFit {
 
 /// Parameters that the fit of a resonance may change.
 enum class ResonanceFit {
-  dynamics,  ///< resonance, dead time, lags and rate limit. Start states stay fixed. This fit is fast.
+  dynamics,  ///< resonance, dead time, lags and rate limit. The initial states of the records stay fixed.
+             ///< This fit is fast.
   complete   ///< all parameters of the structure, starting from the result of `dynamics`
 };
 
-/// Adds a resonance to a point and fits it. The search for period and damping ratio starts from several
-/// periods between 6 sampling intervals and 10 % of the longest record (at most 10 units of
-/// time_unit_s()).
+/// Adds a resonance to a fitted model and fits it. The search for the period and the damping ratio starts
+/// from several periods. The shortest start period is 6 sampling intervals. The longest one is 10 % of the
+/// longest record, at most 10 units of time_unit_s().
 [[nodiscard]] ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& records,
                                          ResonanceFit fit);
 
-/// Adds the resonance of `resonant` to `point` and fits it to modified readings of the same records. The fit
-/// starts at the parameters of `resonant`.
+/// Adds the resonance of `resonant` to `point` and fits the result to `records`. The fit starts at the
+/// parameters of `resonant`. `records` are the records to which `resonant` was fitted, with modified
+/// readings.
 [[nodiscard]] FitPoint with_resonance_of(const FitPoint& resonant, FitPoint point,
                                          const std::vector<Record>& records, ResonanceFit fit);
 

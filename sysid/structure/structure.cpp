@@ -25,7 +25,7 @@ std::string description_of(const BaseStructure& s) {
                      : s.envelopes                          ? "generalised play operators"
                      : s.hysteresis == HysteresisForm::play ? "play operators"
                                                             : "Bouc-Wen";
-  if (s.creep) text += s.slow_creep ? ", creep ladder" : ", creep ladder without its slow end";
+  if (s.creep) text += s.slow_creep ? ", creep ladder" : ", creep ladder without slow branches";
   if (s.hinged_creep) text += ", pressure-dependent creep";
   if (s.modes > 0) text += ", " + std::to_string(s.modes) + (s.modes > 1 ? " linear modes" : " linear mode");
   if (s.delay) text += ", delay";

@@ -18,22 +18,23 @@ namespace softgrip::sysid {
 
 enum class HysteresisForm { bouc_wen, play };
 
-/// The components that a structure has.
+/// The components of a model structure.
 struct BaseStructure {
   HysteresisForm hysteresis = HysteresisForm::play;
-  bool hysteretic = true;  ///< true: the structure has hysteresis; false: it only has an elastic gain
+  bool hysteretic = true;  ///< true: the structure has hysteresis; false: it has an elastic gain instead of
+                           ///< hysteresis
   /// True: the structure has a chain of creep branches with fixed time constants.
   bool creep = true;
   bool slow_creep = true;  ///< true: the chain includes time constants above 10 % of the longest record
   bool delay = true;       ///< true: there is a dead time between the drive and the finger
   bool lag = true;         ///< true: there is a first-order lag after the dead time
   bool two_way = true;     ///< true: the lag has different time constants for filling and venting
-  /// True: there is another lag before the first one, with one time constant for both directions.
+  /// True: a second lag precedes the first lag. It has the same time constant for filling and venting.
   bool second_lag = false;
   bool rate_limit = false;     ///< true: a rate limit follows the lag (model::RateLimit)
-  bool regulator = false;      ///< true: the lag is that of a regulator with an overlap (RegulatedPressure)
+  bool regulator = false;      ///< true: a regulator with an overlap replaces the lag (RegulatedPressure)
   bool characteristic = true;  ///< true: the sum of all operators passes a nonlinear, monotonic map
-  bool resonance = false;      ///< true: a second-order mode follows this map (with_resonance())
+  bool resonance = false;      ///< true: a second-order mode follows the characteristic (with_resonance())
   bool envelopes = false;      ///< true: the play operators are generalised ones with nonlinear envelopes
   bool hinged_creep =
       false;  ///< pressure-dependent creep: a short chain above each threshold pressure (hinge)
@@ -51,28 +52,31 @@ struct BaseStructure {
   bool operator==(const BaseStructure&) const = default;
 };
 
-/// Returns the name of a form in `softgrip identify --structure`: "prandtl_ishlinskii" or "bouc_wen".
+/// Returns the name of a hysteresis form as the option `--structure` of softgrip identify expects it:
+/// "prandtl_ishlinskii" or "bouc_wen".
 [[nodiscard]] std::string_view name_of(HysteresisForm form);
 /// Returns the name of the element with the largest part in a structure: that of its form of hysteresis, or
 /// "linear_modes" for a linear structure.
 [[nodiscard]] std::string_view name_of(const BaseStructure& structure);
-/// Returns a description such as "play operators, creep ladder, delay, lag (filling and venting),
-/// characteristic".
+/// Returns a description of the structure, for example "play operators, creep ladder, delay, lag (filling and
+/// venting), characteristic".
 [[nodiscard]] std::string description_of(const BaseStructure& structure);
 
-/// Parameters of the operators that a fit does not change. These are thresholds, time constants and threshold
+/// Parameters of the operators that are fixed before a fit: thresholds, time constants, and threshold
 /// pressures of creep (hinges).
 struct StructureGrid {
   double time_unit_s = 1;  ///< result of time_unit_s() for the records
   double largest_kpa = 0;  ///< largest magnitude of the drive
   double span_mm = 0;      ///< largest magnitude of the readings
-  /// Thresholds of the play operators except the elastic one (threshold 0), in increasing order.
+  /// Thresholds of the play operators in increasing order. The elastic operator (threshold 0) is not in the
+  /// list.
   std::vector<double> thresholds_kpa;
   std::vector<double> ladder_s;  ///< time constants of the creep branches, in increasing order
-  /// A branch counts as slow creep if its time constant is at least this value.
+  /// Smallest time constant that counts as slow creep.
   double slow_from_s = 0;
   std::vector<double> hinges_kpa;  ///< threshold pressures of pressure-dependent creep, in increasing order
-  std::vector<double> hinge_ladder_s;  ///< time constants of the creep branches that belong to the hinges
+  std::vector<double> hinge_ladder_s;  ///< time constants of the creep branches above each threshold pressure
+                                       ///< (hinge)
   double shortest_period_s = 0;        ///< shortest period of a linear mode
 };
 
@@ -84,7 +88,7 @@ struct ModeNumbers {
   bool operator==(const ModeNumbers&) const = default;
 };
 
-/// The parameters of a structure that affect the displacement nonlinearly.
+/// Parameters of a structure on which the displacement depends nonlinearly.
 struct NonlinearNumbers {
   double delay_s = 0;
   double filling_s = 0;  ///< time constant of the lag while the pressure rises; 0: no lag
@@ -92,19 +96,24 @@ struct NonlinearNumbers {
   double second_s = 0;           ///< time constant of the second lag
   double filling_s_per_kpa = 0;  ///< rate limit: shortest time in which the pressure rises by 1 kPa
   double venting_s_per_kpa = 0;  ///< rate limit: shortest time in which the pressure falls by 1 kPa
-  /// After a reversal of the command, the regulator ignores a change of this size.
+  /// Width of the dead band of the regulator: change of the command after a reversal to which the regulator
+  /// does not respond.
   double pilot_band_kpa = 0;
-  /// Overlap of the regulator; this and the next two members are those of RegulatorNumbers.
+  /// Overlap of the regulator. The members overlap_kpa, integral_s and full_open_kpa are parameters of
+  /// RegulatorNumbers.
   double overlap_kpa = 0;
   double integral_s = 0;
   double full_open_kpa = 0;
   double curvature = 0;        ///< curvature of the characteristic
   double growing_per_kpa = 0;  ///< gamma + eta of the Bouc-Wen element
   double narrowing = 0.5;      ///< eta / (gamma + eta) of the Bouc-Wen element, in (0, 1]
-  double trained_kpa = 0;      ///< largest pressure before the logs, which affects the play operators
-  double envelope_bend = 0;    ///< this member and the next one are those of model::EnvelopeMap
+  double trained_kpa = 0;      ///< largest pressure before the logs; the play operators have been loaded to
+                               ///< this pressure
+  double envelope_bend = 0;    ///< bend of the envelopes; envelope_bend and envelope_skew are parameters of
+                               ///< model::EnvelopeMap
   double envelope_skew = 0;
-  /// For each record, the last peak of the pressure before its start (StartState); 0 for a start from rest.
+  /// For each record, the last peak of the pressure before the start of the record (StartState); 0 if the
+  /// record starts from rest.
   std::vector<double> peak_before_kpa;
   std::vector<ModeNumbers> modes = {};  ///< linear modes
   /// For each record of a linear structure, the pressure at which the finger was at rest before the record.

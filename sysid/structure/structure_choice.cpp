@@ -22,13 +22,13 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::array ridges{1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
-/// Index of the ridge parameter with which the nonlinear parameters are searched from all start points. With
-/// every other ridge parameter, the search starts at the result of this search.
+/// Index of the ridge parameter whose fit starts from all start points. The fits with the other ridge
+/// parameters start at the nonlinear parameters of this fit.
 constexpr std::size_t first_ridge = 2;
 /// Largest number of linear modes. A linear output-error model of order 6 has as many poles.
 constexpr std::size_t most_modes = 3;
 
-/// Returns the candidate structures. The simplest structure comes first.
+/// Returns the candidate structures. The first one is the simplest.
 std::vector<BaseStructure> candidates(const StructureChoiceOptions& options) {
   const bool delay = options.drive == Drive::command;
   std::vector<BaseStructure> list;
@@ -68,8 +68,8 @@ std::size_t best_of(const std::vector<StructureTrial>& trials) {
                                   trials.begin());
 }
 
-/// Returns the index of the first trial whose loss is within one standard error of the lowest loss. The
-/// search begins at the index `first`.
+/// Returns the index of the first trial whose loss exceeds the lowest loss by at most one standard error. The
+/// comparison starts at the index `first`.
 std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std::size_t first = 0) {
   const std::size_t best = best_of(trials);
   for (std::size_t i = first; i < best; ++i) {
@@ -80,8 +80,8 @@ std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std:
   return best;
 }
 
-/// Adds a trial to the choice and selects it if its loss is significantly lower than the loss of the selected
-/// trial.
+/// If the loss of a trial is significantly lower than the loss of the selected trial, adds it to the choice
+/// and selects it.
 void offer(StructureTrial trial, StructureChoice& choice) {
   if (!may_be_chosen(trial) ||
       !is_clearly_less(trial.block_losses_mm2, choice.trials[choice.chosen].block_losses_mm2))
@@ -90,10 +90,10 @@ void offer(StructureTrial trial, StructureChoice& choice) {
   choice.trials.push_back(std::move(trial));
 }
 
-/// Evaluates the chosen structure with an extension and offers the result. Pressure-dependent creep may have
-/// compensated for the missing extension. Therefore the extended structure without this creep is evaluated
-/// too.
-/// @param judged  function that adds the extension to a structure and evaluates it.
+/// Evaluates the chosen structure with an extension and offers the result to the choice. Pressure-dependent
+/// creep may have compensated for a missing extension. Therefore the extended structure is evaluated a second
+/// time without pressure-dependent creep.
+/// @param judged  function that adds the extension to a structure and evaluates the extended structure.
 void offer_extended(const std::function<StructureTrial(const BaseStructure&, const StructureTrial&)>& judged,
                     unsigned threads, StructureChoice& choice) {
   const StructureTrial chosen = choice.trials[choice.chosen];
@@ -136,7 +136,8 @@ void offer_extensions(const StructureJudge& judge, const StructureChoiceOptions&
   }
   if (options.dynamics) {
     say("trying a resonance");
-    // The complete fit takes as long as all other trials, so the fast fit decides whether it is needed.
+    // The complete fit takes as long as all other trials together. The fast fit therefore decides whether the
+    // complete fit is made.
     const StructureTrial still = choice.trials[choice.chosen];
     const StructureTrial screening = judge.judge_resonant(still, ResonanceFit::dynamics);
     if (is_clearly_less(screening.block_losses_mm2, still.block_losses_mm2))
@@ -276,9 +277,9 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
   const StructureJudge judge(records, options);
   const StructureJudge among_more_rungs(records, options, RungsBetween::yes);
   parallel_for(ablation.size(), options.threads, [&](std::size_t i) {
-    // If slow creep is removed, the chain of creep branches gets intermediate time constants. Creep of the
-    // finger whose time constant lies between two time constants of the chain is represented by both. The
-    // larger one of the two may count as slow creep.
+    // If slow creep is removed, the chain of creep branches gets intermediate time constants. The finger may
+    // have creep whose time constant lies between two time constants of the chain. Both branches then
+    // represent this creep together, and the slower branch may count as slow creep.
     const StructureJudge& fair = ablation[i].ingredient == Ingredient::slow_creep ? among_more_rungs : judge;
     BaseStructure still = ablation[i].trial.structure;
     const bool rings = std::exchange(still.resonance, false);
@@ -291,8 +292,8 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
 }
 
 FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records, Drive drive) {
-  // If there is a regulator, the fit starts at its known parameters. The search for these parameters takes
-  // long, and they do not depend on the finger.
+  // If there is a regulator, the fit starts at the parameters of the trial. A search for the parameters of a
+  // regulator takes long. It is not necessary, because these parameters do not depend on the finger.
   return fit_from(trial.structure.regulator ? &trial.numbers : nullptr, trial, records, drive);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Chooses the model structure of a finger. The candidates are fixed, and their errors on held-out readings
-// decide.
+// Chooses the model structure of a finger from a fixed list of candidates. The choice depends on the errors
+// of the candidates on held-out readings.
 
 #include <array>
 #include <cstdint>
@@ -20,27 +20,28 @@ namespace softgrip::sysid {
 enum class StructureQuestion { automatic, bouc_wen, prandtl_ishlinskii };
 
 struct StructureChoiceOptions {
-  /// The published element is rejected if the ratio of another structure's held-out error to its own error is
-  /// below this value, even if the difference is not significant. 0: this rule is not applied. If all
-  /// structures lack a cause, one block may dominate the standard error and make the difference
-  /// insignificant.
+  /// Limit below which the published element is rejected. It applies to the held-out error of the best other
+  /// structure, divided by that of the published element. The rule applies even if the difference is not
+  /// significant. If all structures lack a cause, one block may dominate the standard error and make the
+  /// difference insignificant. 0: the rule is not applied.
   double published_yields_below = 0;
   StructureQuestion question = StructureQuestion::automatic;
-  Drive drive = Drive::command;  ///< input of the structures; with Drive::measured, they have no dead time
-  /// True: a second lag and a resonance are tried too. The diagnosis does not need these extensions, because
-  /// it treats them as causes.
+  Drive drive = Drive::command;  ///< input of the structures; with Drive::measured, the structures have no
+                                 ///< dead time
+  /// True: a second lag, a rate limit and a resonance are tried too. The diagnosis does not need these
+  /// extensions, because it tests them as causes.
   bool dynamics = false;
   std::size_t starts = 20;  ///< number of start points for the published element
-  /// Time constant from which creep counts as slow creep [s]; 0: 10 % of the longest record.
+  /// Smallest time constant that counts as slow creep [s]; 0: 10 % of the longest record.
   double slow_from_s = 0;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  /// Called with a text that states the progress, from any thread.
+  /// Function that receives a text about the progress. Any thread may call it.
   std::function<void(const std::string&)> progress;
 };
 
-/// One structure, fitted to all readings. For the held-out error, it is fitted again for each fold without
-/// the blocks of this fold.
+/// One structure with its fit to all readings. For the held-out error, the structure is fitted once per fold
+/// to the readings outside this fold.
 struct StructureTrial {
   BaseStructure structure;
   FitPoint point;
@@ -48,11 +49,11 @@ struct StructureTrial {
   double ridge = 0;
   double rmse_mm = 0;  ///< RMSE over the readings to which the structure was fitted
   bool converged = false;
-  bool bounded = true;  ///< result of stays_bounded(); a trial that is not bounded cannot be chosen
-  /// False: the published element has an inverse response, so the trial cannot be chosen.
+  bool bounded = true;  ///< result of stays_bounded(); false: the trial cannot be chosen
+  /// False: the published element has an inverse response, so this trial cannot be chosen.
   bool invertible = true;
-  std::vector<double> start_rmse_mm;  ///< RMSE of the search from each start point
-  /// Mean square error of each block, predicted by a fit without this block.
+  std::vector<double> start_rmse_mm;  ///< RMSE at the end of the search from each start point
+  /// Mean square error of each block, which was left out of the fit that predicts it.
   std::vector<double> block_losses_mm2;
   double heldout_rmse_mm = 0;  ///< square root of the mean of the block losses
 };
@@ -64,15 +65,16 @@ struct StructureChoice {
   std::size_t blocks = 0;
 };
 
-/// The chosen structure after removal of one component, fitted and evaluated like the chosen structure.
+/// The chosen structure without one of its components. It is fitted and evaluated in the same way as the
+/// chosen structure.
 struct WithoutIngredient {
   Ingredient ingredient;
   StructureTrial trial;
 };
 
-/// Returns the records under the assumption that each of them begins at rest at its first pressure. If the
-/// held-out loss is significantly lower with unknown initial states, returns the records unchanged. An
-/// initial state that the caller specifies is not changed.
+/// Returns the records with the assumption that each record begins at rest at its first pressure. If unknown
+/// initial states lead to a significantly lower held-out loss, returns the records unchanged. An initial
+/// state that the caller specifies is not changed.
 [[nodiscard]] std::vector<Record> with_simplest_start(const std::vector<Record>& records,
                                                       const StructureChoiceOptions& options);
 
@@ -85,24 +87,26 @@ struct WithoutIngredient {
 [[nodiscard]] StructureChoice choose_structure(const std::vector<Record>& records,
                                                const StructureChoiceOptions& options);
 
-/// Fits a trial to the original records, starting at its parameters. The trial was chosen with averaged
-/// records. Its member `numbers` and its held-out losses keep the values of the choice.
+/// Fits a trial to the original records. During the choice, the trial was fitted to averaged records; the new
+/// fit starts at the parameters of this fit. In the result, `numbers` and the held-out losses keep their
+/// values.
 [[nodiscard]] StructureTrial fitted_to(StructureTrial trial, const std::vector<Record>& records, Drive drive);
 
-/// For each of the given components that the chosen structure contains, fits and evaluates the structure
-/// without this component. Returns an empty list for the published element.
-/// @param records, options  the arguments of choose_structure().
+/// Removes one component at a time from the chosen structure, and fits and evaluates the remaining structure.
+/// Only the given components that the chosen structure contains are removed. Returns an empty list for the
+/// published element.
+/// @param records, options  arguments with which choose_structure() was called.
 [[nodiscard]] std::vector<WithoutIngredient> ablation_of(
     const std::vector<Record>& records, const StructureChoice& choice, const StructureChoiceOptions& options,
     std::span<const Ingredient> ingredients = all_ingredients);
 
-/// Fits the structure of a trial, with the ridge parameter of the trial, to modified readings of the same
-/// records.
-/// @param trial  trial without a resonance, that is, from a choice without `dynamics`.
+/// Fits the structure of a trial to modified readings of the records from which the trial was chosen. The
+/// ridge parameter is that of the trial.
+/// @param trial  trial without a resonance, for example from a choice without `dynamics`.
 [[nodiscard]] FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records,
                                  Drive drive);
-/// Fits the structure like fit_again(), but the search starts only at the parameters of the trial. Use this
-/// function if the readings differ little from the readings of the trial.
+/// Fits the structure like fit_again(), but starts the search only at the parameters of the trial. Use this
+/// function if the modified readings differ little from the readings of the trial.
 [[nodiscard]] FitPoint fit_nearby(const StructureTrial& trial, const std::vector<Record>& records,
                                   Drive drive);
 

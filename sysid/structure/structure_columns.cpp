@@ -17,8 +17,8 @@ namespace {
 using Segment = model::Segment<double>;
 using Weights = model::ExponentialWeights<double>;
 
-/// Returns true if the parameters of delay, lags and regulator in `a` equal those in `b`. The pressure in the
-/// finger is then equal too.
+/// Returns true if `a` and `b` have equal parameters of delay, lags and regulator. The pressure in the finger
+/// is then equal for both.
 bool drive_alike(const NonlinearNumbers& a, const NonlinearNumbers& b) {
   return a.delay_s == b.delay_s && a.filling_s == b.filling_s && a.venting_s == b.venting_s &&
          a.second_s == b.second_s && a.filling_s_per_kpa == b.filling_s_per_kpa &&
@@ -46,12 +46,13 @@ class Ladder {
 
  private:
   using Pair [[gnu::vector_size(16)]] = double;
-  /// Weights of the state at the end of a step for two branches; see model::ExponentialWeights.
+  /// Weights with which the state at the end of a step is computed, for two branches; see
+  /// model::ExponentialWeights.
   struct PairWeights {
     Pair loss{}, begin{}, rise{}, bend{};
   };
-  /// Weights for a duration that was used recently. Such a duration is the sampling time, or one of the
-  /// pieces into which a delay divides this time.
+  /// Weights for a step duration that was used recently. A step lasts one sampling interval, or one of the
+  /// parts into which a delay divides the interval.
   struct Kept {
     double duration_s = 0;
     std::vector<PairWeights> pairs;
@@ -82,8 +83,8 @@ class Ladder {
   std::size_t next_ = 0;
 };
 
-/// Returns the part of a segment that lies above a threshold pressure (hinge). Its pressures are relative to
-/// the threshold.
+/// Returns the part of a segment that lies above a threshold pressure (hinge). The pressures of the result
+/// are relative to the threshold.
 Segment above(const Segment& in, double hinge_kpa) {
   const double begin = in.begin - hinge_kpa, end = in.end - hinge_kpa;
   if (begin >= 0 && end >= 0) return {in.duration_s, begin, end, in.mean - hinge_kpa};
@@ -92,7 +93,7 @@ Segment above(const Segment& in, double hinge_kpa) {
   return {in.duration_s, std::max(begin, 0.0), std::max(end, 0.0), high * high / (2 * std::abs(end - begin))};
 }
 
-/// State of the hysteresis, either of the Bouc-Wen element or of the play operators.
+/// State of the hysteresis: either the state of the Bouc-Wen element, or the states of all play operators.
 class PressureMemory {
  public:
   PressureMemory(const BaseStructure& structure, const StructureGrid& grid, const NonlinearNumbers& numbers,
@@ -113,7 +114,7 @@ class PressureMemory {
     if (peak_kpa > first_kpa) move(peak_kpa, first_kpa);
   }
 
-  /// Updates the state for a monotonic change of the pressure.
+  /// Updates the state after the pressure has changed monotonically from `from` to `to`.
   void move(double from, double to) {
     if (bouc_wen_) {
       if (to != from) g_ = stepped(g_, to - from, rates_);
@@ -125,8 +126,8 @@ class PressureMemory {
     }
   }
 
-  /// Returns the input of the play operators for a pressure, that is, the value of the envelope function
-  /// [kPa].
+  /// Returns the value of the envelope function at a pressure [kPa]. This value is the input of the play
+  /// operators.
   [[nodiscard]] double seen_kpa(double kpa) const { return envelopes_.value(kpa); }
 
   template <class Row>
@@ -140,11 +141,11 @@ class PressureMemory {
   model::EnvelopeMap<double> envelopes_;
   bool bouc_wen_;
   HysteresisRates rates_;
-  /// `plays_`: current states of the play operators; `untouched_`: their states after the largest load before
-  /// the logs.
+  /// `plays_`: current states of the play operators [kPa]. `untouched_`: their states at zero pressure after
+  /// a load to the largest pressure before the logs [kPa].
   std::vector<double> plays_, untouched_;
   double g_ = 0;
-  double steepest_;  ///< largest slope dg/dp of the hysteretic state g over the pressure p
+  double steepest_;  ///< largest slope dg/dp of the hysteretic state g with respect to the pressure p
 };
 
 std::size_t branches_of(const BaseStructure& structure, const StructureGrid& grid) {
@@ -226,7 +227,7 @@ const Eigen::MatrixXd& StructureColumns::at(const NonlinearNumbers& numbers) {
   return columns_;
 }
 
-/// Writes the columns of elastic gain and creep, which depend only on the pressure in the finger.
+/// Writes the columns of elastic gain and creep. These columns depend only on the pressure in the finger.
 void StructureColumns::write_driven(std::size_t r) {
   const DrivenPressure& driven = driven_[r];
   Ladder ladder(grid_.ladder_s, driven.first_kpa);
@@ -288,8 +289,8 @@ void StructureColumns::write_hysteresis(std::size_t r) {
   }
 }
 
-/// Writes the columns of offset, unsettled creep and drift of each record, which do not depend on the
-/// parameters.
+/// Writes the columns that belong to single records: offset, unsettled creep and drift. These columns do not
+/// depend on the nonlinear parameters.
 void StructureColumns::write_own() {
   for (std::size_t r = 0; r < records_.size(); ++r) {
     const Record& record = records_[r];

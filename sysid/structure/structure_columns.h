@@ -1,6 +1,6 @@
 #pragma once
 // Computes the regressor matrix of a structure. Each column is the response of one operator to the pressure
-// of the records. The weighted sum of the columns is the displacement before the characteristic is applied.
+// of the records. The displacement before the characteristic is the weighted sum of the columns.
 
 #include <cstddef>
 #include <vector>
@@ -23,8 +23,8 @@ class ColumnLayout {
   ColumnLayout(const BaseStructure& structure, const StructureGrid& grid, const std::vector<Record>& records);
 
   [[nodiscard]] static constexpr Eigen::Index elastic() { return 0; }
-  /// Returns the column of play operator i or of the Bouc-Wen element. The column of the Bouc-Wen element is
-  /// steepest_state() times the pressure, minus the state of the element divided by beta.
+  /// Returns the column of play operator i, or of the Bouc-Wen element for i = 0. The column of the Bouc-Wen
+  /// element is steepest_state() times the pressure minus the normalised state of the element.
   [[nodiscard]] static constexpr Eigen::Index hysteresis(std::size_t i) {
     return 1 + static_cast<Eigen::Index>(i);
   }
@@ -40,12 +40,12 @@ class ColumnLayout {
     return hinged(hinges_, 0) + 2 * static_cast<Eigen::Index>(mode);
   }
   [[nodiscard]] Eigen::Index own() const { return mode(modes_); }
-  /// Returns the column of a record's offset, or -1 if the offset of the record is not fitted.
+  /// Returns the column of the offset of a record, or -1 if this offset is not fitted.
   [[nodiscard]] Eigen::Index offset(std::size_t record) const { return offset_[record]; }
   [[nodiscard]] Eigen::Index unsettled(std::size_t record) const { return unsettled_[record]; }
-  /// Returns the first of the knots() columns of a piecewise linear drift. The knots begin at the first
-  /// sample of the record and have a distance of `knot_interval_s`. The first knot has no column, because the
-  /// drift is 0 there.
+  /// Returns the first of the knots() columns of the piecewise linear drift of a record. The first knot is at
+  /// the first sample of the record, and the distance between knots is `knot_interval_s`. The drift is 0 at
+  /// the first knot, so this knot has no column.
   [[nodiscard]] Eigen::Index zero_drift(std::size_t record) const { return zero_drift_[record]; }
   [[nodiscard]] std::size_t knots(std::size_t record) const { return knots_[record]; }
   static constexpr double knot_interval_s = 20;
@@ -68,30 +68,31 @@ class ColumnLayout {
   Eigen::Index count_ = 0;
 };
 
-/// Returns the largest slope of the normalised Bouc-Wen state over pressure: 2 eta/(gamma + eta), at least 1.
-/// This slope occurs at the reversal of a saturated loop. The element is monotonic if its elastic gain is at
-/// least beta times this slope.
+/// Returns the largest slope of the normalised Bouc-Wen state with respect to pressure, which is 2 eta/(gamma
+/// + eta) but at least 1. This slope occurs at the reversal of a saturated loop. The element is monotonic if
+/// its elastic gain is at least beta times this slope.
 [[nodiscard]] double steepest_state(const NonlinearNumbers& numbers);
 
-/// Position of a row of the matrix: its record and its sample. Each sample with a reading is a row.
+/// Record and sample to which a row of the matrix belongs. Each sample with a reading has one row.
 struct RowPlace {
   std::size_t record = 0;
   std::size_t sample = 0;
 };
 [[nodiscard]] std::vector<RowPlace> rows_of(const std::vector<Record>& records);
 
-/// The regressor matrix with one row per reading and the columns of ColumnLayout. The columns before own()
-/// are in kPa, and their weights are in mm/kPa. The columns from own() on are dimensionless.
+/// The regressor matrix. It has one row per reading and the columns of ColumnLayout. The columns before own()
+/// are in kPa, and their weights are in mm/kPa. The other columns are dimensionless, and their weights are in
+/// mm.
 class StructureColumns {
  public:
   /// `records`, `structure` and `grid` must outlive the object.
   StructureColumns(const std::vector<Record>& records, const BaseStructure& structure,
                    const StructureGrid& grid);
 
-  /// Returns the matrix for the given nonlinear parameters. Parameters that the structure does not have are
-  /// ignored. A column is recomputed only if its parameters have changed since the previous call. The columns
-  /// that depend on the delay and the lags take most of the time. Idle threads process the records in
-  /// parallel. The result is valid until the next call.
+  /// Returns the matrix for these nonlinear parameters. Parameters of components that the structure does not
+  /// contain are ignored. Columns are recomputed only if their parameters have changed since the previous
+  /// call. Most of the time is spent on the columns that depend on the delay and the lags. Idle threads
+  /// process the records in parallel. The returned reference is valid until the next call.
   [[nodiscard]] const Eigen::MatrixXd& at(const NonlinearNumbers& numbers);
 
  private:
@@ -104,9 +105,9 @@ class StructureColumns {
   const BaseStructure& structure_;
   const StructureGrid& grid_;
   ColumnLayout layout_;
-  std::vector<std::size_t> first_row_;  ///< index of the first row of each record
+  std::vector<std::size_t> first_row_;  ///< for each record, index of its first row
   Eigen::MatrixXd columns_;
-  NonlinearNumbers numbers_;            ///< parameters for which columns_ was computed
+  NonlinearNumbers numbers_;            ///< parameters with which columns_ was computed
   std::vector<DrivenPressure> driven_;  ///< pressure of each record; empty before the first call of at()
 };
 

@@ -18,15 +18,16 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Penalty for a parameter whose distance from its prior value is one prior width. It is added to the
-/// logarithm of the mean square.
+/// Penalty for a parameter at a distance of one prior width from its prior value. The penalty is added to the
+/// logarithm of the sum of squared residuals.
 constexpr double prior = 0.05;
-/// Smallest instantaneous elastic gain, as a share of the gain of the finger over the whole pressure range.
+/// Lower limit of the instantaneous elastic gain, as a share of (displacement range / largest pressure).
 constexpr double least_elastic_share = 0.01;
-/// Largest dead band of a regulator, as a share of the largest pressure. Data sheets state 0.005 to 0.02.
+/// Upper limit of the dead band of a regulator, as a share of the largest pressure. Data sheets state values
+/// from 0.005 to 0.02.
 constexpr double widest_of_a_regulator = 0.03;
-/// Prior width of the bend of an envelope. If this width were twice as large, envelopes would fit the
-/// saturation of a sensor and thereby hide it (textbook test cases).
+/// Prior width of the bend of an envelope. With twice this width, envelopes would fit the saturation of a
+/// sensor and thereby hide the saturation (seen in the textbook test cases).
 constexpr double usual_bend = 0.05;
 /// Ratio of consecutive time constants of the creep branches.
 constexpr double ladder_ratio = 3;
@@ -34,14 +35,15 @@ constexpr double ladder_ratio = 3;
 /// Nyquist period is 2); and its longest period in units of time_unit_s().
 constexpr double mode_width = 3, shortest_mode_in_intervals = 4, longest_mode_in_units = 10;
 
-/// A nonlinear parameter and its coordinate t in the search. The coordinate has a magnitude of about 1.
+/// A nonlinear parameter of the search. It is scaled to a coordinate t whose magnitude is about 1.
 struct Coordinate {
   std::function<double(const NonlinearNumbers&)> get;
   std::function<void(NonlinearNumbers&, double)> set;
   double centre = 0;
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
-  /// True: the pressure in the finger depends on this coordinate, so its derivative is expensive.
+  /// True: the pressure in the finger depends on this parameter, so a derivative needs a new simulation of
+  /// the pressure.
   bool drives = false;
 };
 
@@ -79,7 +81,7 @@ class Search {
   struct State {
     NonlinearNumbers numbers;
     Projection projection;
-    Eigen::VectorXd residual;  ///< prediction errors, followed by the penalties for the parameters
+    Eigen::VectorXd residual;  ///< prediction errors, followed by the ridge penalties of the weights
     double value = std::numeric_limits<double>::infinity();
   };
 
@@ -110,8 +112,8 @@ class Search {
     const auto n = static_cast<Eigen::Index>(coordinates_.size());
     Eigen::MatrixXd jacobian(state.residual.size(), n);
     NormalEquations normal;
-    // The coordinates that do not affect the pressure in the finger are changed first, because the pressure
-    // that was computed last then remains valid.
+    // The parameters that do not affect the pressure in the finger are changed first. During these changes,
+    // the pressure that was computed for the current state stays valid.
     for (const bool drives : {false, true}) {
       for (Eigen::Index k = 0; k < n; ++k) {
         const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
@@ -140,7 +142,8 @@ class Search {
     for (Eigen::Index k = 0; k < n; ++k) {
       const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
       const double t = c.get(state.numbers);
-      // A bound that is converted to a logarithm and back has a rounding error.
+      // A bound is converted to a logarithm and back, which causes a rounding error. Values within 1e-9 of
+      // the bound therefore count as equal to the bound.
       bounds.lower(k) = t <= c.lower + 1e-9 ? 0 : c.lower - t;
       bounds.upper(k) = t >= c.upper - 1e-9 ? 0 : c.upper - t;
     }
@@ -191,8 +194,8 @@ class Search {
                                 1e3 * unit_s / grid_.largest_kpa));
     }
     if (structure_.lag && structure_.regulator) {
-      // A regulator has no wider dead band than this. Otherwise the search would fit a backlash by a dead
-      // band.
+      // The dead band of a regulator has an upper limit. Without this limit, the search could represent
+      // backlash of the finger by the dead band.
       const double widest_kpa = widest_of_a_regulator * grid_.largest_kpa;
       add_driving(straight(&N::pilot_band_kpa, 1, 0, 0, widest_kpa));
       add_driving(straight(&N::overlap_kpa, 1, 0, 0, widest_kpa));
@@ -264,14 +267,14 @@ std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, con
                             .trained_kpa = trained * grid.largest_kpa,
                             .peak_before_kpa = peaks};
   };
-  // The three start points are a fast valve, a valve with a dead time in place of a lag, and a slow valve.
+  // The three start points describe a fast valve, a valve whose dead time exceeds its lag, and a slow valve.
   return {start(0.02, 0.15, 0.15, 2, 0), start(0.15, 0.05, 0.05, 6, 1.2), start(0.1, 0.5, 1.5, 3, 0.5)};
 }
 
-/// Returns each start point with several rate limits that replace most of the lags. A lag that was fitted to
-/// a ramp of duration T has a time constant of about T / 1.5. The ramp is assumed to cover a share of the
-/// pressure range. A rate limit that is too fast has no effect and no gradient, so different shares are
-/// tried.
+/// Returns each start point with several rate limits, which replace three quarters of each lag. A lag that
+/// was fitted to a ramp of duration T has a time constant of about T / 1.5. The share of the pressure range
+/// that the ramp covers is unknown. A rate limit that is too fast has no effect and no gradient, so three
+/// different shares are tried.
 std::vector<NonlinearNumbers> with_rate_limits(const std::vector<NonlinearNumbers>& starts,
                                                const StructureGrid& grid) {
   std::vector<NonlinearNumbers> limited;

@@ -1,6 +1,6 @@
 #pragma once
-// Fits a structure to records by variable projection: the search changes only the nonlinear parameters, and
-// for each trial the optimal weights are computed.
+// Fits a structure to records by variable projection. The search changes only the nonlinear parameters. For
+// each set of nonlinear parameters, the optimal weights are computed.
 
 #include <vector>
 
@@ -13,7 +13,7 @@
 namespace softgrip::sysid {
 
 struct StructureFitOptions {
-  double ridge = 1e-5;       ///< factor of the ridge penalty (ProjectionProblem)
+  double ridge = 1e-5;       ///< factor of the ridge penalty (ProjectionProblem::ridge)
   int most_iterations = 40;  ///< maximum number of iterations from each start point
   /// Maximum number of readings in the search; the final weights are fitted to all readings.
   std::size_t most_rows = 2500;
@@ -31,8 +31,8 @@ struct FittedStructure {
   std::vector<double> start_rmse_mm;  ///< for each start point, the RMSE at the end of the search
 };
 
-/// Returns the thresholds, time constants and hinges for these records. If the records contain few cycles,
-/// there are fewer play operators.
+/// Returns the thresholds, time constants and hinges that are used for these records. If the records contain
+/// at most two cycles, the number of play operators is smaller.
 [[nodiscard]] StructureGrid grid_for(const std::vector<Record>& records);
 
 /// Returns the smallest instantaneous elastic gain of a structure that has an inverse [mm/kPa].
@@ -40,8 +40,8 @@ struct FittedStructure {
 /// Returns the longest period of a linear mode in a fit [s].
 [[nodiscard]] double longest_mode_s(const StructureGrid& grid);
 
-/// Returns start parameters for the search of a regulator. They replace the parameters of the lag. The
-/// overlap of the regulator, and its error with a fully open port, are proportional to the largest pressure.
+/// Returns start parameters for the fit of a regulator. They replace the parameters of a fitted lag. The
+/// overlap, and the pressure error at which the port is fully open, are proportional to the largest pressure.
 [[nodiscard]] NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureGrid& grid);
 
 /// Fits a structure from several default start points, or from the parameters `near` if they are given. A
@@ -51,8 +51,8 @@ struct FittedStructure {
                                        const StructureGrid& grid, const StructureFitOptions& options,
                                        const NonlinearNumbers* near = nullptr);
 
-/// Removes the drift of the zero offset from the readings. Fits the structure together with a drift of each
-/// record, and subtracts the fitted drift.
+/// Removes the drift of the zero offset from the readings. The structure is fitted together with one drift
+/// per record, and the fitted drift is subtracted.
 [[nodiscard]] std::vector<Record> without_zero_drift(std::vector<Record> records, BaseStructure structure,
                                                      const StructureFitOptions& options);
 

@@ -12,14 +12,14 @@
 
 namespace softgrip::sysid {
 
-/// Value `yes`: the chain of creep branches has an additional time constant between each two neighbouring
-/// time constants.
+/// Value `yes`: between any two neighbouring time constants, the chain of creep branches has one additional
+/// time constant.
 enum class RungsBetween { no, yes };
 
 class StructureJudge {
  public:
-  /// Largest number of iterations in a fold. This number is small, because the nonlinear parameters of a fold
-  /// differ little from the parameters that are fitted to all readings.
+  /// Largest number of iterations in a fold. A few iterations are sufficient, because the nonlinear
+  /// parameters of a fold differ little from those of the fit to all readings.
   static constexpr int fold_iterations = 5;
 
   /// `records` and `options` must outlive the object.
@@ -36,13 +36,13 @@ class StructureJudge {
   /// Evaluates a structure. The fit starts from the default start points.
   [[nodiscard]] StructureTrial judge(const BaseStructure& structure, double ridge) const;
   /// Evaluates a fitted structure on held-out blocks.
-  /// @param iterations  maximum number of iterations in each fold, starting from the parameters of `whole`;
-  /// 0: the nonlinear parameters stay fixed.
+  /// @param iterations  maximum number of iterations in each fold. The fit of a fold starts from the
+  /// parameters of `whole`. 0: the nonlinear parameters stay fixed.
   [[nodiscard]] StructureTrial judge(const FittedStructure& whole, double ridge, int iterations) const;
-  /// Evaluates a structure. The fit starts from the nonlinear parameters of a similar structure.
+  /// Evaluates a structure. The fit starts from the nonlinear parameters `numbers` of a similar structure.
   [[nodiscard]] StructureTrial judge_near(const BaseStructure& structure, double ridge,
                                           const NonlinearNumbers& numbers) const;
-  /// Evaluates a structure with a regulator in place of the lag. The fit starts at the parameters of the
+  /// Evaluates a structure in which a regulator replaces the lag. The fit starts at the parameters of the
   /// trial with the lag.
   [[nodiscard]] StructureTrial judge_regulated(BaseStructure structure, const StructureTrial& lagging) const;
   /// Returns true if the held-out error of a trial is at most 1.1 times the noise of the readings. No further
@@ -50,8 +50,8 @@ class StructureJudge {
   [[nodiscard]] bool is_noise(const StructureTrial& trial) const;
   /// Returns the result of lacks_linear_dynamics() for a trial.
   [[nodiscard]] bool lacks_linear_dynamics(const StructureTrial& trial) const;
-  /// Evaluates a trial with an additional resonance. The member `numbers` keeps the values of the trial
-  /// without the resonance.
+  /// Evaluates a trial after a resonance is added to it. The member `numbers` of the result keeps the values
+  /// from the fit without the resonance.
   [[nodiscard]] StructureTrial judge_resonant(const StructureTrial& still, ResonanceFit resonance_fit) const;
 
  private:

@@ -22,13 +22,14 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Stiffness k0 of a spring that is practically rigid. The instantaneous gain is then alpha or the gain of
-/// the elastic play operator.
+/// Stiffness k0 of a spring that is practically rigid. The instantaneous gain of the model is then alpha
+/// (Bouc-Wen) or the gain of the elastic play operator.
 constexpr double rigid_kpa_per_mm = 1e9;
-/// Compliance of a branch that is included only for its time constant [mm/kPa].
+/// Compliance of a creep branch with weight 0 [mm/kPa]. The model contains this branch because the unsettled
+/// creep of a record needs its time constant.
 constexpr double next_to_no_creep = 1e-7;
-/// Damping of a branch that is included only for its time constant. The upper bound of the block limits this
-/// damping.
+/// Largest damping of a creep branch [kPa s/mm]. It is the upper bound of this parameter in the block. A slow
+/// creep branch with weight 0 has this damping.
 constexpr double largest_dashpot_kpa_s_per_mm = 1e8;
 
 class Builder {

@@ -95,7 +95,8 @@ class Projector {
     gram.diagonal() += ridge_;
     return solve_bounded(gram, columns.transpose() * target, lower_, upper_).x;
   }
-  /// Returns the weights after one Gauss-Newton step. The characteristic is linearised at its input `z`.
+  /// Returns the weights after one Gauss-Newton step. In this step, the characteristic is linearised at its
+  /// input `z`.
   [[nodiscard]] Eigen::VectorXd linearised(const Eigen::VectorXd& z) const {
     const Eigen::VectorXd slope = z.unaryExpr([this](double v) { return map_.slope(v); });
     const Eigen::VectorXd value = z.unaryExpr([this](double v) { return map_.value(v); });

@@ -1,6 +1,6 @@
 #pragma once
-// Computes the optimal weights of a structure for given nonlinear parameters by nonnegative least squares
-// with ridge regularisation.
+// Computes the optimal weights of a structure for constant nonlinear parameters. The method is nonnegative
+// least squares with ridge regularisation.
 
 #include <Eigen/Core>
 
@@ -15,9 +15,9 @@ struct ProjectionProblem {
   const ColumnLayout& layout;
   const Eigen::VectorXd& readings_mm;
   double largest_kpa =
-      1;  ///< largest pressure, which converts a weight to the largest motion of its operator [mm]
+      1;  ///< largest pressure; weight * largest_kpa is the largest motion of an operator [mm]
   double least_elastic =
-      0;  ///< lower bound of the elastic weight; if it is positive, the model has an inverse
+      0;  ///< lower bound of the elastic weight; if the bound is positive, the model has an inverse
   /// Factor of the ridge penalty: the squares of weight * largest_kpa are added to the mean square error.
   double ridge = 0;
 };
@@ -25,12 +25,13 @@ struct ProjectionProblem {
 struct Projection {
   Eigen::VectorXd weights;
   Eigen::VectorXd error_mm;    ///< prediction minus reading, for all rows
-  Eigen::VectorXd penalty_mm;  ///< the ridge penalty as additional residuals, in the scale of error_mm
+  Eigen::VectorXd penalty_mm;  ///< ridge penalty, stated as additional residuals in the unit of error_mm
   double mean_square_mm2 = 0;  ///< mean square error of all rows
 };
 
-/// Computes the optimal weights. If the characteristic is nonlinear, Gauss-Newton steps are made. They start
-/// at `near` or, without it, at the solution for readings to which the inverse characteristic was applied.
+/// Computes the optimal weights. If the characteristic is nonlinear, the weights are found by Gauss-Newton
+/// steps. The steps start at `near`. If `near` is nullptr, they start at the weights of a linear problem, in
+/// which the inverse characteristic is applied to the readings.
 /// @param near  weights of a similar problem with the same layout, or nullptr.
 [[nodiscard]] Projection project(const ProjectionProblem& problem,
                                  const model::CharacteristicMap<double>& map,

@@ -30,7 +30,7 @@ double first_finite(const std::vector<double>& values) {
   return found == values.end() ? 0 : *found;
 }
 
-/// Ranges of the pressure and of the supply pressure in the logs.
+/// Lowest and highest measured pressure and highest supply pressure in the logs [kPa].
 struct Scene {
   double lowest_kpa = std::numeric_limits<double>::infinity();
   double highest_kpa = -lowest_kpa;
@@ -52,9 +52,10 @@ Scene scene_of(const std::vector<Log>& logs) {
   return scene;
 }
 
-/// The coordinates of the search, scaled to about 1. Delay [0.1 s], band [kPa] and share of the leak are the
-/// magnitudes of their coordinates. Lags have logarithmic coordinates. The limit is in units of 10 % of the
-/// highest pressure.
+/// Converts the parameters of a valve to coordinates of the search, which have a magnitude of about 1. The
+/// delay [0.1 s], the dead band [kPa] and the share of the leak are the absolute values of their coordinates.
+/// The coordinate of a lag is the logarithm of its time constant. The coordinate of the limit is in units of
+/// 10 % of the highest pressure.
 class Coordinates {
  public:
   Coordinates(ValveParts parts, const Scene& scene) : parts_(parts), scene_(scene) {}
@@ -97,7 +98,7 @@ class Coordinates {
   const Scene& scene_;
 };
 
-/// Returns the predicted pressure of a log [kPa].
+/// Returns the predicted measured pressure of a log [kPa].
 /// @param sample_time_s  sampling time of the log; 0: the sampling is irregular.
 std::vector<double> predicted(const ValveStage& stage, const Log& log, bool held, double sample_time_s) {
   const std::vector<double>& u = log.pressure_command_kpa;
@@ -107,7 +108,7 @@ std::vector<double> predicted(const ValveStage& stage, const Log& log, bool held
       second(stage.second_s, stage.second_s, 0);
   delay.reset(u.front());
   const double first_kpa = first_finite(log.pressure_kpa);
-  // The state of the dead band is computed from the first measured pressure.
+  // The initial state of the dead band is computed from the first measured pressure and the first command.
   dead_band.reset(first_kpa + stage.band_kpa / 2);
   dead_band.settle(u.front());
   lag.reset(first_kpa);
@@ -148,8 +149,8 @@ std::vector<double> predicted(const ValveStage& stage, const Log& log, bool held
   return p;
 }
 
-/// Computes the residuals, which are prediction minus measurement, for all logs. The residual of a missing or
-/// excluded measurement is 0.
+/// Computes the residuals of all logs. A residual is the prediction minus the measurement; it is 0 if the
+/// measurement is missing or excluded.
 class Errors {
  public:
   Errors(const std::vector<Log>& logs, const ValveFit& fit) : logs_(logs), fit_(fit) {
@@ -161,8 +162,8 @@ class Errors {
 
   [[nodiscard]] std::size_t count() const { return count_; }
 
-  /// Computes the residuals. If the gain and the zero offset of the pressure sensor are fitted, writes the
-  /// fitted values to the stage.
+  /// Computes the residuals. If parameters of the pressure sensor are fitted, the function writes their
+  /// values to the stage.
   void evaluate(ValveStage& stage, std::span<double> out) const {
     const std::vector<std::vector<double>> p = predicted_by(stage);
     if (fit_.sensor != PressureSensorFit::nothing) read_gauge(p, stage);
@@ -175,8 +176,8 @@ class Errors {
     }
   }
 
-  /// Returns the RMSE of the fitted samples [kPa]. If `fitted` is false, returns the RMSE of all other
-  /// samples.
+  /// Returns the RMSE of the fitted samples [kPa]. If `fitted` is false, returns the RMSE of the samples that
+  /// were not fitted.
   [[nodiscard]] double rmse_kpa(const ValveStage& stage, bool fitted) const {
     double sum = 0;
     std::size_t used = 0;
@@ -193,7 +194,7 @@ class Errors {
   }
 
  private:
-  /// Returns the predicted pressure of each log [kPa].
+  /// Returns the predicted measured pressure of each log [kPa].
   [[nodiscard]] std::vector<std::vector<double>> predicted_by(const ValveStage& stage) const {
     std::vector<std::vector<double>> p;
     for (std::size_t k = 0; k < logs_.size(); ++k)
@@ -205,8 +206,8 @@ class Errors {
     return !fit_.is_fitted || fit_.is_fitted(log, sample);
   }
 
-  /// Fits the zero offset of the pressure sensor, or its gain and zero offset, by linear regression of the
-  /// measured pressure on the predicted pressure.
+  /// Fits the parameters of the pressure sensor by linear regression of the measured pressure on the
+  /// predicted pressure. The parameters are the zero offset, or the gain and the zero offset.
   void read_gauge(const std::vector<std::vector<double>>& predicted, ValveStage& stage) const {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
     for (std::size_t k = 0; k < logs_.size(); ++k) {
@@ -228,7 +229,7 @@ class Errors {
   std::vector<double> sample_time_s_;  ///< sampling time of each log
 };
 
-/// Returns the start points of the search.
+/// Returns the start points of the search: those in `fit.from`, or three default points.
 std::vector<ValveStage> starts_of(const ValveFit& fit) {
   if (!fit.from.empty()) return fit.from;
   std::vector<ValveStage> starts;

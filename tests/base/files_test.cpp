@@ -63,7 +63,7 @@ TEST_F(FilesTest, DevicesSocketsAndFoldersAreRefused) {
   EXPECT_EQ(open_regular(scratch_.path()).error(), "Is a directory");
 }
 
-/// While a process has a lease on a file, every blocking open() of the same file waits.
+/// While a process holds a lease on a file (fcntl), every blocking open() of this file waits.
 TEST_F(FilesTest, AFileThatAnotherProcessHasLeasedIsRefusedWithoutWaiting) {
   const std::string path = file("leased", "text");
   auto* const before = std::signal(SIGIO, SIG_IGN);

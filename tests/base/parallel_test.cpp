@@ -135,8 +135,8 @@ TEST(ParallelFor, PassesAnExceptionOnWhenAllIsDone) {
                  std::runtime_error);
     ASSERT_EQ(done, 7);
   }
-  // The loop has returned its helper thread to the thread budget, so the test can take this thread from the
-  // budget.
+  // The loop must have returned its helper thread to the thread budget. The test checks this by taking the
+  // thread from the budget.
   EXPECT_EQ(ThreadBudget::current()->take(5), 1U);
   ThreadBudget::current()->give_back(1);
 }

@@ -22,7 +22,7 @@ struct Run {
   double warmer_c = 0;
   double supply = 1;     // factor on the supply pressure
   double amplitude = 1;  // factor on the commands, at most 1
-  double rate_hz = 0;    // sample rate [Hz]; 0: the default rate of the family
+  double rate_hz = 0;    // sample rate [Hz]; 0: the default rate of the family of simulated worlds
   // A pressure pulse before the recording begins. Because of creep and hysteresis, the pulse changes the
   // first readings.
   double pulse_share = 0, pulse_s = 0,
@@ -37,8 +37,8 @@ Run draw_run(double strength, std::uint64_t seed, std::size_t run);
 /// Prints the variations of runs as CSV. A test compares their standard deviations with the constants above.
 void list_runs(std::ostream& out, double strength, std::uint64_t seed, std::size_t runs);
 
-/// Returns the index of the first kind of input signal of a campaign. The index is below `kinds`. Without
-/// variation, the index is 0.
+/// Returns the index of the kind of input signal with which a campaign begins. The index is below `kinds`.
+/// Without variation, the index is 0.
 std::size_t first_kind(double strength, std::uint64_t seed, std::size_t kinds);
 
 /// Resamples values to a different sample rate with linear interpolation.

@@ -21,8 +21,9 @@ struct Base {
   double slow_gain = 0.056, slow_tau = 13.7;
 };
 
-/// Parameters of a hidden effect by name. The map Effects contains the parameters of each effect by its id.
-/// The id of an effect is the id of a cause in the catalogue, or one of outside_ids().
+/// Parameters of a hidden effect, by the name of the parameter. The map Effects contains the parameters of
+/// each effect, by the id of the effect. The id of an effect is the id of a cause in the catalogue, or one of
+/// outside_ids().
 using Effect = std::map<std::string, double>;
 using Effects = std::map<std::string, Effect>;
 

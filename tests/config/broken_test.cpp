@@ -1,6 +1,6 @@
 // Tests configurations that contain errors. The name of each file broken/NAME.yaml describes the error in the
-// file. NAME.expected contains all messages that the check of this file must print. If NAME.also exists, it
-// lists the files that are checked together with NAME.yaml.
+// file. NAME.expected contains all messages that the check of this file must print. If a file NAME.also
+// exists, it lists other files that are checked together with NAME.yaml.
 
 #include <gtest/gtest.h>
 

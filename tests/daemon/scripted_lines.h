@@ -17,8 +17,8 @@
 
 namespace softgrip::daemon::testing {
 
-/// The levels at the terminals of the digital lines. The panel owns and destroys the lines; the terminals
-/// exist longer. Any thread may call the functions.
+/// The levels at the terminals of the digital lines. The panel owns and destroys the lines. The terminals
+/// exist longer than the lines. Any thread may call the functions.
 class Terminals {
  public:
   /// Sets the logical level of an input. If the level changes and `with_edge` is true, also reports an edge.

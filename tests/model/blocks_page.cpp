@@ -72,7 +72,7 @@ void write_block(std::ostream& out, const BlockDescriptor& descriptor) {
   out << "\n### `" << info.id << "`: " << info.title << "\n\n" << info.meaning << "\n\n";
   out << "    " << info.equation << "\n\n";
   out << what_it_does(info.kind) << " " << how_undone(info.inverse)
-      << (info.repeatable ? " A chain may contain it more than once." : "") << "\n\n";
+      << (info.repeatable ? " A model may contain the block more than once." : "") << "\n\n";
   out << "| key | unit | typical | allowed | no effect at | meaning |\n|---|---|---|---|---|---|\n";
   for (const ParameterSpec& spec : descriptor.parameters) write_parameter(out, spec);
   for (const ParameterSpec& spec : descriptor.repeated) write_parameter(out, spec);
@@ -89,12 +89,12 @@ std::string page() {
          "blocks of a component in the order of the model file:\n\n"
          "    command [kPa] -> valve -> actuator -> load -> sensor -> reading [mm]\n\n"
          "In the equations, u is the command, p the pressure, y the input displacement of the "
-         "block, z its output, and t the time since the start of the first log. An apostrophe is"
-         " the derivative with respect to time. For each component, this page first lists the blocks that "
-         "change the pressure, then those that compute a displacement from the pressure, change the "
-         "displacement, and change the reading.\n\n"
-         "The column \"typical\" is a parameter value at which the block has a visible effect. "
-         "The column \"no effect at\" is the value at which the block has no effect; \"-\" means"
+         "block, z its output, and t the time since the start of the first log. An apostrophe denotes"
+         " the derivative with respect to time. For each component, this page lists the blocks in this "
+         "order: blocks that change the pressure, blocks that compute a displacement from the pressure, "
+         "blocks that change the displacement, and blocks that change the reading.\n\n"
+         "The column \"typical\" contains a parameter value at which the block has a visible effect. "
+         "The column \"no effect at\" contains the value at which the block has no effect; \"-\" means"
          " that the parameter has no such value. A model file must state every parameter that is"
          " not marked as optional. A model file with a value outside the allowed range is "
          "refused.\n\n"

@@ -91,8 +91,8 @@ TEST(ChainDerivatives, PublishedModelOnTriangles) {
   expect_derivatives_agree(preset("zhang2025"), SignalName::tp1);
 }
 
-// The delay is not a multiple of the sample time. If it were, the response to a kink would have two different
-// one-sided derivatives.
+// The delay is not a multiple of the sample time. If the delay were a multiple, the response to a kink would
+// have two different one-sided derivatives.
 TEST(ChainDerivatives, TwinWithFractionalDelayAndLag) {
   Model twin = preset("bench_twin");
   twin.blocks[0].values[0] = 0.1317;
@@ -122,8 +122,8 @@ TEST(ChainDerivatives, EveryBlockInTheTwin) {
     expect_derivatives_agree(with_block(twin, default_block(type)), SignalName::tp2);
   }
   expect_derivatives_agree(with_block(twin, {*find_block("pressure_saturation"), {41.3}}), SignalName::tp2);
-  // With this stick band, the valve does not break free exactly at a sample time. If it did, the response to
-  // a jump would have two different one-sided derivatives.
+  // With this stick band, the valve does not break free exactly at a sample time. If the valve did, the
+  // response to a jump would have two different one-sided derivatives.
   expect_derivatives_agree(with_block(twin, {block_type<ValveStiction>(), {2.37}}), SignalName::tp2);
   // These parameter values are large. With smaller values, the rounding errors of the finite differences
   // would exceed the derivative.
@@ -205,7 +205,8 @@ TEST(ChainPeek, IsWhatTheStepWillGive) {
     if (position_of(all, type)) continue;
     BlockSpec block = default_block(type);
     // If the pressure has a corner within a sample, the rate of the pressure changes within the sample. Only
-    // step() takes this corner into account, so the block gets parameter values with which it has no effect.
+    // step() takes this corner into account, so RateDependentWidth gets parameter values with which it has no
+    // effect.
     if (type == block_type<RateDependentWidth>()) block = neutral_block(type);
     all = with_block(all, block);
     const BlockInfo& info = catalogue()[type].info;

@@ -14,7 +14,7 @@
 namespace softgrip::model::testing::chain_test {
 namespace {
 
-/// Returns the model bench_twin. Every other block of the catalogue is added to this model.
+/// Returns the model bench_twin, with all blocks of the catalogue added that bench_twin does not have.
 Model everything(BlockSpec (*block_of)(std::size_t)) {
   Model model = preset("bench_twin");
   for (std::size_t type = 0; type < catalogue().size(); ++type) {

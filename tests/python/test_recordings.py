@@ -88,8 +88,8 @@ class Recordings(unittest.TestCase):
             (self.folder / name).unlink()
             os.mkfifo(self.folder / name)
             for call in (lambda: read(self.folder / name), lambda: Recording.read(self.folder)):
-                # The package must refuse a named pipe. If the reader waits for a writer, it would block this test
-                # forever. The timer therefore opens the pipe for writing after 5 s.
+                # The package must refuse a named pipe. If the package waited for a writer, it would block this
+                # test forever. The timer therefore opens the pipe for writing after 5 s.
                 writer = threading.Timer(5, lambda: os.close(os.open(self.folder / name, os.O_RDWR)))
                 writer.daemon = True
                 writer.start()

@@ -198,7 +198,9 @@ TEST(BoardMapFile, Function6CannotWriteTwoRegisters) {
   text.replace(text.find("functions: [16]"), 15, "functions: [6]");
   const Result result = read(text);
   ASSERT_EQ(result.problems.size(), 1U) << result.problems.format();
-  EXPECT_NE(result.problems.list()[0].message.find("each of these outputs has two"), std::string::npos);
+  EXPECT_NE(result.problems.list()[0].message.find(
+                "each of the outputs of this board map consists of two registers"),
+            std::string::npos);
 }
 
 std::string without(std::string text, const std::string& from, const std::string& to) {
@@ -221,8 +223,8 @@ TEST(BoardMapFile, AModuleMayHaveOneDirectionOnly) {
   EXPECT_TRUE(inputs.map->has_inputs());
   EXPECT_FALSE(inputs.map->has_outputs());
 
-  // If an entry has a key of an input, the key `inputs` is required. If it has a key of an output, the key
-  // `outputs` is required. A module needs at least one of the keys `inputs` and `outputs`.
+  // If an entry has a key of an input, the key `inputs` is required. If the entry has a key of an output, the
+  // key `outputs` is required. A module needs at least one of the keys `inputs` and `outputs`.
   EXPECT_NE(
       read(without(valid, "inputs:", "outputs:")).problems.format().find("`input_status` needs `inputs`"),
       std::string::npos);

@@ -1,7 +1,7 @@
 // Fuzz target: passes arbitrary bytes to the reader of board maps. The reader must return a map with usable
 // values, or refuse the bytes with a message that states line and column.
 //
-//   scripts/fuzz.sh board_map_fuzz 30
+//   Command: scripts/fuzz.sh board_map_fuzz 30
 
 #include <cmath>
 #include <cstddef>

@@ -2,7 +2,7 @@
 // properties that RigFile guarantees, or refuse the bytes with a message that states line and column.
 // Relative paths in the rig file refer to the folder of config/rig.yaml.
 //
-//   scripts/fuzz.sh rig_file_fuzz 30
+//   Command: scripts/fuzz.sh rig_file_fuzz 30
 
 #include <cmath>
 #include <cstddef>

@@ -388,14 +388,14 @@ def reports():
             ["Date", *names[1:]], [[(datetime.datetime(2024, 5, 31) + datetime.timedelta(seconds=t)).isoformat(
                 timespec="milliseconds") for t in step_back], COMMAND, TIP]), refused="date_corrected.csv:152:1: the time goes back"),
         File("blank_commands.xlsx", "a workbook with a command in every third row", workbooks.book(blanks),
-             columns=BASIC_OF | thirds, says="200 samples without a command keep the command of the previous sample"),
+             columns=BASIC_OF | thirds, says="200 samples without a command (the command of the previous sample is used)"),
         File("late_command.csv", "readings before the first command",
              table(names, [T, [None] * 10 + COMMAND[10:], TIP]), columns={key: without(set(range(10)))[key] for key in BASIC},
-             says="10 samples before the first command left out", left_out={"before_command": 10}),
+             says="10 samples before the first command (left out)", left_out={"before_command": 10}),
         File("two_clocks.csv", "a separate, slower clock of the command, decimal commas", two_clocks, columns=BASIC_OF | thirds,
              says="each row has 2 times", joined=100, left_out={"empty": 200}),
         File("same_clock_twice.csv", "the same time in s and in ms", table(
-            ["time_s", "t_ms", "set_kpa", "tip_mm"], [T, ms, COMMAND, TIP]), says="contains the same times as"),
+            ["time_s", "t_ms", "set_kpa", "tip_mm"], [T, ms, COMMAND, TIP]), says="contains the same times"),
         File("clock_and_counter.csv", "a time and a counter of samples",
              table(["time_s", "sample", "set_kpa", "tip_mm"], [T, list(range(COUNT)), COMMAND, TIP]), says="not used: 'sample'"),
         File("unread_time.csv", "a time, and dates with the month first", table(
@@ -440,7 +440,7 @@ def reports():
         File("short_rows.csv", "three rows without their last cell, skipped",
              "\n".join(line.rsplit(",", 1)[0] if i in (40, 41, 200) else line for i, line in enumerate(PLAIN.split("\n"))),
              "--skip-bad-lines", columns={key: without({39, 40, 199})[key] for key in BASIC}, left_out={"bad_line": 3},
-             says="leaves out 3 lines with a different number of cells: 41, 42, 201"),
+             says="leaves out 3 lines with too few or too many cells, in lines 41, 42, 201"),
         *other_fingers_and_clocks(),
         File("idle_sheet.mcap", "an MCAP recording with options of other formats", exported(bytes),
              "--channel left --sheet Run --separator tab", columns=MEASURED, left_out={"other_channel": 300},
@@ -537,7 +537,7 @@ def signals(stamp):
              says="the messages of 2 topics are merged by 'header.stamp.sec'"),
         File("signals_apart.mcap", "MCAP: a topic per signal, with a sensor clock that counts from its start", mcap(
             stamped("/valve", "set_kpa", COMMAND) + stamped("/laser", "tip_mm", TIP, begin=1717156000)),
-             refused="of the topics 'laser' and 'valve' come from two clocks: relative to log_time, the difference of these times is 1.717e+09 s"),
+             refused="of the topics 'laser' and 'valve' come from two clocks. Relative to log_time, these times differ by 1.717e+09 s"),
         File("signals_back.mcap", "MCAP: a topic per signal, with a clock that steps back", mcap(
             stamped("/valve", "set_kpa", COMMAND)[100:] + [(name, t + 10, content) for name, t, content in both[:100]]
             + stamped("/laser", "tip_mm", TIP)), refused="the time goes back"),
@@ -608,7 +608,7 @@ def files():
         File("bare_comma.csv", "decimal commas between commas, not quoted",
              "time_s,set_kpa,tip_mm\n" + "".join(f"{t:.2f},{c:.3f},{y:.4f}\n".replace(".", ",")
                                                  for t, c, y in zip(T, COMMAND, TIP)),
-             refused="3 names above 6 columns"),
+             refused="3 column names above 6 columns"),
         File("mixed_decimals.csv", "decimal points and decimal commas in one file",
              changed(table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, TIP], ";"), 90, ".", ","),
              refused="decimal comma and numbers with a decimal point"),
@@ -648,9 +648,9 @@ def files():
              table(["time_s", "set_kpa", "tip_mm"], [T, broken_bar, TIP]),
              columns={key: TRUTH[key] for key in BASIC} | {"pressure_command_kpa": [
                  COMMAND[49] if i == 50 else value for i, value in enumerate(COMMAND)]},
-             says="keep the command of the previous sample"),
+             says="the command of the previous sample is used"),
         File("duplicates.csv", "rows that occur twice",
-             PLAIN.replace("\n1.5,", "\n1.49,61,99\n1.5,"), says="1 sample with the time of the previous sample left out",
+             PLAIN.replace("\n1.5,", "\n1.49,61,99\n1.5,"), says="1 sample with the time of the previous sample (left out)",
              left_out={"repeated_time": 1}),
         File("hole.csv", "a gap without samples, in which the command changed",
              table(["time_s", "set_kpa", "tip_mm"], dropped([T, COMMAND, TIP], set(range(80, 150)))),
@@ -664,7 +664,7 @@ def files():
              columns={key: TRUTH[key][:-1] for key in BASIC}, says="the last line is cut off and left out",
              left_out={"cut_off_line": 1}),
         File("ragged.csv", "a row with one cell too many", changed(PLAIN, 120, ",", ",,"),
-             refused="4 cells where the rows above have 3"),
+             refused="4 cells, but the rows above have 3"),
         File("word.csv", "a word among the numbers", changed(PLAIN, 77, "0.75,", "0.75x,"),
              refused="'0.75x' is not a number"),
         File("upside_down.csv", "a sensor that is mounted in reverse", table(["time_s", "set_kpa", "tip_mm"],
@@ -735,7 +735,7 @@ def files():
                    ";")),
         File("coarse_times.csv", "time stamps with a resolution of 50 ms in a log of 100 Hz",
              table(["time_s", "set_kpa", "tip_mm"], [[round(0.05 * (i // 5), 6) for i in range(COUNT)], COMMAND, TIP]),
-             columns={key: TRUTH[key][::5] for key in BASIC}, says="--rate-hz 100 in place of --time keeps every row",
+             columns={key: TRUTH[key][::5] for key in BASIC}, says="--rate-hz 100 instead of --time keeps every row",
              left_out={"repeated_time": 240}),
         File("coarser_times.csv", "time stamps with a resolution of 1 s in a log of 100 Hz",
              table(["time_s", "set_kpa", "tip_mm"], [[i // 100 for i in range(COUNT)], COMMAND, TIP]),
@@ -745,7 +745,7 @@ def files():
                    [T, [value if i % 10 == 0 else None for i, value in enumerate(COMMAND)],
                     [None if i % 10 == 0 else tip for i, tip in enumerate(TIP)]]),
              columns={"time_s": T, "pressure_command_kpa": held, "displacement_mm": [
-                 math.nan if i % 10 == 0 else tip for i, tip in enumerate(TIP)]}, says="keep the command of the previous sample"),
+                 math.nan if i % 10 == 0 else tip for i, tip in enumerate(TIP)]}, says="the command of the previous sample is used"),
         File("rows_at_one_time.csv", "the command and the reading of one time in two rows",
              "time_s,set_kpa,tip_mm\n" + "".join(f"{t!r},{c!r},\n{t!r},,{y!r}\n" for t, c, y in pairs), joined=300),
         File("two_times.csv", "separate times of the command and of the reading",
@@ -774,7 +774,7 @@ def files():
             "tip_mm,\n", "tip_mm\n")),
         File("bad_lines.csv", "a row with a word and a row with one cell too many, both skipped",
              changed(changed(PLAIN, 120, ",", ",,"), 77, "0.75,", "0.75x,"), "--skip-bad-lines",
-             columns={key: values for key, values in without({75, 118}).items() if key in BASIC}, says="--skip-bad-lines leaves out 1 lines with a different number of cells: 120",
+             columns={key: values for key, values in without({75, 118}).items() if key in BASIC}, says="--skip-bad-lines leaves out 1 lines with too few or too many cells, in lines 120",
              left_out={"bad_line": 2}),
         File("idle_options.csv", "options without an effect", PLAIN,
              "--missing 888 --unit supply=bar --to-s 100", says="--missing 888 has no effect"),
@@ -880,11 +880,11 @@ This page shows how `softgrip import` converts external files. This command writ
 $ tests/system/foreign_files.py --page
 ```
 
-The script writes every file, imports it, and compares each value with the original. An import passes if each deviation is at
-most 1e-9 of the largest value of its column. A file that must be refused passes if the import states the reason and writes
-no output. "As they are" means that all samples are equal to the original in this sense. If the column "options" is empty, the import used the
-columns that it had proposed from names and units (`--yes`). The test `system.test_import` repeats the imports and compares
-them with this page. [How to import](../how-to/import.md) contains the rules.
+This script writes every file, imports it, and compares each imported value with the value that it wrote. An import passes if each
+deviation is at most 1e-9 of the largest value of its column. A file that must be refused passes if the import states the reason and
+writes no output. "As they are" means that all samples are equal to the written samples in this sense. If the column "options" is
+empty, the import used the columns that it had proposed from names and units (`--yes`). The test `system.test_import` repeats the
+imports and compares them with this page. [How to import](../how-to/import.md) contains the rules.
 
 | file | content | options | result | messages |
 |---|---|---|---|---|

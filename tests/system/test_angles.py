@@ -142,7 +142,7 @@ class Angles(bench.BenchTest):
             found[unit] = json.loads(self.read(f"{unit}/diagnosed/diagnosis.json"))
         self.assertEqual(without_times(found["deg"]), without_times(found["mm"]))
         self.assertRegex(found["deg"]["gauge"]["sentence"], r"\d deg\b")
-        self.assertTrue("position by the gauge in degrees" in self.read("deg/diagnosed/report.html"))
+        self.assertTrue("position on the gauge in degrees" in self.read("deg/diagnosed/report.html"))
         self.assert_in_degrees("deg/diagnosed", "diagnosis.json", said)
 
     def test_a_baseline_and_the_health_of_its_finger_are_in_degrees(self):

@@ -165,7 +165,7 @@ class Baseline(bench.BenchTest):
         self.addCleanup(screen.close)
         bench.wait_for("the question", lambda: "Continue? [y/N]" in screen.text())
         self.assertRegex(screen.text(), r"channel 'left' of bench will move: .* at most [\d.]+ kPa, in about 17 minutes. "
-                                        "Keep the range of the finger free")
+                                        "Remove all objects from the range of the finger")
         screen.type("n\n")
         self.assertEqual(screen.wait(), 1)
         self.assertIn("softgrip was not allowed to move the rig", screen.text())

@@ -127,13 +127,13 @@ class BoardHabits(bench.BenchTest):
         for order in ("low_first", "high_first_bytes_swapped", "low_first_bytes_swapped"):
             with self.subTest(order):
                 other = self.board(order, ("word_order: high_first", f"word_order: {order}"))
-                self.assert_says(self.examined(plain, other), "are implausible with `high_first`", f"word_order: {order}")
+                self.assert_says(self.examined(plain, other), "are implausible with the word order `high_first`", f"word_order: {order}")
 
     def test_the_doctor_says_addresses_that_are_off_by_one(self):
         inputs = "function: 3\n  address: 0\n  count: 8"
         at = {n: self.board(f"at_{n}", (inputs, inputs.replace("0", str(n)))) for n in (1, 400, 401)}
         self.assert_says(self.examined(at[1], self.board("plain")), "one register lower", "address_base: 1")
-        self.assert_says(self.examined(at[400], at[401]), "accepts the request if the request begins one register higher, at 401", "by one")
+        self.assert_says(self.examined(at[400], at[401]), "accepts the request if it begins one register higher, at 401", "by one")
 
     def test_the_doctor_says_the_other_read_function(self):
         inputs, apart = "function: 3\n  address: 0\n  count: 8", ("fc23: true", "fc23: false")
@@ -196,7 +196,7 @@ class BoardHabits(bench.BenchTest):
                 ("repeat_after_s: 0.15", "`repeat_after_s` is not below `exchange_deadline_s` (0.15 s)"),
                 ("framing: ascii", "`framing` must be `tcp` or `rtu`"),
                 ("silence_s: 0.01", "silence_s"),
-                ("accept_no_transaction_id: yes", "does not state the risk that is accepted")):
+                ("accept_no_transaction_id: yes", "does not state the accepted risk word by word")):
             with self.subTest(session):
                 told = self.check(f"\n    {session}")
                 self.assertRegex(told, r"test_rig.yaml:14:\d+: ")

@@ -88,7 +88,7 @@ class Devices(unittest.TestCase):
         (sensors / "in_voltage0_raw").write_text("8000\n")
         bench.wait_for("the refusal", lambda: re.search(
             "No session with the board can be opened: disconnected: mcp4725 voltage0: it was mcp4725 at .*1-0060, "
-            "but now it is mcp4725 at .*1-0062: restart softgripd if this is correct", log.read_text()))
+            "but now it is mcp4725 at .*1-0062: restart softgripd if this change is intended", log.read_text()))
         self.assertEqual((other / "out_voltage0_raw").read_text(), "1234\n")
         self.assertEqual((other / "out_voltage0_powerdown").read_text(), "1\n")
         (self.folder / "iio/iio:device0").unlink()

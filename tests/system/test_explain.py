@@ -27,7 +27,7 @@ class Explain(bench.BenchTest):
         named = [cause["id"] for cause in found["causes"]]
         self.assertIn("transport_delay", named)
         for cause in named:
-            self.assertRegex(text, rf"Alternatives tested for {cause}\n(?s:.*)\n  {cause} .* named\n")
+            self.assertRegex(text, rf"Causes tested as alternatives to {cause}\n(?s:.*)\n  {cause} .* named\n")
         for candidate in found["candidates"]["transport_delay"]:
             self.assertIn(f"\n  {candidate['id']} ", text)
         self.assertIn("error by run", (self.folder / "out/report.html").read_text())

@@ -85,7 +85,7 @@ class Import(bench.BenchTest):
         path = self.foreign("coarse_times.csv")
         done = self.imported(path, "--out", "log.csv", "--yes", "--missing", "888")
         account = "300 rows: 60 used, 240 left out (240 with the time of the previous row)"
-        warnings = [account, "--rate-hz 100 in place of --time keeps every row", "--missing 888 has no effect"]
+        warnings = [account, "--rate-hz 100 instead of --time keeps every row", "--missing 888 has no effect"]
         for warning in warnings:
             self.assertRegex(done.stderr, f"warning: .*{re.escape(warning)}")
         self.assertIn(account, done.stdout)

@@ -77,7 +77,7 @@ class Investigation(bench.BenchTest):
     def test_a_finger_that_touches_something_ends_it(self):
         rig = self.simulated("\n        object: {position_mm: 12, yielding: 0.1}")
         self.check(self.investigated("--rig", rig, "--rig-channel", "left"), "contact",
-                   r"the finger touched an object: the finger stopped at 1[2-5](\.\d)? mm, .* mm short of its free motion")
+                   r"the finger touched an object: the finger stopped at 1[2-5](\.\d)? mm, .* mm before its free-motion displacement")
 
     def test_the_same_finger_with_a_free_way_is_not_stopped(self):
         told = self.investigated("--rig", self.simulated(""), "--rig-channel", "left", expect=None, timeout_s=850)
@@ -95,7 +95,7 @@ class Investigation(bench.BenchTest):
                              "the rig did not run the requested experiment: the command went to 30 instead of 45 kPa"),
                             ("lambda rows: rows[:len(rows) * 2 // 3]", r"it took [\d.]+ instead of [\d.]+ s"),
                             ("lambda rows: [(t, p if t < rows[-1][0] / 2 else 0.0) for t, p in rows]",
-                             "its command travelled")):
+                             "the command changed by a total of")):
             with self.subTest(change):
                 player = self.write("player.py", PLAYER.replace("CHANGE", change).replace(
                     "SOFTGRIP", repr(str(bench.SOFTGRIP))).replace("MODEL", repr(FINGER)))

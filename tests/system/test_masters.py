@@ -120,7 +120,7 @@ class OtherUsers(bench.BenchTest):
                 daemon = self.daemon(self.rig_path)
                 daemon.wait_for_state("idle")
                 text = daemon.wait_for_event("board_lock")["text"]
-                self.assertIn("may not control the board", text)
+                self.assertIn("has no permission to control the board", text)
                 if backlog == 5:
                     self.assertIn(f"user {other_user.NOBODY} (process {holder.pid})", text)
                 self.assertEqual(daemon.end(), 0)

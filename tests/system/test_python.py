@@ -101,8 +101,8 @@ class Python(bench.BenchTest):
         with self.assertRaises(softgrip.GripFailed):
             gripper.wait_until(softgrip.Result.HOLDING, timeout_s=PATIENCE_S)
         codes = {event["code"] for event in again.events() if event["kind"] == "not_at_rest"}
-        # The displacement differs from the prediction of the model, and the finger still moves during the first
-        # moments.
+        # The rig is not at rest for two reasons: the displacement differs from the prediction of the model, and
+        # at first the finger still moves.
         self.assertIn("off_model", codes)
         self.assertLessEqual(codes, {"off_model", "moves"})
 

@@ -86,7 +86,7 @@ class Watch(bench.BenchTest):
         screen = watched.wait_for("The cause is gone")
         # If a text is too long for its line, it continues in the next line. The last word of the remedy must therefore
         # be visible.
-        self.assertIn("measure its electrical signal.", " ".join(screen.split()))
+        self.assertIn("measure the electrical signal of the sensor.", " ".join(screen.split()))
         self.assertIn("s stop  v vent  r release  a acknowledge  g start  q quit", screen)
 
     def test_it_follows_the_size_of_its_window(self):

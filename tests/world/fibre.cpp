@@ -1,6 +1,6 @@
-// swapcontext() sets the signal mask of the kernel at every switch between fibres. This took 40 % of the
-// processor time of a simulation. Therefore setcontext() is used only for the first entry into a fibre. Later
-// switches use _setjmp() and _longjmp(), as the coroutines of QEMU do.
+// swapcontext() sets the signal mask of the kernel at every switch between fibres. The system calls for the
+// signal masks took 40 % of the processor time of a simulation. Therefore setcontext() is used only for the
+// first entry into a fibre. Later switches use _setjmp() and _longjmp(), as the coroutines of QEMU do.
 #include "tests/world/fibre.h"
 
 #include <utility>

@@ -62,7 +62,7 @@ class Hardware {
 /// Unusual properties of a board, and the values of the rig file and the board file that compensate for these
 /// properties. The value 0 disables a property.
 struct Habits {
-  Nanoseconds deaf = 0;              ///< time after a connection in which the board ignores requests
+  Nanoseconds deaf = 0;              ///< duration after a connection during which the board ignores requests
   Nanoseconds settle = 0;            ///< `settle_s` of the rig file: waiting time of the driver after a
                                      ///< connection
   Nanoseconds repeat_after = 0;      ///< `repeat_after_s`: time without a response after which the driver

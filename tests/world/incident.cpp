@@ -181,7 +181,8 @@ void draw_plc(const Draw& draw, std::vector<Incident>& incidents) {
     one.target = drawing.uniform() < 0.75 ? 0 : 1;
     if (one.kind == Kind::plc_command) {
       // Command codes of the masters. Most of them are starts; the others are vent, release and acknowledge.
-      // The list contains no stop: a stop must come from the gateway only, when a master becomes silent.
+      // The list contains no stop, because a stop must come only from the gateway, when a master becomes
+      // silent.
       constexpr std::array codes{1, 1, 1, 3, 4, 5, 5};
       one.value = codes[drawing.below(codes.size())];
     } else {

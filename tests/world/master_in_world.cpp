@@ -40,7 +40,8 @@ MasterInWorld::Read MasterInWorld::read(const End& end, const Block& of, Nanosec
     command_ = -1;
     return read;
   }
-  // If one of these values differs from the present block, the response belongs to an earlier block.
+  // If the counter, the command code or the command of the response differs from that of the present block,
+  // the response belongs to an earlier block.
   if (of.words[0] != counter_ || of.words[1] != code_ || of.command != command_) return read;
   if (end.outcome == plc::Outcome::refused && end.reason == plc::Reason::not_next) {
     read.refused = command_;

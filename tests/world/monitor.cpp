@@ -147,7 +147,7 @@ void Monitor::watch_grips(Nanoseconds now, const control::TickOutput& output) {
     const control::ChannelOutput& channel = output.channels[i];
     const bool new_grip = channel.result == control::GripResult::holding && results_[i] != channel.result;
     results_[i] = channel.result;
-    // The sequence decides with the readings of the previous tick.
+    // The sequence makes its decisions from the readings of the previous tick.
     const Seen seen = std::exchange(seen_by_[i], {now, now - nanoseconds(channel.age_s), channel.validity});
     const bool old = now - seen.at > nanoseconds(rig_.channels[i].plausibility.max_age_s);
     // A grip result ends the grip step. The reading must therefore be newer than the beginning of this step.
@@ -193,8 +193,8 @@ void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> 
 }
 
 /// Returns the output that the daemon must assume for its next write. This is normally the actual output. If
-/// another client has written the output, it is the last command in two cases: the daemon has not read the
-/// outputs since then, or its safe action is to hold.
+/// another client has written the output, the function returns the last command in two cases: the daemon has
+/// not read the outputs since this write, or the safe action of the daemon is to hold.
 double Monitor::known_kpa(std::size_t channel, double output_kpa) const {
   const bool unread = foreign_read_ != foreign_writes_;
   const bool holds = safe_at_entry_[channel] != rest_of(rig_, channel);

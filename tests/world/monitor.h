@@ -25,8 +25,8 @@ struct Violation {
 /// disturbance.
 struct Excuse {
   bool paused = false;   ///< true: a thread or the whole daemon process is paused
-  bool no_line = false;  ///< true: the line or the board prevents exchanges, or no exchange has succeeded
-                         ///< since they did
+  bool no_line = false;  ///< true: the line or the board prevents exchanges, or has prevented every exchange
+                         ///< since the last success
   bool line_but_for_foreign = false;  ///< true: no_line is true for a reason other than writes of another
                                       ///< client
   bool no_daemon = false;
@@ -43,9 +43,9 @@ class Monitor {
   /// the write, and `began` is the start time of the exchange.
   void write(Nanoseconds began, Nanoseconds now, std::span<const double> outputs_kpa,
              std::span<const double> commands_kpa, bool safe_outputs);
-  /// Called when an exchange begins at `now`, immediately after the daemon has read if it may move. `woke` is
-  /// the time at which the bus thread last read the clock; 0: unknown. The daemon uses `woke` to measure the
-  /// gap since the last exchange.
+  /// Called when an exchange begins at `now`, immediately after the daemon has checked if motion is
+  /// permitted. `woke` is the time at which the bus thread last read the clock; 0: unknown. The daemon uses
+  /// `woke` to measure the gap since the last exchange.
   void exchange_begins(Nanoseconds now = 0, Nanoseconds woke = 0) noexcept {
     armed_at_entry_ = armed_;
     safe_at_entry_ = safe_kpa_;
@@ -54,9 +54,9 @@ class Monitor {
   }
   /// Specifies for a program without a control loop if it may move pressures away from rest.
   void may_rise(bool allowed) noexcept { armed_ = allowed; }
-  /// Called when another client has written these outputs. Until the daemon has read the outputs, it may move
-  /// them within the slew limits up to its own last command. After this reading, it may do so only if its
-  /// safe action is to hold.
+  /// Called when another client has written these outputs. Until the daemon has read the outputs, the daemon
+  /// may move the outputs within the slew limits up to its own last command. After it has read the outputs,
+  /// the daemon may do so only if its safe action is to hold.
   void foreign_wrote(std::span<const double> outputs_kpa) noexcept;
   void foreign_ended() noexcept { foreign_unseen_.reset(); }
   /// Called when the daemon has read the outputs. `foreign_writes` is the number of writes that another

@@ -22,9 +22,9 @@ class Scheduler {
  public:
   explicit Scheduler(std::uint64_t seed, Nanoseconds begin) : seed_(seed), now_(begin) {}
 
-  /// Adds a simulated thread (actor). It starts at the present time.
+  /// Adds a simulated thread (actor), which starts at the present time.
   ActorId add(std::string name, std::function<void()> body);
-  /// Ends the simulated thread immediately. It never continues.
+  /// Ends the simulated thread immediately. The thread never continues.
   void kill(ActorId actor);
   [[nodiscard]] bool done(ActorId actor) const { return actors_[actor].over; }
 

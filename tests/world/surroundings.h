@@ -40,7 +40,7 @@ class Surroundings {
   }
   /// Records a write that has reached the board. `outputs_kpa` are the outputs before the write.
   void note_write(std::span<const double> outputs_kpa, std::span<const double> commands_kpa);
-  /// Called when a program starts. Such a program has not had a successful exchange yet.
+  /// Called when a program starts. At this time, the program has not had a successful exchange yet.
   void nobody_spoke() noexcept { good_since_ = false; }
   /// Returns the disturbances that the line and the second Modbus client cause at this moment.
   [[nodiscard]] Excuse excuse() const noexcept;

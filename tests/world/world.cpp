@@ -39,8 +39,8 @@ constexpr Nanoseconds settling = 5 * ns_per_s;
 /// Largest permitted growth of the heap. The event log and a recording each store up to 10,000 events of 0.5
 /// KiB, from which run.json is written. No other data of the daemon may grow.
 constexpr std::size_t allowed_growth_bytes = std::size_t{12} << 20;
-/// Largest permitted number of additional descriptors. They are used by a recording and by the file of a
-/// sequence.
+/// Largest permitted number of additional file descriptors. A recording and the file of a sequence use such
+/// descriptors.
 constexpr std::size_t allowed_descriptors = 8;
 
 std::size_t open_descriptors() {
@@ -334,7 +334,7 @@ class World final : public Host {
   Nanoseconds booted_at_ = 0;
   Nanoseconds memory_looked_at_ = 0;
   std::uint64_t ticked_ = 0;
-  std::uint64_t failures_ = 0;  // number of failed exchanges at the last write of the daemon
+  std::uint64_t failures_ = 0;  // number of failed exchanges up to the last write of the daemon
   Nanoseconds boots_at_ = 0;
   Nanoseconds last_tick_ = 0;
   Nanoseconds last_tick_gap_end_ = 0;

@@ -45,7 +45,7 @@ sysid::Waveform slow(const char* name, const char* about, double share, int coun
 }
 
 sysid::Waveform gentle(const sysid::RigLimits& limits) {
-  return slow("gentle_motion", "gentle motion that measures the reach of the finger", gentle_share, 1,
+  return slow("gentle_motion", "gentle motion that measures the range of the finger", gentle_share, 1,
               limits);
 }
 
@@ -147,9 +147,10 @@ class Commissioning {
     for (const sysid::Waveform& waveform : waveforms)
       length_s += 2 * (options_.rest_s + waveform.duration_s() + pause_s);
     return "channel '" + rig_.channel_name() + "' of " + rig_.rig.name +
-           " will move: one gentle motion, then each of " + std::to_string(waveforms.size()) +
-           " experiments twice, at most " + significant(runs_.limits.pressure_max_kpa, 3) +
-           " kPa, in about " + significant(length_s / 60, 2) + " minutes. Keep the range of the finger free";
+           " will move: first one gentle motion, then each of " + std::to_string(waveforms.size()) +
+           " experiments twice, with at most " + significant(runs_.limits.pressure_max_kpa, 3) +
+           " kPa, in about " + significant(length_s / 60, 2) +
+           " minutes. Remove all objects from the range of the finger";
   }
 
   static std::string no_motion(double found, double expected) {

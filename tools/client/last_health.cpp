@@ -68,7 +68,8 @@ std::vector<HealthLine> health_lines(const Json& health) {
     }
   }
   const std::string when = "checked " + age_text(age_s);
-  if (!changed) lines.push_back({"no change at " + std::to_string(fingers) + " fingers, " + when, true, ""});
+  if (!changed)
+    lines.push_back({"no change detected at " + std::to_string(fingers) + " fingers, " + when, true, ""});
   if (age_s > health_old_s)
     lines.push_back({"the fingers were last " + when, false, "systemctl status softgrip-health.timer"});
   return lines;

@@ -42,9 +42,10 @@ std::optional<ClientFailure> cannot_name_starts(DaemonClient& client) {
   if (!hello) return hello.error();
   const Json names = hello->value("capabilities", Json::array());
   if (std::find(names.begin(), names.end(), Json(capability)) != names.end()) return std::nullopt;
-  return ClientFailure{ExitCode::state_refused,
-                       "softgripd is older than this program and cannot stop only the start of this program, "
-                       "so nothing was started. Restart the daemon (systemctl restart softgripd)"};
+  return ClientFailure{
+      ExitCode::state_refused,
+      "softgripd is older than this program and cannot stop the sequence of a single client, so no sequence "
+      "was started. Restart the daemon (systemctl restart softgripd)"};
 }
 
 Json stop_of(const std::string& start_id) {

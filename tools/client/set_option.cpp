@@ -30,7 +30,8 @@ tl::expected<control::Argument, std::string> argument_of(const std::string& sett
 void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
   command
       .add_option("--set", settings,
-                  "Value of a parameter of the sequence, instead of its default; may be repeated")
+                  "Value of a parameter of the sequence, in place of the default value; may be given once "
+                  "for each parameter")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
 }

@@ -50,7 +50,8 @@ Subcommand<Options> add_command(CLI::App& program, ExitCode& outcome, const std:
 /// Adds --seed and --threads to a command that uses random start points and resampling.
 template <class Seed, class Threads>
 void add_search_options(CLI::App& command, Seed& seed, Threads& threads) {
-  command.add_option("--seed", seed, "Random seed of start points and resampling")->capture_default_str();
+  command.add_option("--seed", seed, "Seed of the random start points and of the resampling")
+      ->capture_default_str();
   command.add_option("--threads", threads, "Number of threads; 0: one per core")->capture_default_str();
 }
 

@@ -242,7 +242,7 @@ ExitCode checked_again(BaselineOptions options) {
   if (options.json) {
     std::printf("%s\n", Json{{"schema", 1}, {"baseline", folder}, {"check", *check}}.dump(2).c_str());
   } else {
-    std::printf("Baseline in %s: its files are unchanged. %s\n", folder.c_str(),
+    std::printf("Baseline in %s: the files of the baseline are unchanged. %s\n", folder.c_str(),
                 text_of_check(*check).c_str());
   }
   return holds ? ExitCode::done : ExitCode::not_acceptable;
@@ -276,7 +276,9 @@ void add_rig_options(CLI::App& command, BaselineOptions& options) {
       ->needs(rig);
   std::vector<std::string> menu;
   for (const sysid::Waveform& waveform : sysid::experiment_menu({})) menu.push_back(waveform.name);
-  command.add_option("--experiments", options.experiments, "With --rig: the experiments to run")
+  command
+      .add_option("--experiments", options.experiments,
+                  "With --rig: names of the experiments that the rig runs")
       ->needs(rig)
       ->check(CLI::IsMember(menu))
       ->capture_default_str();
@@ -303,7 +305,7 @@ void add_baseline(CLI::App& program, ExitCode& outcome) {
   add_rig_options(*command, *options);
   command->add_option(
       "--gauge", options->gauge,
-      "File with readings of the sensor at positions that a gauge measured; stored with the logs");
+      "File with readings of the sensor at positions that a gauge measured; a copy is stored with the logs");
   command->add_option("--model", options->model, "Model file of the finger [identified from the logs]");
   command->add_option("--out", options->out, "Folder for the logs, model.yaml and baseline.json");
   add_search_options(*command, options->seed, options->threads);

@@ -157,7 +157,9 @@ ExitCode write_into_rig(const rig::RigFile& rig, const calibrate::Results& resul
   if (!changed) return fail(ExitCode::not_acceptable, "not written: " + changed.error());
   const auto backup = calibrate::write_rig(rig, *changed);
   if (!backup) return fail(ExitCode::io, "not written: " + backup.error());
-  std::fprintf(stderr, "%s: channel `%s` has the new calibration points; the previous file is %s\n",
+  std::fprintf(stderr,
+               "%s: the new calibration points were written into channel `%s`; the previous version of the "
+               "file is %s\n",
                rig.path.c_str(), channel.c_str(), backup->c_str());
   return ExitCode::done;
 }
@@ -169,8 +171,8 @@ ExitCode write_results(const rig::RigFile& rig, const calibrate::Results& result
     return fail(ExitCode::io, written.error());
   if (options.out != "-" && !options.write) {
     std::fprintf(report_stream(options.out),
-                 "%s: copy its lines into channel `%s` of %s, then run softgrip check\n", options.out.c_str(),
-                 rig.settings.channels[results.channel].name.c_str(), rig.path.c_str());
+                 "%s: copy the lines of this file into channel `%s` of %s, then run softgrip check\n",
+                 options.out.c_str(), rig.settings.channels[results.channel].name.c_str(), rig.path.c_str());
   }
   return ExitCode::done;
 }
@@ -187,9 +189,8 @@ tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, c
     options.valve = options.dead_zone = options.move;
   }
   if ((options.valve || options.dead_zone) && !options.move) {
-    return tl::unexpected(
-        fail(ExitCode::usage,
-             "the calibration of valve and dead zone moves the finger: allow the motion with --move"));
+    return tl::unexpected(fail(
+        ExitCode::usage, "the calibration of valve and dead zone moves the finger, so it requires --move"));
   }
   for (const auto* const answers : {&options.gauge_mm, &options.manometer_kpa}) {
     for (const std::string& answer : *answers) {
@@ -236,9 +237,9 @@ ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
   if (!results) return fail(results.error().code, results.error().text);
   ExitCode code = write_results(rig, *results, options);
   if (!accepted(rig, *results, options, terminal, **manual)) {
-    return fail(
-        ExitCode::not_acceptable,
-        "not written: " + rig.path + " is unchanged; to write without a confirmation question, use --yes");
+    return fail(ExitCode::not_acceptable,
+                "not written: " + rig.path +
+                    " is unchanged; with --yes, the command writes the file without a confirmation question");
   }
   if (code == ExitCode::done && options.write) code = write_into_rig(rig, *results);
   return code == ExitCode::done && !safe ? ExitCode::io : code;
@@ -260,7 +261,7 @@ void add_measuring_options(CLI::App& command, CalibrateOptions& options) {
       .add_option("--at-kpa", options.at_kpa,
                   "Pressures of the two calibration points [1/6 and 2/3 of the permitted pressure range]")
       ->expected(2);
-  command.add_option("--settle-s", options.settle_s, "Wait after every motion")
+  command.add_option("--settle-s", options.settle_s, "Waiting time between a motion and the measurement")
       ->check(CLI::Range(0.0, 600.0))
       ->capture_default_str();
   command.add_option("--average-s", options.average_s, "Duration over which each reading is averaged")
@@ -293,7 +294,7 @@ void add_calibrate(CLI::App& program, ExitCode& outcome) {
                     "Allow softgrip to move the finger within its limits; without this option, you place the "
                     "target of the sensor by hand");
   command->add_flag("--manometer", options->manometer,
-                    "Use a manometer, although the channel has a pressure monitor");
+                    "Use a manometer, even if the channel has a pressure monitor");
   command
       ->add_option(
           "--gauge-mm", options->gauge_mm,
@@ -310,7 +311,7 @@ void add_calibrate(CLI::App& program, ExitCode& outcome) {
   command->add_option("--date", options->date, "Date of the calibration [today]");
   command->add_option(
       "--socket", options->socket,
-      "Socket of a daemon that must not run during the calibration [the socket in the rig file]");
+      "Socket of the daemon, which must not run during the calibration [the socket in the rig file]");
   command
       ->add_option("--out", options->out,
                    "File for the calibrated lines of the rig file; - is the standard output")

@@ -67,7 +67,7 @@ void print_report_text(const rig::CheckReport& report) {
     } else {
       std::printf(": ok%s%s\n", file.warnings > 0 ? ", with warnings" : "",
                   unfitted
-                      ? ", but not checked with a rig: to check the sequence with a rig, also give a rig file"
+                      ? ", but the sequence was not checked with a rig: also give a rig file for this check"
                       : "");
     }
   }

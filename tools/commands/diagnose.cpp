@@ -88,8 +88,9 @@ void print_cause(const sysid::NamedCause& named) {
     std::printf("      %-22s %s %s\n", p.name.c_str(), significant(p.value, 5).c_str(), interval.c_str());
   }
   if (undetermined > 0)
-    std::printf("      %zu parameters that these logs do not determine are in diagnosis.json\n",
-                undetermined);
+    std::printf(
+        "      %zu parameters cannot be determined from these logs; they are listed in diagnosis.json\n",
+        undetermined);
   for (const sysid::Cause& alternative : named.alternatives) {
     std::printf("      alternative cause: %s explains the data equally well\n",
                 std::string(alternative.id).c_str());
@@ -118,8 +119,8 @@ void print_summary(const sysid::Diagnosis& d, const std::string& out) {
   for (const sysid::NamedCause& named : d.partial) print_cause(named);
   if (const auto& nulls = d.null_calibration) {
     std::printf(
-        "of %zu simulated data sets without a cause, the search named a cause in %zu; p = %s for the error "
-        "reduction\n",
+        "in %zu simulated data sets without a cause, the search named a cause %zu times; p-value of the "
+        "error reduction: %s\n",
         nulls->campaigns, nulls->named, significant(nulls->p_value, 2).c_str());
   }
   for (const std::string& warning : d.warnings) std::printf("warning: %s\n", warning.c_str());
@@ -263,7 +264,7 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
       ->excludes("--healthy");
   command->add_flag(
       "--explain", options->explain,
-      "Print the comparisons behind the verdict: tested causes, errors of each run, reasons for rejection");
+      "Print how the verdict was reached: tested causes, errors of each run, reasons for rejection");
   command
       ->add_option(
           "--out", options->out,
@@ -280,14 +281,14 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
       ->capture_default_str();
   add_search_options(*command, options->diagnosis.seed, options->diagnosis.threads);
   command->add_flag("--propose", options->consequences.experiment.always,
-                    "Propose an experiment even if the verdict has no alternatives");
+                    "Propose an experiment even if no alternative cause remains");
   command
       ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
-                   "Highest pressure of the proposed experiment [the largest of the logs]")
+                   "Highest pressure of the proposed experiment [the highest pressure in the logs]")
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--slew-kpa-per-s", options->slew_kpa_per_s,
-                   "Slew rate of the rig, for the proposed experiment")
+                   "Slew rate of the rig; limits the proposed experiment")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_flag("--no-closed-loop", options->no_closed_loop,

@@ -36,11 +36,11 @@ void print_explanation(const sysid::JudgedChange& judged) {
   std::printf("\n%s: model \"%s\", %zu healthy run%s\n", name_of(judged.judged), judged.base.c_str(),
               judged.healthy_runs, judged.healthy_runs == 1 ? "" : "s");
   std::printf(
-      "  error of held-out healthy runs %s %s; limit for another healthy run %s; error of the later logs "
+      "  error of held-out healthy runs %s %s; limit for a further healthy run %s; error of the later logs "
       "%s\n",
       significant(judged.healthy_mm, 3).c_str(), unit_of(judged.judged, judged.output_unit).c_str(),
       significant(judged.allowed_mm, 3).c_str(), significant(judged.later_mm, 3).c_str());
-  std::printf("  whitened squared error of the later logs %s (1: equal to that of healthy runs)\n",
+  std::printf("  whitened squared error of the later logs %s (1: equal to the error of healthy runs)\n",
               significant(judged.loss_before, 3).c_str());
   std::printf("%s\n%s", result::text_of(sysid::run_table(judged)).c_str(),
               result::text_of(sysid::tried_table(judged)).c_str());

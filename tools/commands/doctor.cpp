@@ -79,7 +79,7 @@ void look_myself(const rig::RigFile& rig, bool move, doctor::Findings& findings)
   examine_health(rig, findings);
   const auto lock = daemon::BoardLock::take(rig);
   if (!lock) {
-    findings.fail("board", lock.error(), "first stop the program that controls the board");
+    findings.fail("board", lock.error(), "stop the program that controls the board, then repeat the command");
     return;
   }
   const MonotonicClock clock;

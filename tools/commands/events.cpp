@@ -67,7 +67,7 @@ void add_events(CLI::App& program, ExitCode& outcome) {
   add_daemon_options(*command, options->daemon);
   command
       ->add_option("-n,--lines,--limit", options->query.lines,
-                   "Number of newest events to show; the daemon keeps 10000")
+                   "Number of newest events to show; the daemon stores the last 10000 events")
       ->capture_default_str()
       ->check(CLI::Range(1, 10'000));
   command->add_option(
@@ -76,7 +76,8 @@ void add_events(CLI::App& program, ExitCode& outcome) {
   command->add_option("--severity", options->query.severity, "Only events of at least this severity")
       ->capture_default_str()
       ->check(CLI::IsMember({"information", "warning", "error"}));
-  command->add_flag("-f,--follow", options->follow, "Continue with new events until interrupted");
+  command->add_flag("-f,--follow", options->follow,
+                    "Also show new events as they occur, until the command is interrupted");
 }
 
 }  // namespace softgrip::tools

@@ -67,8 +67,9 @@ void report(const ExportOptions& options, const std::string& format, const std::
 
 ExitCode export_c(const ExportOptions& options) {
   if (!options.rate_hz)
-    return fail(ExitCode::usage,
-                "--format c needs --rate-hz, the number of calls of the function per second");
+    return fail(
+        ExitCode::usage,
+        "--format c needs --rate-hz, the number of times per second at which the C function will be called");
   const auto model = read_model(options.input);
   if (!model) return model.error();
   const auto source = c_source(*model, 1 / *options.rate_hz, options.pressure_max_kpa,
@@ -107,7 +108,8 @@ std::optional<ExitCode> refused(const ExportOptions& options, const std::string&
                                      "can only be exported as .c");
   if (options.rate_hz)
     return fail(ExitCode::usage,
-                "--rate-hz is permitted only with --format c, because samples keep their own times");
+                "--rate-hz is permitted only with --format c, because the samples of a recording or log keep "
+                "their own times");
   return std::nullopt;
 }
 
@@ -147,7 +149,7 @@ void add_export(CLI::App& program, ExitCode& outcome) {
       run);
   command
       ->add_option("INPUT", options->input,
-                   "A recording's folder, a log, or a series.csv; for C a model file")
+                   "Folder of a recording, a log, or a series.csv; for --format c, a model file")
       ->required();
   command
       ->add_option("--format", options->format,
@@ -158,7 +160,7 @@ void add_export(CLI::App& program, ExitCode& outcome) {
       ->check(number_between(0.1, 100000));
   command
       ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
-                   "Highest pressure at which the inverse of the model must exist")
+                   "Highest pressure up to which the inverse of the model must exist")
       ->check(number_between(0.1, 10000))
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print a summary as JSON");

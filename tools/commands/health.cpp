@@ -132,7 +132,7 @@ ExitCode run(const HealthOptions& chosen) {
 void add_health(CLI::App& program, ExitCode& outcome) {
   const auto [command, options] = add_command<HealthOptions>(
       program, outcome, "health",
-      "Report from the recordings of normal operation which fingers have changed, and since when", run);
+      "Report which fingers have changed, and since when; uses the recordings of normal operation", run);
   command->add_option("runs", options->runs, "Recordings, or folders of recordings")->required();
   command
       ->add_option("--baseline", options->baseline,
@@ -146,12 +146,12 @@ void add_health(CLI::App& program, ExitCode& outcome) {
   command
       ->add_option(
           "--points", options->points,
-          "Data of one point of the evaluation: all grips of a day together, or each grip separately")
+          "Data of one point of a control chart: all grips of a day together, or each grip separately")
       ->check(CLI::IsMember({"day", "run"}))
       ->capture_default_str();
   command
       ->add_option("--false-alarm-points", options->judge.false_alarm_points,
-                   "Mean number of points between two false alarms of a healthy finger")
+                   "Mean number of points between two false alarms of a healthy finger (average run length)")
       ->check(CLI::Range(20.0, 1e9))
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print health.json");

@@ -105,9 +105,8 @@ void print_structure(const sysid::StructureEvidence& s, model::OutputUnit output
   }
   if (!s.valve) return;
   std::printf(
-      "Valve, from command to measured pressure: delay %s s, lag %s s filling, %s s venting; RMSE %s kPa, %s "
-      "%% of "
-      "the range\n",
+      "Valve, from command to measured pressure: delay %s s; lag %s s during filling, %s s during venting; "
+      "RMSE %s kPa, %s %% of the range\n",
       significant(s.valve->delay_s, 3).c_str(), significant(s.valve->filling_time_constant_s, 3).c_str(),
       significant(s.valve->venting_time_constant_s, 3).c_str(), significant(s.valve->rmse_kpa, 3).c_str(),
       significant(s.valve->rmse_percent_of_range, 2).c_str());
@@ -196,14 +195,16 @@ void add_fit_options(CLI::App& command, sysid::IdentifyOptions& fit) {
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
   command.add_option("--seed", fit.seed, "Seed of the start points")->capture_default_str();
-  command.add_option("--exponents", fit.exponents, "Exponents of the hysteresis to try")
-      ->check(CLI::Range(1, 4));
-  command.add_flag("--robust", fit.robust, "Robust fit: the loss of outliers grows only linearly (Huber)");
-  command.add_flag("--profile", fit.profile, "Also compute intervals by profile likelihood");
   command
-      .add_option(
-          "--fit-share", fit.fit_share,
-          "Share of each log that is fitted, from the start of the log; the rest of the log is held out")
+      .add_option("--exponents", fit.exponents, "Exponents of the hysteresis that are fitted and compared")
+      ->check(CLI::Range(1, 4));
+  command.add_flag("--robust", fit.robust,
+                   "Robust fit with Huber loss, which grows only linearly for outliers");
+  command.add_flag("--profile", fit.profile, "Also compute confidence intervals by profile likelihood");
+  command
+      .add_option("--fit-share", fit.fit_share,
+                  "Share of each log that is fitted, counted from the start of the log; the rest of the log "
+                  "is held out")
       ->check(number_between(0.05, 1.0))
       ->capture_default_str();
   command.add_option("--threads", fit.threads, "Number of threads; 0: one per core")->capture_default_str();
@@ -217,9 +218,10 @@ void add_structure_option(CLI::App& command, IdentifyOptions& options) {
                                        std::string(name_of(HysteresisForm::play))};
   CLI::Option* const structure =
       command
-          .add_option("--structure", options.structure,
-                      "Choose among a few structures: " + names[0] + ", " + names[1] + " or " + names[2] +
-                          " [the structure of the start model]")
+          .add_option(
+              "--structure", options.structure,
+              "Select the model structure by the error on held-out blocks. Type of the hysteresis:  " +
+                  names[0] + ", " + names[1] + " or " + names[2] + " [the structure of the start model]")
           ->check(CLI::IsMember(names));
   for (const char* other : {"--branches", "--fix", "--free", "--exponents", "--robust", "--profile"})
     structure->excludes(command.get_option(other));

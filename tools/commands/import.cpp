@@ -26,8 +26,9 @@ void add_import(CLI::App& program, ExitCode& outcome) {
         ->add_option("--" + word, options->columns[static_cast<std::size_t>(spec.role)],
                      "Column of the " + word +
                          ": its name, or its number counted from 1. If the option is given twice, " +
-                         (spec.role == sysid::Role::time ? "each time column applies to its own value columns"
-                                                         : "the columns are averaged"))
+                         (spec.role == sysid::Role::time
+                              ? "each of the two time columns applies to its own value columns"
+                              : "the two columns are averaged"))
         ->allow_extra_args(false);
   }
   command
@@ -35,16 +36,17 @@ void add_import(CLI::App& program, ExitCode& outcome) {
                    "ROLE=UNIT: unit of a column, if the file does not state the unit (example: pressure=psi)")
       ->allow_extra_args(false);
   command
-      ->add_option("--scale", options->scales,
-                   "ROLE=X: factor that converts the column to s, kPa, mm or C (example: displacement=-2.5). "
-                   "With --unit displacement=deg or displacement=rad, the factor converts to this unit")
+      ->add_option(
+          "--scale", options->scales,
+          "ROLE=X: factor that converts the column to s, kPa, mm or C (example: displacement=-2.5). With "
+          "--unit displacement=deg or displacement=rad, the factor converts the column to deg or rad")
       ->allow_extra_args(false);
   command
       ->add_option("--zero", options->zeros,
                    "ROLE=X: value that is subtracted from the column before scaling, in the unit of the "
                    "column; ROLE=first: subtract the first value of the column")
       ->allow_extra_args(false);
-  command->add_option("--rate-hz", options->rate_hz, "Sampling rate of a file without times")
+  command->add_option("--rate-hz", options->rate_hz, "Sampling rate of a file without a time column")
       ->check(number_between(1e-3, 1e7));
   command
       ->add_option("--missing", options->missing,

@@ -123,7 +123,8 @@ void add_init(CLI::App& program, ExitCode& outcome) {
   command->add_option("--name", options->name, "Name of the rig [the name of the file]");
   command
       ->add_option("--rate-hz", options->rate_hz,
-                   "Rate of the control loop and the bus [the highest usual rate that the board permits]")
+                   "Rate of the control loop and the bus [the highest of the usual rates at which the board "
+                   "can be used]")
       ->check(CLI::Range(1.0, 10000.0));
   command->add_flag("--service", options->service, "Use the folders of the system service instead of /tmp");
   for (const Fact& fact : draft_facts()) {

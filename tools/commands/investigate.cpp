@@ -262,9 +262,9 @@ void add_investigate(CLI::App& program, ExitCode& outcome) {
   command->add_option("--rig", options->rig, "Rig file of the rig that is moved");
   command->add_option("--rig-channel", options->rig_channel,
                       "With --rig: the channel to move [the channel given by --channel]");
-  command->add_option(
-      "--rig-command", options->rig_command,
-      "Program that runs an experiment on a rig without softgripd; called as COMMAND COMMAND_CSV LOG_OUT");
+  command->add_option("--rig-command", options->rig_command,
+                      "Program that runs an experiment on a rig that is not controlled by softgripd; called "
+                      "as COMMAND COMMAND_CSV LOG_OUT");
   command->add_option("--gauge-command", options->gauge_command,
                       "With --rig-command: program that checks the sensor against a gauge; called as COMMAND "
                       "POSITIONS_CSV GAUGE_OUT");
@@ -277,15 +277,14 @@ void add_investigate(CLI::App& program, ExitCode& outcome) {
       ->capture_default_str();
   command
       ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
-                   "With --rig-command: highest pressure of the rig [the largest of the logs]")
+                   "With --rig-command: highest pressure of the rig [the highest pressure in the logs]")
       ->check(CLI::PositiveNumber);
   command->add_option("--slew-kpa-per-s", options->slew_kpa_per_s, "With --rig-command: slew rate of the rig")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_flag("--yes", options->yes, "Move the rig without a confirmation question");
-  command->add_flag(
-      "--no-closed-loop", options->no_closed_loop,
-      "Do not retune the controller with the extended model, and do not measure the closed loop");
+  command->add_flag("--no-closed-loop", options->no_closed_loop,
+                    "Do not tune the controller for the extended model, and do not measure the closed loop");
   add_search_options(*command, options->diagnosis.seed, options->diagnosis.threads);
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print investigation.json");

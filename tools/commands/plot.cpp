@@ -103,16 +103,16 @@ void add_plot(CLI::App& program, ExitCode& outcome) {
   const auto [command, options] = add_command<PlotOptions>(
       program, outcome, "plot", "Plot a recording: pressure, displacement, error, states", run);
   command
-      ->add_option(
-          "RECORDING", options->recordings,
-          "Folder of a recording, or a log (CSV); if two are given, the second is drawn over the first")
+      ->add_option("RECORDING", options->recordings,
+                   "Folder of a recording, or a log (CSV); if two recordings or logs are given, the second "
+                   "is drawn over the first")
       ->required()
       ->expected(1, 2);
   command
       ->add_option("--out", options->out,
                    "File to write: .svg, .pdf, .png or .html ('-': SVG to the standard output)")
       ->required();
-  command->add_option("--channel", options->channel, "This channel only");
+  command->add_option("--channel", options->channel, "Draw only this channel");
   command->add_option("--from", options->from_s, "Begin at this time [s]");
   command->add_option("--to", options->to_s, "End at this time [s]");
   command->add_flag("--beside", options->beside,

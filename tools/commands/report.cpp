@@ -69,7 +69,7 @@ void add_report(CLI::App& program, ExitCode& outcome) {
       ->required();
   command
       ->add_option("--tolerance", options->tolerance,
-                   "Largest relative difference of two numbers that count as equal")
+                   "Largest relative difference at which two numbers count as equal")
       ->check(number_between(0.0, 1.0))
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print the differences as JSON");

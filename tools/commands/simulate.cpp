@@ -45,7 +45,8 @@ tl::expected<sysid::Log, ExitCode> input_of(const SimulateOptions& options) {
   }
   if (options.rate_hz) {
     return tl::unexpected{
-        fail(ExitCode::usage, "--rate-hz is permitted only with a SIGNAL, because a log has its own times")};
+        fail(ExitCode::usage,
+             "--rate-hz is permitted only with a SIGNAL, because a log contains the times of its samples")};
   }
   document::Problems problems;
   sysid::LogOptions log_options;

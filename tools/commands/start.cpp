@@ -218,7 +218,7 @@ void add_start(CLI::App& program, ExitCode& outcome) {
   add_set_option(*command, options->settings);
   add_daemon_options(*command, options->daemon);
   command->add_flag("--wait", options->wait,
-                    "Wait for the end of the sequence, and stop the sequence if this command is interrupted. "
+                    "Wait for the end of the sequence. If this command is interrupted, stop the sequence. "
                     "The exit code is 6 if a grip did not succeed");
 }
 

@@ -64,7 +64,7 @@ void add_published(CLI::App& study, ExitCode& outcome) {
   auto options = std::make_shared<Options>();
   CLI::App* command = study.add_subcommand(
       "published",
-      "Show that the published parameters describe a hysteresis model that absorbs an unmodelled latency");
+      "Show that the published hysteresis parameters absorb a latency that the model does not contain");
   add_output(*command, options->output);
   command->add_option("--seed", options->study.seed, "Seed of noise and start points")->capture_default_str();
   command->add_option("--starts", options->study.starts, "Number of start points of each identification")
@@ -96,7 +96,7 @@ void add_control(CLI::App& study, ExitCode& outcome) {
       ->capture_default_str();
   command
       ->add_option("--max-sensitivity", options->study.most_sensitivity,
-                   "Highest permitted sensitivity peak Ms of each loop")
+                   "Highest permitted sensitivity peak Ms of each control loop")
       ->check(number_between(1.05, 5.0))
       ->capture_default_str();
   command->callback([options, &outcome] {

@@ -70,7 +70,7 @@ std::string snippet(const TuneOptions& options, const control::TuneTask& task, c
                     const std::string& model_name) {
   std::string text;
   text += "# `softgrip tune` for " + model_name + ", " + significant(task.rate_hz) +
-          " Hz, with an error of every parameter of up to " + significant(options.mismatch_percent) + " %, " +
+          " Hz; each model parameter was varied by up to " + significant(options.mismatch_percent) + " %, " +
           std::to_string(task.draws) + " fingers, seed " + std::to_string(task.seed) + ".\n";
   text += "# Worst Ms " + significant(tuned.sensitivity, 3) + " (bound " +
           significant(task.most_sensitivity, 3) + "), crossover " + significant(tuned.crossover_hz, 3) +
@@ -122,7 +122,8 @@ ExitCode run(const TuneOptions& chosen) {
   take_defaults(task);
   if (!options.rig.empty()) {
     if (options.rate_hz)
-      return fail(ExitCode::usage, "--rate-hz excludes --rig, because the rig file has its own rate");
+      return fail(ExitCode::usage,
+                  "--rate-hz is not permitted with --rig, because the rig file contains the rate");
     if (const auto code = take_rig(options, task)) return *code;
   }
   if (options.rate_hz) task.rate_hz = *options.rate_hz;
@@ -164,7 +165,8 @@ void add_tune(CLI::App& program, ExitCode& outcome) {
   const auto [command, options] =
       add_command<TuneOptions>(program, outcome, "tune", "Tune PID gains that tolerate model errors", run);
   command->add_option("--model", options->model, "Model file")->required();
-  command->add_option("--rig", options->rig, "Rig file: rate, limits, feedforward and latency of a channel");
+  command->add_option("--rig", options->rig,
+                      "Rig file from which rate, limits, feedforward and latency of the channel are read");
   command->add_option("--channel", options->channel, "Channel of the rig [the first channel]");
   command->add_option("--rate-hz", options->rate_hz, "Rate of the control loop, if --rig is not given [200]")
       ->check(number_between(10.0, 2000.0));
@@ -183,7 +185,7 @@ void add_tune(CLI::App& program, ExitCode& outcome) {
       ->capture_default_str();
   command
       ->add_option("--max-sensitivity", options->task.most_sensitivity,
-                   "Highest permitted sensitivity peak Ms of the loop")
+                   "Highest permitted sensitivity peak Ms of the control loop")
       ->check(number_between(1.05, 5.0))
       ->capture_default_str();
   command->add_option("--frequencies-hz", options->task.frequencies_hz, "Frequencies of the tracked sines")
@@ -196,7 +198,9 @@ void add_tune(CLI::App& program, ExitCode& outcome) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_option("--seed", options->task.seed, "Seed of fingers and noise")->capture_default_str();
-  command->add_option("--out", options->out, "Snippet for the rig file ('-': standard output)")->required();
+  command
+      ->add_option("--out", options->out, "File for the `pid:` block of the rig file ('-': standard output)")
+      ->required();
   command->add_flag("--json", options->json, "Print the numbers as JSON");
 }
 

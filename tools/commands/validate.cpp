@@ -42,7 +42,7 @@ std::string summary_line(const sysid::Validation& v, const sysid::Score& s) {
                      significant(s.largest_error_mm, 3) + unit + "; ";
   line += std::isfinite(s.settled_rmse_mm) ? "first cycle " + significant(s.first_cycle_rmse_mm) + unit +
                                                  ", settled " + significant(s.settled_rmse_mm) + unit
-                                           : "the command does not repeat";
+                                           : "no settled cycle, because the command does not repeat";
   line += "; driven by the " + name_of(s.drive);
   if (s.diverges)
     line += "; FAILED: it diverges";
@@ -109,8 +109,9 @@ void add_validate(CLI::App& program, ExitCode& outcome) {
   command->add_option("--out", options->out, "Folder for validate.json, report.html, and series.csv per log");
   add_figures_option(*command, options->figures);
   command
-      ->add_option("--at-most-percent", options->at_most_percent,
-                   "Exit with 6 if the RMSE of a log exceeds this share of its span")
+      ->add_option(
+          "--at-most-percent", options->at_most_percent,
+          "End with exit code 6 if the RMSE of a log exceeds this share of the log's displacement span")
       ->check(number_between(0.0, 100.0));
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print validate.json");

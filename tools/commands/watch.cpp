@@ -304,7 +304,7 @@ void add_watch(CLI::App& program, ExitCode& outcome) {
   command->add_option("--rate-hz", options->rate_hz, "Updates per second")
       ->capture_default_str()
       ->check(number_between(0.1, 50));
-  command->add_option("--count", options->count, "Number of updates; 0: until interrupted")
+  command->add_option("--count", options->count, "Number of updates; 0: until the command is interrupted")
       ->capture_default_str();
 }
 

@@ -17,7 +17,7 @@ struct BusAdvice {
 
 constexpr std::array<BusAdvice, 5> bus_advices{{
     {BusStatus::disconnected,
-     "check the power and the cable of the board, and its address in the rig file; check that no other "
+     "check the power and the cable of the board, and the address in the rig file; check that no other "
      "Modbus client occupies the board"},
     {BusStatus::closed_at_once,
      "the board is reachable but accepts no further client: end the other programs that are connected to the "

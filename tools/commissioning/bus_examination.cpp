@@ -179,8 +179,8 @@ class BusInquiry {
     for (const int by : {-1, 1}) {
       if (!can_move(by) || ask(moved(by)).status != BusStatus::ok) continue;
       findings.fail(name_,
-                    fmt::format("{}; the board accepts the request if the request begins one register {}, at "
-                                "{}, so the addresses are wrong by one",
+                    fmt::format("{}; the board accepts the request if it begins one register {}, at {}, so "
+                                "the addresses in the board map are wrong by one",
                                 heard.detail, by < 0 ? "lower" : "higher", asked_.address + by),
                     base_advice(by));
       return true;
@@ -191,7 +191,9 @@ class BusInquiry {
   [[nodiscard]] std::string base_advice(int by) const {
     const int base = map_.address_base - by;
     return base == 0 || base == 1
-               ? fmt::format("write `address_base: {}` in the board map, or correct its addresses", base)
+               ? fmt::format(
+                     "write `address_base: {}` in the board map, or correct the addresses in the board map",
+                     base)
                : std::string("correct the addresses in the board map by one");
   }
 
@@ -200,10 +202,11 @@ class BusInquiry {
     while (fewer.count > 1) {
       fewer.count = static_cast<std::uint16_t>(fewer.count / 2);
       if (ask(fewer).status != BusStatus::ok) continue;
-      findings.fail(name_,
-                    fmt::format("{}; a request of {} registers is accepted, one of {} is not", heard.detail,
-                                fewer.count, asked_.count),
-                    fmt::format("write `max_registers: {}` in the board map", fewer.count));
+      findings.fail(
+          name_,
+          fmt::format("{}; the board accepts a request of {} registers, but no request of {} registers",
+                      heard.detail, fewer.count, asked_.count),
+          fmt::format("write `max_registers: {}` in the board map", fewer.count));
       return true;
     }
     return false;
@@ -222,7 +225,7 @@ class BusInquiry {
       findings.fail(
           name_,
           fmt::format("{}; unit id {} responds, unit id {} does not", heard.detail, other.unit, asked_.unit),
-          fmt::format("write `unit: {}` in the rig file if this is the board", other.unit));
+          fmt::format("write `unit: {}` in the rig file if this unit id belongs to the board", other.unit));
       return true;
     }
     return false;
@@ -307,15 +310,16 @@ class BusInquiry {
     const Fit& fit = fits.front();
     const std::string name(drivers::name_of(fit.order));
     if (fit.by != 0) {
-      return findings.fail(name_,
-                           fmt::format("the inputs are implausible with the board map; read one register {}, "
-                                       "the inputs are probably {}, so the addresses are wrong by one",
-                                       fit.by < 0 ? "lower" : "higher", fit.shown),
-                           base_advice(fit.by));
+      return findings.fail(
+          name_,
+          fmt::format("the inputs at the addresses of the board map are implausible. One register {}, the "
+                      "board has the plausible inputs {}, so the addresses are probably wrong by one",
+                      fit.by < 0 ? "lower" : "higher", fit.shown),
+          base_advice(fit.by));
     }
     findings.fail(name_,
-                  fmt::format("the inputs are implausible with `{}`; with `{}` the inputs are {}, so the "
-                              "word order is probably wrong",
+                  fmt::format("the inputs are implausible with the word order `{}`; with `{}`, the inputs "
+                              "are {}, so the word order is probably wrong",
                               drivers::name_of(map_.word_order), name, fit.shown),
                   fmt::format("write `word_order: {}` in the board map", name));
   }

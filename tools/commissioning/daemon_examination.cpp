@@ -83,7 +83,7 @@ void judge_loop(const Json& status, const Json& statistics, Findings& findings) 
                   "cycles are missed: see the finding `scheduling`, lower rate_hz, or reduce the load of the "
                   "processor");
   } else if (overruns > 0 || p99_us > period_us / 10) {
-    findings.warn("loop", text, "cycles were missed or late occasionally: see the finding `scheduling`");
+    findings.warn("loop", text, "a few cycles were missed or late: see the finding `scheduling`");
   } else {
     findings.ok("loop", text);
   }
@@ -100,7 +100,7 @@ void judge_bus(const Json& status, const Json& statistics, Findings& findings) {
   if (!json_flag(bus, "connected")) {
     const std::string failure = json_text(bus, "failure");
     findings.fail("board",
-                  fmt::format("{}; not connected, tried {:.0f} times, every {:.2g} s{}", text,
+                  fmt::format("{}; not connected after {:.0f} attempts, one every {:.2g} s{}", text,
                               json_number(bus, "attempts", 0), json_number(bus, "retry_s", 0),
                               failure.empty() ? "" : ". " + failure),
                   std::string(bus_advice(json_text(bus, "failure_kind"))) + "; softgripd reconnects");

@@ -91,8 +91,8 @@ std::optional<std::pair<double, double>> two_numbers(const std::string& text) {
 // --- Questions about the values of a draft, and checks of their answers
 
 std::optional<Question> ask_board(const RigDraft&) {
-  return Question{"one or more board maps, each as a file or a name" + in_brackets(names_in("boards")) +
-                      ", or `simulated`",
+  return Question{"one or more board maps; each is a file or a name in config/boards" +
+                      in_brackets(names_in("boards")) + ", or `simulated`",
                   ""};
 }
 
@@ -201,7 +201,8 @@ std::string take_fingers(const std::string& text, RigDraft& draft) {
 }
 
 std::optional<Question> ask_model(const RigDraft&) {
-  return Question{"model of the free finger, as a file or a name" + in_brackets(names_in("models")),
+  return Question{"model of the finger in free motion; a file or a name in config/models" +
+                      in_brackets(names_in("models")),
                   "bench_twin"};
 }
 

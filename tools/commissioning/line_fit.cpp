@@ -127,15 +127,16 @@ tl::expected<Line, std::string> fit_line(const std::vector<Visit>& visits, const
   }
   if (electrical_span < demands.least_electrical_span) {
     return tl::unexpected(
-        fmt::format("the signal does not follow: the signal changes by {:.4g} {} between points with a "
-                    "distance of {:.4g} {}, but a change of at least {:.4g} is required",
+        fmt::format("the signal changes too little: between points with a distance of {2:.4g} {3}, it "
+                    "changes by {0:.4g} {1}, but at least {4:.4g} {1} are required",
                     electrical_span, electrical, span, unit, demands.least_electrical_span));
   }
   const double noise = largest(visits, &Visit::noise);
   if (noise > demands.most_noise_share * electrical_span) {
-    return tl::unexpected(fmt::format(
-        "too much noise: the noise is {:.4g} {} on a difference of {:.4g} {}, which is more than {:g} %",
-        noise, electrical, electrical_span, electrical, 100 * demands.most_noise_share));
+    return tl::unexpected(
+        fmt::format("too much noise: the noise is {:.4g} {}. The two points differ by {:.4g} {}, and the "
+                    "noise may be at most {:g} % of this difference",
+                    noise, electrical, electrical_span, electrical, 100 * demands.most_noise_share));
   }
   Line line;
   const Means all = means_of(visits, std::nullopt);

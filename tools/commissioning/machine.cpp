@@ -220,7 +220,9 @@ void examine_disk(const rig::RigFile& rig, Findings& findings) {
         "disk", text,
         "free disk space, or change `directory` or raise `decimation` under `recorder` in the rig file");
   } else if (hours < good_hours) {
-    findings.warn("disk", text, "the free space lasts less than a day: move old recordings to another disk");
+    findings.warn("disk", text,
+                  "the free disk space is enough for less than 1 day of recordings: move old recordings to "
+                  "another disk");
   } else {
     findings.ok("disk", text);
   }

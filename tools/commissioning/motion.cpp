@@ -96,9 +96,9 @@ void judge_model(const control::ChannelSettings& channel, const Motion& motion, 
                   "the cause may be a replaced finger, wear, a leak or a moved sensor: inspect the finger, "
                   "calibrate the sensor, then identify the model again");
   } else if (motion.residual_rms_mm > healthy_mm) {
-    findings.warn(
-        name, text,
-        "the detection of a grip loses margin: record the test signal tp1 and identify the model again soon");
+    findings.warn(name, text,
+                  "the detection of a grip becomes less reliable: record the test signal tp1 and identify "
+                  "the model again soon");
   } else {
     findings.ok(name, text);
   }
@@ -157,8 +157,8 @@ bool judge_valve(const control::ChannelSettings& of, const Sample& monitor, doub
     findings.ok("valve " + of.name, text);
   } else {
     findings.fail("valve " + of.name, text,
-                  "check supply pressure, valve power, leaks and kinked lines. If these are in order, "
-                  "calibrate the valve and the pressure monitor");
+                  "check for missing supply pressure, missing power of the valve, leaks and kinked lines. If "
+                  "none of these is the cause, calibrate the valve and the pressure monitor");
   }
   return follows;
 }
@@ -183,7 +183,7 @@ void judge_finger(const control::ChannelSettings& of, const Sample& rest, const 
                                : "no supply pressure, a blocked air line or a stuck sensor: move the finger "
                                  "by hand and watch the reading");
   } else if (moved_mm * motion.model_mm < 0) {
-    broken(text, "the sensor's sign is wrong: calibrate the sensor");
+    broken(text, "the reading changes in the direction opposite to the prediction: calibrate the sensor");
   } else {
     findings.ok(name, text);
     judge_model(of, motion, findings);
@@ -202,7 +202,8 @@ void judge_motion(const rig::RigFile& rig, std::size_t channel, const ChannelSam
     findings.not_judged("valve " + of.name, known.valve);
   } else if (monitor.count == 0) {
     findings.ok("valve " + of.name,
-                "not measured, because the channel has no pressure monitor; see the motion of the finger");
+                "the pressure was not measured, because the channel has no pressure monitor; see the finding "
+                "about the motion");
   } else {
     pressure_seen = judge_valve(of, monitor, motion.command_kpa, findings);
     if (!pressure_seen && finger_waits.empty()) finger_waits = "see `valve " + of.name + "`";

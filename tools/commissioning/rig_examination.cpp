@@ -46,9 +46,9 @@ void judge_bus(const rig::RigFile& rig, const daemon::Histogram::Summary& times,
   if (median_s > period_s) {
     findings.fail("bus time", text, "the bus is slower than the control loop: lower rate_hz");
   } else if (slow_s > 0.8 * period_s) {
-    findings.warn(
-        "bus time", text,
-        "because of late exchanges, some cycles have no data: lower rate_hz, or find the cause of the delay");
+    findings.warn("bus time", text,
+                  "some exchanges are late, so some cycles have no data: lower rate_hz, or find the cause of "
+                  "the delay");
   } else {
     findings.ok("bus time", text);
   }
@@ -88,8 +88,8 @@ void judge_displacement(const control::ChannelSettings& channel, const Sample& s
                   "the finger or the sensor has moved: inspect both, then calibrate the sensor");
   } else if (sample.lowest == sample.highest) {
     findings.warn(name, text + "; no variation",
-                  "very low noise, or a frozen sensor (hold mode, blocked beam): to distinguish them, run "
-                  "the command with --move");
+                  "the reading does not change: either the noise is very low, or the sensor is frozen (hold "
+                  "mode, blocked beam). To distinguish the two cases, run the command with --move");
   } else {
     findings.ok(name, text);
   }
@@ -105,8 +105,8 @@ void judge_rest(const control::ChannelSettings& channel, const drivers::ChannelW
     findings.fail("output " + channel.name,
                   fmt::format("{:.2f} kPa were written, but the board outputs {:.2f} kPa", command_kpa,
                               sample.readback_kpa.mean),
-                  "another Modbus client also writes to the board, the board has a latched trip or is in "
-                  "manual mode, or the scaling is wrong");
+                  "possible causes: another Modbus client writes to the board, the board has a latched "
+                  "watchdog trip or is in manual mode, or the scaling is wrong");
   }
   if (sample.pressure_kpa.count == 0) {
     if (wiring.pressure) {
@@ -131,7 +131,7 @@ void failed(const MotionFailure& failure, const rig::RigFile& rig, const std::st
             Findings& findings) {
   switch (failure.kind) {
     case MotionFailure::Kind::stopped:
-      return findings.fail(name, failure.text, "repeat the command, and wait for its end");
+      return findings.fail(name, failure.text, "repeat the command and do not interrupt it");
     case MotionFailure::Kind::bus:
       return findings.fail(name, failure.text, advice_for_silence(rig, failure.status));
     case MotionFailure::Kind::blind:
@@ -147,14 +147,17 @@ void failed(const MotionFailure& failure, const rig::RigFile& rig, const std::st
 void judge_clients(const drivers::Board& board, Findings& findings) {
   const unsigned clients = board.clients();
   if (clients > 1 && board.fed_by_readers()) {
-    findings.warn("clients",
-                  fmt::format("the board counts {} clients, one of them is this command. The other clients "
-                              "reset its watchdog, so the board does not vent while they send requests",
-                              clients),
-                  "find the other program and disconnect it from the board; the board may count a broken "
-                  "connection for some time");
+    findings.warn(
+        "clients",
+        fmt::format(
+            "the board has {} clients, one of which is this command. Requests of the other clients reset the "
+            "board's watchdog, so the board does not vent while these clients send requests",
+            clients),
+        "find the other program and disconnect it from the board; the board may also count a connection that "
+        "has been broken for some time");
   } else if (clients > 0) {
-    findings.ok("clients", fmt::format("the board counts {} (this command is one of them)", clients));
+    findings.ok("clients",
+                fmt::format("number of clients at the board: {}, including this command", clients));
   }
 }
 
@@ -237,20 +240,20 @@ void examine_description(const rig::RigFile& rig, const drivers::Board& board, F
   const std::string text = fmt::format("{}; a cycle is {:.3g} ms", budget.explanation, period_s * ms_per_s);
   if (budget.exchange_s > period_s && rig.accept_over_budget) {
     findings.warn("bus budget", text,
-                  "an exchange takes longer than a cycle, which the rig file accepts, so some cycles may "
-                  "have no exchange");
+                  "an exchange takes longer than a cycle, so some cycles may have no exchange; the rig file "
+                  "accepts this with `accept_over_budget`");
   } else if (budget.exchange_s > period_s) {
     findings.fail("bus budget", text,
                   fmt::format("lower rate_hz to {:.0f} or less", 0.9 / budget.exchange_s));
   } else if (budget.exchange_s > 0.8 * period_s) {
-    findings.warn("bus budget", text, "the cycle leaves little time for a slow reply: lower rate_hz");
+    findings.warn("bus budget", text, "a slow reply may arrive after the end of the cycle: lower rate_hz");
   } else {
     findings.ok("bus budget", text);
   }
   if (rig.settings.safety.board_vents_when_silent && board.fed_by_readers()) {
     findings.warn("watchdog",
-                  "the board vents without communication, but only if no Modbus client sends requests: even "
-                  "a client that only reads resets the watchdog",
+                  "if communication stops, the board vents only if no Modbus client sends requests: even a "
+                  "client that only reads resets the watchdog",
                   "do not connect other programs to the board, but to softgripd. If the board supports this "
                   "setting, let only writes reset the watchdog");
   } else if (rig.settings.safety.board_vents_when_silent) {
@@ -258,9 +261,11 @@ void examine_description(const rig::RigFile& rig, const drivers::Board& board, F
   } else {
     findings.warn(
         "watchdog",
-        fmt::format("the board does not vent without communication, and the rig file accepts this: \"{}\"",
-                    rig.accept_no_watchdog),
-        "set the board's watchdog and safe value, or keep a dump valve in the emergency-stop circuit");
+        fmt::format(
+            "the board does not vent if communication stops, and the rig file accepts this risk: \"{}\"",
+            rig.accept_no_watchdog),
+        "set the watchdog time and the safe value of the board, or keep a dump valve in the emergency-stop "
+        "circuit");
   }
 }
 
@@ -293,9 +298,9 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& cl
   if (move) move_all(rig, session, *rest, settings, findings);
   if (!session.leave()) {
     findings.fail("safe state", "the board did not confirm the rest pressures",
-                  "inspect the fingers before you reach into the gripper; vent by hand");
+                  "vent the fingers by hand, and inspect them before you reach into the gripper");
   } else if (move) {
-    findings.ok("safe state", "all channels at their rest pressure, confirmed by the board");
+    findings.ok("safe state", "the board confirmed that all channels are at their rest pressure");
   }
 }
 

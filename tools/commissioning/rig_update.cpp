@@ -112,14 +112,15 @@ tl::expected<std::string, std::string> updated_rig(const std::string& text, cons
     const Node::Entry* const entry = map_of(document, results.channel, target.map);
     if (entry == nullptr || !set_points(edit, *entry, target, results)) {
       return tl::unexpected("`" + target.map + "` of channel `" + channel +
-                            "` has a form that softgrip cannot change in the file");
+                            "` is written in a form that softgrip cannot change");
     }
   }
   std::string changed = edit.text();
   const document::Document again = document::parse(rig.path, changed, problems);
   const auto read = rig::read_rig(again, problems);
   if (!read)
-    return tl::unexpected("with the new lines, the rig file would be refused:\n" + problems.format());
+    return tl::unexpected("the rig file would be refused with the new lines, so it was not changed:\n" +
+                          problems.format());
   if (!says(*read, rig, targets, results.channel)) {
     return tl::unexpected("the lines of channel `" + channel + "` cannot be changed in the file");
   }

@@ -53,11 +53,12 @@ std::string findings(const std::string& what, const Line& line, const std::strin
   const std::string residuals =
       with_commas(line.residuals, [](double residual) { return rounded(residual, 4); });
   return fmt::format(
-      "# {}: error between the points {} {} (without the error of the reference), noise of a reading {} "
-      "{},\n#   residuals [{}] {}, repeat spread {}\n",
+      "# {}: error between the points {} {} (without the error of the reference instrument), noise of a "
+      "reading {} "
+      "{},\n#   residuals [{}] {}, repeatability {}\n",
       what, rounded(line.error, 4), unit, rounded(line.noise, 4), unit, residuals, unit,
       line.repeat_spread ? rounded(*line.repeat_spread, 4) + " " + unit
-                         : "not known (each point was measured only once)");
+                         : "unknown (each point was measured only once)");
 }
 
 std::string valve_line(const rig::RigFile& rig, std::size_t channel, const drivers::TwoPoints& points) {
@@ -74,8 +75,9 @@ std::string valve_line(const rig::RigFile& rig, std::size_t channel, const drive
 
 std::string dead_zone_lines(const DeadZoneResult& result, double rest_kpa) {
   const DeadZone& zone = *result.zone;
-  const std::string by =
-      result.by_pressure ? "the pressure monitor" : "the finger (less reliable because of its hysteresis)";
+  const std::string by = result.by_pressure
+                             ? "the pressure monitor"
+                             : "the motion of the finger (less reliable, because the finger has hysteresis)";
   if (!zone.significant) {
     return fmt::format("# dead zone: none detected up to {} kPa, measured by {}\n",
                        rounded(result.highest_kpa, 3), by);

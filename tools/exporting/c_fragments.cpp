@@ -3,7 +3,7 @@
 namespace softgrip::tools::c_text {
 
 const std::string_view common = R"(
-/* A stretch of a signal: the parabola through both ends with this mean. */
+/* Segment of a signal: the parabola with the values `begin` and `end` at its ends and the mean value `mean`. */
 typedef struct { double duration_s, begin, end, mean; } segment;
 typedef void (*next_block)(void *chain, segment in);
 
@@ -27,7 +27,7 @@ static segment bent(double duration_s, double begin, double end, double mean) {
 
 static double bend_of(segment s) { return (s.mean - (s.begin + s.end) * 0.5) * 6.0; }
 
-/* Linear responses over a segment: phi functions at -z, z = duration * rate. */
+/* Coefficients of the response of dx/dt = gain_rate u - rate x to a segment of the input u. */
 typedef struct {
   double loss, end_begin, end_rise, end_bend, mean_state, mean_begin, mean_rise, mean_bend;
 } response;
@@ -77,7 +77,7 @@ static double response_mean(const response *r, double x, segment in) {
 )";
 
 const std::string_view bouc_wen = R"(
-/* Bouc-Wen hysteresis of exponent 1, exact in pressure: y = alpha p - h. */
+/* Bouc-Wen hysteresis with exponent 1. The output is alpha p - h; h is integrated exactly over the pressure p. */
 typedef struct { double h, direction, output; } bouc_wen;
 
 static double bouc_wen_rate(const double *v, double h, double direction) {
@@ -124,8 +124,8 @@ static segment bouc_wen_step(bouc_wen *b, const double *v, segment in) {
 )";
 
 const std::string_view prandtl_ishlinskii = R"(
-/* A sum of play operators; the values are the largest load before the start, bend, skew and end of their envelopes,
-   then threshold and weight in turn. */
+/* Sum of play operators. The values are the largest load before the start, bend, skew and end of the envelope,
+   then threshold and weight of each operator. */
 typedef struct { double output, zero; int dragging, upwards; } play;
 
 static double play_dragged(double input, double from, double reach) {
@@ -158,7 +158,7 @@ static double play_step(play *o, double reach, segment in) {
   return (begin * (in.duration_s - moving.duration_s) + (moving.mean + side) * moving.duration_s) / in.duration_s;
 }
 
-/* The pressure as the operators see it. */
+/* Returns the input of the play operators: the pressure, deformed by the envelope. */
 static double enveloped(const double *v, double p) {
   const double left = 1.0 - p / v[3];
   if (p <= 0.0) return p * (1.0 - v[1] + v[2]);
@@ -203,8 +203,8 @@ static segment prandtl_ishlinskii_step(play *o, const double *v, int count, segm
 )";
 
 const std::string_view kelvin_voigt = R"(
-/* A spring in series with branches of spring and dashpot; x[0] is the spring's deflection. The values are k0, then k and
-   c of each branch. */
+/* Spring in series with branches. Each branch is a spring parallel to a dashpot. x[0] is the deflection of the
+   first spring. The values are k0, then k and c of each branch. */
 static double kelvin_voigt_reset(double *x, const double *v, int branches, double input) {
   double sum = x[0] = input / v[0];
   int i;
@@ -227,7 +227,7 @@ static segment kelvin_voigt_step(double *x, const double *v, int branches, segme
 )";
 
 const std::string_view pressure_dependent_creep = R"(
-/* Creep above a pressure; the values are hinge, compliance and time constant of each branch. */
+/* Creep above a pressure (hinge). The values are hinge, compliance and time constant of each branch. */
 static segment above(segment in, double hinge) {
   const double first = in.begin >= hinge ? in.begin - hinge : 0.0;
   const double last = in.end >= hinge ? in.end - hinge : 0.0;
@@ -329,7 +329,7 @@ static segment linear_modes_step(mode *m, const double *v, int modes, segment in
 )";
 
 const std::string_view characteristic = R"(
-/* A bent map from 0 to the span, straight beyond; the values are curvature and span. */
+/* Static characteristic, curved from 0 to the span and straight outside. The values are curvature and span. */
 static double characteristic_of(const double *v, double z) {
   if (z <= 0.0) return z / phi_one(v[0]);
   if (z >= v[1]) return v[1] + exp(v[0]) / phi_one(v[0]) * (z - v[1]);
@@ -351,7 +351,7 @@ static double body_after(const body *b, double from_kpa, double to_kpa) {
   return body_step(&trial, straight(TICK_S, from_kpa, to_kpa));
 }
 
-/* The displacement rises with the pressure, so one pressure solves it: false position (Illinois), bracketed. */
+/* Returns the pressure at which the displacement is wanted_mm: false position (Illinois) between lower and upper. */
 static double body_solve(const body *b, double from_kpa, double wanted_mm, double lower, double upper) {
   const double tolerance_mm = 1e-11;
   double low = body_after(b, from_kpa, lower) - wanted_mm;

@@ -5,7 +5,7 @@
 namespace softgrip::tools::c_text {
 
 const std::string_view transport_delay = R"(
-/* Dead time: a ring of the pieces of the last delay_s. */
+/* Dead time. A ring buffer stores the pieces of the input of the last delay_s. */
 typedef struct { double duration_s, end, mean; } piece;
 typedef struct {
   double front_begin;
@@ -70,7 +70,7 @@ static void transport_delay_step(transport_delay *d, double delay_s, segment in,
 )";
 
 const std::string_view valve_lag = R"(
-/* First-order lag, cut where the output meets the input. */
+/* First-order lag. The segment is split at the time at which the output reaches the input. */
 static void valve_lag_step(double *output, double tau, segment in, void *chain, next_block next) {
   const double begin = *output;
   double gap_begin, end;
@@ -101,7 +101,7 @@ static void valve_lag_step(double *output, double tau, segment in, void *chain, 
 )";
 
 const std::string_view two_way_lag = R"(
-/* First-order lag with a time constant for either direction. */
+/* First-order lag with one time constant for filling and one for venting. */
 static void two_way_lag_go(double *output, double tau, segment in, void *chain, next_block next) {
   const double begin = *output;
   response r;
@@ -144,7 +144,7 @@ static void two_way_lag_step(double *output, double filling, double venting, seg
 )";
 
 const std::string_view rate_limit = R"(
-/* Limited rate of change, cut where the output meets the input. */
+/* Limit of the rate of change. The segment is split at the time at which the output reaches the input. */
 static void rate_limit_go(double *output, double s_per_kpa, double duration_s, void *chain, next_block next) {
   const double begin = *output;
   *output = begin + duration_s / s_per_kpa;

@@ -229,7 +229,9 @@ class Generator {
   /// Adds the blocks behind the valve. The outputs of the elements are added, and their sum passes through
   /// the characteristic maps.
   void add_body() {
-    text_ += "\n/* Behind the valve. */\ntypedef struct {\n";
+    text_ +=
+        "\n/* State of the blocks after the valve: from the pressure to the displacement. */\ntypedef struct "
+        "{\n";
     for (const auto* list : {&elements_, &maps_}) {
       for (const std::size_t i : *list) text_ += "  " + numbered(block(i).state, i) + "\n";
     }
@@ -250,7 +252,9 @@ class Generator {
   }
 
   void add_chain() {
-    text_ += "\n/* From the command to the displacement. */\ntypedef struct {\n  double command_kpa;\n";
+    text_ +=
+        "\n/* State of the complete model: from the command to the displacement. */\ntypedef struct {\n  "
+        "double command_kpa;\n";
     for (const std::size_t i : valve_) text_ += "  " + numbered(block(i).state, i) + "\n";
     text_ += "  body body;\n} " + name_ + "_state;\n";
     text_ += "\nstatic void at_body(void *chain, segment in) {\n  " + name_ +
@@ -264,14 +268,13 @@ class Generator {
       text_ += "\nstatic void " + next + "(void *chain, segment in) {\n  " + name_ +
                "_state *s = chain;\n  " + step + ";\n}\n";
     }
-    text_ +=
-        model::in_unit(
-            "\n/* Starts at rest, as if the command had risen from 0 once. Returns the displacement [mm]. "
-            "*/\ndouble ",
-            model_.output_unit) +
-        name_ + "_reset(" + name_ +
-        "_state *s, double command_kpa) {\n  const double input = command_kpa;\n"
-        "  s->command_kpa = command_kpa;\n";
+    text_ += model::in_unit(
+                 "\n/* Sets the state to rest at command_kpa, as after one increase of the command from 0. "
+                 "Returns the displacement [mm]. */\ndouble ",
+                 model_.output_unit) +
+             name_ + "_reset(" + name_ +
+             "_state *s, double command_kpa) {\n  const double input = command_kpa;\n"
+             "  s->command_kpa = command_kpa;\n";
     for (const std::size_t i : valve_) {
       std::string reset = numbered(block(i).reset, i);
       if (reset.starts_with("block_")) reset = "s->" + reset;
@@ -279,7 +282,7 @@ class Generator {
     }
     text_ += "  return body_reset(&s->body, input);\n}\n";
     text_ += model::in_unit(
-                 "\n/* Advances by TICK_S, with a linear change of the command to command_kpa. Returns the "
+                 "\n/* Simulates TICK_S, in which the command changes linearly to command_kpa. Returns the "
                  "displacement [mm]. */\ndouble ",
                  model_.output_unit) +
              name_ + "_step(" + name_ +
@@ -292,7 +295,8 @@ class Generator {
   void add_inverse() {
     const std::string type = name_ + "_inverse_state";
     text_ +=
-        "\n/* The inverse has its own body. */\ntypedef struct {\n  body body;\n  double "
+        "\n/* State of the inverse. `body` is a separate copy of the blocks after the valve. */\ntypedef "
+        "struct {\n  body body;\n  double "
         "pressure_kpa;\n"
         "  double led_kpa[" +
         std::to_string(valve_.size() + 1) + "];\n} " + type + ";\n";
@@ -302,9 +306,9 @@ class Generator {
              std::to_string(valve_.size() + 1) +
              "; ++i) s->led_kpa[i] = pressure_kpa;\n  body_reset(&s->body, pressure_kpa);\n}\n";
     text_ +=
-        "\n/* Returns the command for displacement_mm one tick from now, without the delay of the valve. The "
-        "pressure\n   at the actuator is in [lowest_kpa, highest_kpa] and is stored in s->pressure_kpa. "
-        "*/\ndouble " +
+        "\n/* Returns the command that leads to displacement_mm after one tick. The delay of the valve is "
+        "not compensated. The\n   pressure at the actuator is limited to [lowest_kpa, highest_kpa] and is "
+        "stored in s->pressure_kpa. */\ndouble " +
         name_ + "_inverse_step(" + type +
         " *s, double displacement_mm, double lowest_kpa, double highest_kpa) {\n"
         "  const double pressure_kpa = body_solve(&s->body, s->pressure_kpa, displacement_mm, lowest_kpa, "
@@ -363,15 +367,15 @@ tl::expected<CSource, std::string> c_source(const model::Model& model, double ti
   source.name = c_name(model.name);
   source.no_inverse = why_no_inverse(model, tick_s, pressure_max_kpa);
   std::string about = "/* " + model.name +
-                      ", a soft finger behind its valve, in C99: " + model::model_hash(model) + ", by " +
-                      software + ".\n";
-  if (!source.no_inverse.empty()) about += "   It has no inverse: " + source.no_inverse + "\n";
+                      ", a model of a soft finger and its valve, in C99: " + model::model_hash(model) +
+                      ", by " + software + ".\n";
+  if (!source.no_inverse.empty()) about += "   The model has no inverse: " + source.no_inverse + "\n";
   for (std::size_t at = 2; (at = about.find("*/", at)) != std::string::npos;) about.replace(at, 2, "* ");
-  source.text = about +
-                model::in_unit("   Pressures in kPa, each displacement in mm, one call per tick. */\n",
-                               model.output_unit) +
-                "#include <math.h>\n\n" +
-                Generator(model, tick_s, source.name).run(source.no_inverse.empty());
+  source.text =
+      about +
+      model::in_unit("   Pressures are in kPa, each displacement is in mm. One call simulates one tick. */\n",
+                     model.output_unit) +
+      "#include <math.h>\n\n" + Generator(model, tick_s, source.name).run(source.no_inverse.empty());
   return source;
 }
 

@@ -73,7 +73,7 @@ tl::expected<std::vector<std::string>, std::string> import_targets(const std::ve
   const bool folder = out.ends_with('/') || fs::is_directory(out, error);
   if (files.size() > 1 && !folder)
     return tl::unexpected("--out " + out + " must be a folder for " + std::to_string(files.size()) +
-                          " files: end the name of the folder with a '/'");
+                          " files, so the name of the folder must end with a '/'");
   std::vector<std::string> targets;
   std::set<std::string> seen;
   for (const std::string& file : files) {
@@ -101,8 +101,8 @@ tl::expected<sysid::Mapping, std::string> mapping_of(const ImportOptions& option
     return tl::unexpected(done.error());
   if (options.rate_hz) mapping.rate_hz = options.rate_hz;
   if (mapping.rate_hz && mapping[sysid::Role::time].given())
-    return tl::unexpected(
-        std::string("--time and --rate-hz exclude each other, because a file with times needs no rate"));
+    return tl::unexpected(std::string(
+        "--time and --rate-hz cannot be given together, because a file with a time column needs no rate"));
   if (!options.missing.empty()) mapping.missing = options.missing;
   for (std::string& word : mapping.missing) word = sysid::lower_case(word);
   if (!options.separator.empty()) {

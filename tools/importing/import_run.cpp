@@ -148,8 +148,8 @@ bool agreed(const std::vector<Job>& jobs, const ImportOptions& options) {
   if (options.yes) return true;
   if (::isatty(STDIN_FILENO) == 0) {
     std::fputs(
-        "not written: the guess cannot be confirmed, because standard input is not a terminal. Repeat the "
-        "command with the options above, or accept the guess with --yes\n",
+        "not written: the guessed column assignment cannot be confirmed, because the standard input is not a "
+        "terminal. Repeat the command with the options above, or accept the guess with --yes\n",
         stderr);
     return false;
   }

@@ -181,17 +181,19 @@ std::vector<std::string> ClosedLoopGain::notes() const {
     if (is_of_the_whole_model(scheme)) return;
     const bool planned = scheme.feedforward == FeedforwardKind::planned;
     const std::string left_out = scheme.part ? with_commas(scheme.part->left_out) : "";
-    notes.push_back(std::string("the ") + which +
-                    (planned ? " model has no causal inverse, so its feedforward is planned before the run: "
-                     : left_out.empty()
-                         ? " model has no feedforward, so its tracking error is that of the PID alone: "
-                         : " model has no inverse as a whole, so its feedforward omits " + left_out + ": ") +
-                    scheme.refused);
+    notes.push_back(
+        std::string("the ") + which +
+        (planned ? " model has no causal inverse, so its feedforward is planned before the run. Reason: "
+         : left_out.empty()
+             ? " model has no feedforward, so its tracking error is the error of the PID "
+               "controller alone. Reason: "
+             : " model as a whole has no inverse, so its feedforward omits " + left_out + ": ") +
+        scheme.refused);
   };
   refused("recalibrated", recalibrated);
   refused("extended", extended);
   notes.push_back("median of " + std::to_string(rigs) +
-                  " simulated rigs, which have the extended model with each parameter changed by up to " +
+                  " simulated rigs; each rig is the extended model with every parameter changed by up to " +
                   significant(100 * rig_scatter, 2) + " %");
   return notes;
 }

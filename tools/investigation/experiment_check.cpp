@@ -61,7 +61,7 @@ std::optional<std::string> broken_promise(const sysid::Waveform& waveform, const
   if (differs(played.largest_kpa, asked.largest_kpa, pressure_tolerance))
     return sentence("the command went to", played.largest_kpa, asked.largest_kpa, "kPa");
   if (differs(played.travel_kpa, asked.travel_kpa, travel_tolerance))
-    return sentence("its command travelled", played.travel_kpa, asked.travel_kpa, "kPa up and down");
+    return sentence("the command changed by a total of", played.travel_kpa, asked.travel_kpa, "kPa");
   return std::nullopt;
 }
 
@@ -90,7 +90,8 @@ std::optional<std::string> touched(const sysid::Validation& predicted, const sys
   const bool stopped = upper.slope() < 0.5 * lower.slope() && shortfall_mm > 0.1 * highest_mm;
   if (!stopped) return std::nullopt;
   return "the finger touched an object: the finger stopped at " + significant(stopped_at_mm, 3) + " mm, " +
-         significant(shortfall_mm, 2) + " mm short of its free motion. Remove the object and start again";
+         significant(shortfall_mm, 2) +
+         " mm before its free-motion displacement. Remove the object and start again";
 }
 
 }  // namespace softgrip::tools

@@ -51,7 +51,7 @@ class Investigator {
       if (!goes_on) return tl::unexpected(goes_on.error());
       if (!*goes_on) return std::move(result_);
     }
-    end(InvestigationEnd::nothing_left, "all experiments of the menu were played");
+    end(InvestigationEnd::nothing_left, "all available experiments were run");
     return std::move(result_);
   }
 
@@ -79,10 +79,10 @@ class Investigator {
       return tl::unexpected(NotInvestigated{ExitCode::io, written.error()});
     if (result_.last.verdict == Verdict::unexplained)
       return end(InvestigationEnd::unexplained,
-                 "the extended model has an error that no cause of the library explains");
+                 "the extended model has an error that none of the known causes explains");
     if (result_.last.verdict == Verdict::partly_explained)
       return end(InvestigationEnd::unexplained,
-                 "in addition to the named causes, an error remains that no cause of the library explains");
+                 "in addition to the named causes, an error remains that none of the known causes explains");
     if (result_.last.verdict != Verdict::ambiguous) return end(InvestigationEnd::settled, "");
     const auto& gauge_check = consequences.experiment.gauge_check;
     if (!consequences.experiment.best && gauge_check && options_.take_gauge)
@@ -110,8 +110,8 @@ class Investigator {
       return end(InvestigationEnd::budget_spent,
                  "the experiments that separate the remaining causes take longer than the remaining time");
     }
-    std::string why = "no remaining experiment of the menu separates the alternatives";
-    for (const std::string& sentence : none.advice) why += "; " + sentence;
+    std::string why = "none of the remaining experiments separates the remaining causes";
+    for (const std::string& sentence : none.advice) why += ". " + sentence;
     return end(InvestigationEnd::nothing_left, why);
   }
 
@@ -120,7 +120,7 @@ class Investigator {
     const sysid::JudgedWaveform& best = *experiment.best;
     tell("playing " + best.waveform.name + ", " + significant(best.minutes, 2) +
          " minutes: " + significant(experiment.predicted_separation_sigma, 3) +
-         " standard deviations is the predicted separation of the causes");
+         " standard deviations of predicted separation between the causes");
     auto log = options_.play(experiment, folder);
     if (!log) return end(log.error());
     if (options_.diagnosis.record.drive == sysid::Drive::measured && log->pressure_kpa.empty())

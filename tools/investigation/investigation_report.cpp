@@ -76,9 +76,9 @@ std::string investigation_html(const Investigation& investigation, const std::st
     page.section(step.folder);
     page.paragraph(step.sentence);
     if (step.answer) {
-      page.paragraph(
-          "Then " + step.experiment +
-          " was run on the rig. Response of the rig, and prediction by the extended model of this step:");
+      page.paragraph("Then " + step.experiment +
+                     " was run on the rig. The figures show the response of the rig and the prediction by "
+                     "the extended model of this step:");
       sysid::add_log_figures(page, step.answer->records.front(), step.answer->scores.front());
     } else if (!step.experiment.empty()) {
       page.paragraph("Then the sensor was checked against a gauge: " + step.log);

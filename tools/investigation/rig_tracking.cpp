@@ -61,7 +61,9 @@ tl::expected<double, NotPlayed> rmse_of(const std::string& recording, const std:
     square += std::pow(log.displacement_mm[i] - reference[i], 2);
     ++count;
   }
-  if (count == 0) return tl::unexpected(NotPlayed{false, "no reference was tracked in " + recording});
+  if (count == 0)
+    return tl::unexpected(
+        NotPlayed{false, "no reading was recorded while the reference was tracked: " + recording});
   return std::sqrt(square / count);
 }
 

@@ -21,7 +21,7 @@ sysid::RecordOptions LogInput::record_options() const {
 }
 
 void add_log_options(CLI::App& command, LogInput& input) {
-  command.add_option("--channel", input.channel, "Channel to read, for logs with several channels");
+  command.add_option("--channel", input.channel, "Channel to read from a log with several channels");
   command
       .add_option("--drive", input.drive,
                   "Input of the model: the command, or the measured pressure after the valve")

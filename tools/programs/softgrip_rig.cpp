@@ -45,7 +45,7 @@ void add_options(CLI::App& program, Options& options) {
                      "Format of the line: 8N1, 8E1, 8O1, 8N2, 8E2 [8N1, or the format in the rig file]");
   program
       .add_option("--turnaround-s", options.turnaround_s,
-                  "Response time of a module on the line [0, or the response time in the rig file]")
+                  "Response time of a module on the serial line [0, or the response time in the rig file]")
       ->check(number_between(0, 10));
   program.add_option("--bind", options.bind, "Numeric address to listen on")->capture_default_str();
   program.add_flag("--allow-network", options.allow_network,
@@ -56,7 +56,7 @@ void add_options(CLI::App& program, Options& options) {
       program.add_option("--channels", options.channels, "Number of fingers")->capture_default_str();
   program
       .add_option("--rig", options.rig,
-                  "Rig file with board, unit id, channels and their scaling, as for softgripd")
+                  "Rig file of softgripd, from which board, unit id, channels and scaling are read")
       ->excludes(channels);
   program.add_option("--object", options.object,
                      "Object between the fingers: stone, screw or POSITION_MM[:YIELDING]");
@@ -79,7 +79,9 @@ void add_options(CLI::App& program, Options& options) {
       ->check(number_between(0, 1000));
   program.add_option("--seed", options.seed, "Seed of all noise")->capture_default_str();
   program.add_option("--truth", options.truth, "Write the true states to this CSV file");
-  program.add_option("--truth-rate-hz", options.truth_rate_hz, "Rows per second and channel of --truth")
+  program
+      .add_option("--truth-rate-hz", options.truth_rate_hz,
+                  "Rows per second and channel in the file of --truth")
       ->capture_default_str()
       ->check(number_between(0.1, 1000));
   program.add_option("--control", options.control,

@@ -298,7 +298,7 @@ std::string to_text(const Tracking& tracking) {
   }
   if (tracking.gripping_samples > 0) {
     text += (text.empty() ? "" : "; ") + std::string("gripping: up to ") +
-            significant(tracking.gripping_largest_mm, 3) + " mm short of the reference";
+            significant(tracking.gripping_largest_mm, 3) + " mm below the reference";
   }
   return text;
 }

@@ -101,7 +101,8 @@ std::uint64_t Commander::send_numbered(Json request) {
 
 std::optional<Json> Commander::take_answer(std::uint64_t number, Nanoseconds now) {
   const auto found = waiting_.find(number);
-  if (found == waiting_.end()) return failure("no_answer", "the daemon sent a response without a request");
+  if (found == waiting_.end())
+    return failure("no_answer", "the daemon sent a response that belongs to no request");
   Waiting& waiting = found->second;
   if (!waiting.answer && now > waiting.give_up) {
     end(waiting,
@@ -186,10 +187,10 @@ void Commander::lose() {
   for (auto& [number, waiting] : waiting_) {
     if (waiting.answer) continue;
     end(waiting, failure("no_answer", waiting.start_id.empty()
-                                          ? "the connection to the daemon was lost before its response: "
-                                            "check if the command was executed"
-                                          : "the connection to the daemon was lost before its response; "
-                                            "softgrip-web stops the sequence of this start"));
+                                          ? "the connection to the daemon was lost before the daemon "
+                                            "responded: check if the command was executed"
+                                          : "the connection to the daemon was lost before the daemon "
+                                            "responded; softgrip-web stops the sequence of this start"));
   }
 }
 

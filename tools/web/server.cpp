@@ -37,7 +37,7 @@ constexpr std::size_t memory_of_unit = std::size_t{128} << 20U;  // memory limit
 static_assert(own_memory + most_unsent +
                       most_connections * (2 * std::size_t{kept_by_system} + longest_head + longest_body) <
                   memory_of_unit,
-              "the bytes that clients have not read must not use up the memory of the service");
+              "the responses that clients have not read yet must fit into the memory of the service");
 
 using Phase = Client::Phase;
 

@@ -214,14 +214,16 @@ std::string Site::metrics() const {
   tell_daemon(state_.status(), state_.statistics(), metrics);
   tell_health(state_.health(), metrics);
   using enum MetricText::Type;
-  metrics.family("softgrip_web_connections", gauge, "Connections of browsers and collectors.");
+  metrics.family("softgrip_web_connections", gauge,
+                 "Number of open connections of browsers and metrics collectors.");
   metrics.sample(static_cast<double>(counts_.connections));
   metrics.family("softgrip_web_pages", gauge, "Open pages.");
   metrics.sample(static_cast<double>(counts_.followers));
-  metrics.family("softgrip_web_unsent_bytes", gauge, "Bytes in responses that clients have not read yet.");
+  metrics.family("softgrip_web_unsent_bytes", gauge,
+                 "Number of bytes in responses that clients have not read yet.");
   metrics.sample(static_cast<double>(counts_.unsent));
   metrics.family("softgrip_web_turned_away_total", counter,
-                 "Connections that were refused, or closed in favour of other connections.");
+                 "Number of connections that were refused, or that were closed to allow new connections.");
   metrics.sample(static_cast<double>(counts_.turned_away));
   metrics.family("softgrip_web_answers_total", counter, "HTTP responses, by status.");
   for (const auto& [status, count] : counts_.answers)

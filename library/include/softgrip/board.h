@@ -85,7 +85,7 @@ class SOFTGRIP_API Board {
   [[nodiscard]] virtual std::string describe() const = 0;
 };
 
-/// An object that a simulated finger touches.
+/// An object that a simulated finger touches when its displacement reaches `position`.
 struct SimulatedObject {
   double position = 0;    ///< displacement at contact, in the unit of the model
   double yielding = 0.1;  ///< ratio of the motion beyond the contact to the motion without an object: 0

@@ -100,7 +100,7 @@ class SOFTGRIP_API Pid {
   /// Returns the feedback for a period without a usable measurement [kPa]. The integrator and the derivative
   /// do not change.
   [[nodiscard]] double hold(double feedforward_kpa) noexcept;
-  /// Receives the command that was sent after the limits [kPa]. The anti-windup uses this command.
+  /// Receives the limited command that was sent to the board [kPa]. The anti-windup uses this command.
   void sent(double command_kpa) noexcept;
 
  private:

@@ -39,7 +39,7 @@ struct DiagnoseOptions {
   unsigned threads = 0;            ///< number of threads; 0: one per processor core
   std::size_t null_campaigns = 0;  ///< number of data sets that are simulated without any cause, to calibrate
                                    ///< the false-alarm threshold of the search
-  LogUse use = {};                 ///< how the logs are used: input, initial state, hold of the command
+  LogUse use = {};                 ///< use of the logs: input, initial state, hold of the command
   Progress progress = {};          ///< function that is called with a text about the present stage of the
                                    ///< computation; may be empty
   std::stop_token stop = {};       ///< token through which the caller can end the computation early
@@ -69,10 +69,9 @@ struct Diagnosis {
 };
 
 /// Diagnoses a model. Computes the error of the model on the logs and finds the causes of this error. Extends
-/// the model by these causes and computes the error reduction. `softgrip diagnose` uses the same functions.
-/// Throws InvalidArgument if an argument is invalid, Refused if the logs cannot be diagnosed, and Cancelled
-/// after a request through `options.stop`.
-/// @param model    the model to diagnose
+/// the model by these causes and computes the error reduction. The command `softgrip diagnose` computes its
+/// result in the same way. Throws InvalidArgument if an argument is invalid, Refused if the logs cannot be
+/// diagnosed, and Cancelled after a request through `options.stop`. @param model    the model to diagnose
 /// @param logs     logs of one series of experiments, in the order of time and in the unit of the model
 /// @param options  settings of the search
 [[nodiscard]] SOFTGRIP_API Diagnosis diagnose(const Model& model, const std::vector<Log>& logs,
@@ -91,14 +90,12 @@ struct Change {
   std::string html;                   ///< content of report.html that `softgrip diagnose --healthy` writes
 };
 
-/// Compares later logs of a finger with logs that were recorded when the finger was healthy. `softgrip
-/// diagnose --healthy` uses the same functions. Throws InvalidArgument if an argument is invalid, Refused if
-/// the logs cannot be compared, and Cancelled after a request through `options.stop`.
-/// @param model    model of the healthy finger
-/// @param healthy  logs of the healthy finger
-/// @param later    logs of the same finger from a later time
-/// @param options  settings of the search; the function uses all of them except `null_campaigns`, `use.drive`
-/// and `use.begin`
+/// Compares later logs of a finger with logs that were recorded when the finger was healthy. The command
+/// `softgrip diagnose --healthy` computes its result in the same way. Throws InvalidArgument if an argument
+/// is invalid, Refused if the logs cannot be compared, and Cancelled after a request through `options.stop`.
+/// @param model    model of the healthy finger @param healthy  logs of the healthy finger @param later
+/// logs of the same finger from a later time @param options  settings of the search; the function uses all of
+/// them except `null_campaigns`, `use.drive` and `use.begin`
 [[nodiscard]] SOFTGRIP_API Change diagnose_change(const Model& model, const std::vector<Log>& healthy,
                                                   const std::vector<Log>& later,
                                                   const DiagnoseOptions& options = {});

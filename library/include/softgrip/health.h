@@ -46,7 +46,7 @@ struct HealthIndicator {
                                     ///< no point has a value
   std::optional<double> reference;  ///< mean of the indicator since the last maintenance record
   std::optional<double> spread;     ///< standard deviation of the indicator since the last maintenance record
-  std::vector<double> values;       ///< values of the indicator at the points whose recipe is that of the
+  std::vector<double> values;       ///< values of the indicator, for the points with the recipe of the
                                     ///< reference; NaN: the point has no value
 };
 
@@ -102,12 +102,12 @@ struct Health {
   std::string json;                       ///< content of health.json that `softgrip health` writes
 };
 
-/// Reports which fingers have changed, when each change began, and the possible causes of each change.
-/// `softgrip health` uses the same functions. Throws InvalidArgument if an argument is invalid. Throws
-/// FileError if the content of the baseline, the notes or the scores is invalid. Throws Refused if no
-/// recording can be compared with the baseline. Throws Cancelled after a request through `options.stop`.
-/// @param recordings  folders of recordings, or folders that contain such folders
-/// @param baseline    folder of `softgrip baseline`. If it contains a folder with the name of a finger, the
+/// Reports which fingers have changed, when each change began, and the possible causes of each change. The
+/// command `softgrip health` computes its result in the same way. Throws InvalidArgument if an argument is
+/// invalid. Throws FileError if the content of the baseline, the notes or the scores is invalid. Throws
+/// Refused if no recording can be compared with the baseline. Throws Cancelled after a request through
+/// `options.stop`. @param recordings  folders of recordings, or folders that contain such folders @param
+/// baseline    folder of `softgrip baseline`. If it contains a folder with the name of a finger, the
 ///                    baseline in that folder applies to this finger
 /// @param options     control charts, maintenance records and scores
 [[nodiscard]] SOFTGRIP_API Health health(const std::vector<std::string>& recordings,

@@ -80,8 +80,7 @@ struct IdentifyOptions {
   double fit_share = 1;                    ///< share of each log that is fitted, from the start of the log;
                                            ///< 0.05 to 1
   unsigned threads = 0;                    ///< number of threads; 0: one per processor core
-  LogUse use = {};                         ///< how the logs are used: input, initial state, hold of the
-                                           ///< command
+  LogUse use = {};                         ///< use of the logs: input, initial state, hold of the command
   std::vector<Log> validation = {};        ///< logs that are predicted but not fitted
   Progress progress = {};                  ///< function that is called with a text about the present stage of
                                            ///< the computation; may be empty

@@ -103,12 +103,11 @@ class SOFTGRIP_API Model {
   /// @param value      new value, in the unit of the parameter
   [[nodiscard]] Model with(const std::string& parameter, double value) const;
 
-  /// Simulates the finger. At the start, the finger is at rest under the first pressure. `softgrip simulate`
-  /// uses the same function. Throws InvalidArgument if an argument is invalid.
-  /// @param time_s        times [s], at least 1 value, increasing
-  /// @param pressure_kpa  commanded pressure [kPa], one value per time
-  /// @param options       settings of hold, noise, supply pressure and temperature
-  /// @return the readings, one value per time, in the unit of the model
+  /// Simulates the finger. At the start, the finger is at rest under the first pressure. The command
+  /// `softgrip simulate` computes its result in the same way. Throws InvalidArgument if an argument is
+  /// invalid. @param time_s        times [s], at least 1 value, increasing @param pressure_kpa  commanded
+  /// pressure [kPa], one value per time @param options       settings of hold, noise, supply pressure and
+  /// temperature @return the readings, one value per time, in the unit of the model
   [[nodiscard]] std::vector<double> simulate(std::span<const double> time_s,
                                              std::span<const double> pressure_kpa,
                                              const SimulateOptions& options = {}) const;
@@ -116,13 +115,13 @@ class SOFTGRIP_API Model {
   /// Computes the command for which the displacement of the finger follows a reference. The method is the
   /// feedforward `full_model` of the daemon. This feedforward inverts hysteresis and creep implicitly,
   /// compensates lags by lead, and compensates dead times by preview. If the first value of the reference
-  /// differs from the displacement at rest, this difference decays in 0.5 s or more. For this command,
-  /// simulate() with `held` = true returns the displacement. Throws InvalidArgument if an argument is
-  /// invalid, and Refused if the model has no inverse.
-  /// @param time_s        times [s], at least 2 values, with equal steps (within 1e-6 of the step)
+  /// differs from the displacement at rest, this difference decays in 0.5 s or more. Call simulate() with
+  /// this command and `held` = true to compute the displacement that the finger then has. Throws
+  /// InvalidArgument if an argument is invalid, and Refused if the model has no inverse. @param time_s
+  /// times [s], at least 2 values, with equal steps (within 1e-6 of the step)
   ///                      of 0.0001 to 1 s
-  /// @param displacement  the reference in the unit of the model, one value per time
-  /// @param options       limits of the command
+  /// @param displacement  the reference in the unit of the model, one value per time @param options
+  /// limits of the command
   [[nodiscard]] Inverse inverse(std::span<const double> time_s, std::span<const double> displacement,
                                 const InverseOptions& options = {}) const;
 

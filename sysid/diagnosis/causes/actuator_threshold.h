@@ -17,8 +17,8 @@ struct ActuatorThreshold : FormOf<model::ActuatorThreshold> {
   static Starts starts(const Scales& s) {
     return every({{"threshold_kpa", {0.02 * s.largest_kpa, 0.08 * s.largest_kpa, 0.2 * s.largest_kpa}}});
   }
-  /// The threshold is at most 60 % of the largest pressure. With a higher threshold, the model would stand
-  /// still in nearly all data, although the recorded finger moves.
+  /// The threshold is at most 60 % of the largest pressure. With a higher threshold, the model would not move
+  /// in most of the data, although the recorded finger moves.
   static Bounds bounds(const Scales& s, const model::Model&) {
     return {{"threshold_kpa", 0, 0.6 * s.largest_kpa}};
   }

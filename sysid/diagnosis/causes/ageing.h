@@ -1,6 +1,6 @@
 #pragma once
-// Defines a cause: the gain of the finger drifts during a campaign. It drifts in proportion to time, in
-// proportion to the travelled distance, or during a running-in time.
+// Defines a cause: the gain of the finger drifts during a measurement campaign. The gain changes in
+// proportion to time, in proportion to the travelled distance, or only during a running-in time.
 
 #include <algorithm>
 
@@ -11,7 +11,8 @@
 
 namespace softgrip::sysid::causes {
 
-/// The cause has several forms. The start points of each form change the gain by 10 % during the campaign.
+/// The cause has three forms. With the start points of each form, the gain changes by 10 % during the
+/// campaign.
 struct Ageing {
   static constexpr std::array advice{Advice::leave_vented, Advice::record_temperature};
   static constexpr Appears appears = Appears::displaced;
@@ -20,7 +21,7 @@ struct Ageing {
       {"Inspect the finger for cracks and bulges, and count the cycles since the installation of the finger.",
        "Install a new finger and record the same log. If the gain is normal again, the old finger has aged."},
       {{{HealthNumber::gain, Moves::either_way}}},
-      {SizedBy::Of::span, "gain at full pressure, on average", "%", {}, 100}};
+      {SizedBy::Of::span, "mean change of the gain at full pressure", "%", {}, 100}};
 
   struct WithTime : FormOf<model::Ageing> {
     static Starts starts(const Scales& s) {
@@ -34,9 +35,9 @@ struct Ageing {
                      {std::max(s.soonest_s(), 0.07 * s.campaign_s),
                       std::max(s.soonest_s(), 0.2 * s.campaign_s), 0.5 * s.campaign_s}}});
     }
-    /// The running-in time is at least Scales::soonest_s() and at most half of the campaign. A shorter
-    /// running-in would only affect one or two load cycles. A longer running-in time cannot be determined,
-    /// because the data contain only the beginning of its curve.
+    /// The running-in time is at least Scales::soonest_s() and at most half of the measurement campaign. A
+    /// shorter running-in time would affect only one or two load cycles. A longer one cannot be identified,
+    /// because the data contain only the beginning of the running-in.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"run_in_time_s", s.soonest_s(), 0.5 * s.campaign_s}};
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Defines a cause: there is play between the actuator and the point whose position the sensor measures.
+// Defines a cause: there is play between the actuator and the target of the sensor.
 
 #include "model/blocks/backlash.h"
 #include "sysid/diagnosis/causes/form.h"

@@ -138,8 +138,8 @@ constexpr auto table_from(List<C...>) {
 }
 constexpr auto table = table_from(causes::All{});
 
-// The templates below check at compile time that each block of the catalogue is a form of exactly one cause
-// or is listed once in NoCauses (registry.h).
+// The templates below check each block of the catalogue at compile time. A block must either be a form of
+// exactly one cause, or be listed once in NoCauses (registry.h).
 
 template <class Block, class... F>
 constexpr bool is_block_of(List<F...>) {
@@ -177,13 +177,14 @@ constexpr const Cause* find(std::string_view id) {
 
 static_assert(std::all_of(table.begin(), table.end(), [](const Cause& c) { return find(c.id) == &c; }),
               "two causes have the same id");
-static_assert(std::all_of(table.begin(), table.end(),
-                          [](const Cause& c) {
-                            return c.indistinguishable.empty() ||
-                                   (find(c.indistinguishable) != nullptr &&
-                                    find(c.indistinguishable)->indistinguishable == c.id);
-                          }),
-              "if one cause is indistinguishable from another, the other cause must also list the first one");
+static_assert(
+    std::all_of(table.begin(), table.end(),
+                [](const Cause& c) {
+                  return c.indistinguishable.empty() ||
+                         (find(c.indistinguishable) != nullptr &&
+                          find(c.indistinguishable)->indistinguishable == c.id);
+                }),
+    "if a cause lists another cause as indistinguishable, the other cause must list the first cause, too");
 static_assert(std::all_of(table.begin(), table.end(),
                           [](const Cause& c) {
                             const auto known = [](std::string_view id) { return find(id) != nullptr; };
@@ -241,7 +242,8 @@ model::Model without(model::Model model, const Cause& cause) {
 std::string unanswerable(const Cause& cause, const Scales& scales) {
   if (!scales.has(cause.needs)) return "needs a " + std::string(name_of(cause.needs)) + " column that varies";
   if (cause.station == model::Station::valve && !scales.has_valve) {
-    return "not tested: the measured pressure drives the model and already contains the effects of the valve";
+    return "not tested, because the measured pressure drives the model and already contains the effects of "
+           "the valve";
   }
   return {};
 }

@@ -1,6 +1,6 @@
 #pragma once
 // Declares the causes that a diagnosis may name. Each cause is defined in a file of this folder (form.h
-// documents its format), and registry.h lists all causes. The rest of the diagnosis includes only this
+// documents the format), and registry.h lists all causes. Other parts of the diagnosis include only this
 // header.
 
 #include <algorithm>
@@ -17,30 +17,30 @@
 
 namespace softgrip::sysid {
 
-/// One form of a cause: a block that extends a model by the effect of the cause.
+/// One form of a cause: a block that adds the effect of the cause to a model.
 struct CauseForm {
   std::size_t type = 0;  ///< index of the block type in model::catalogue()
-  /// True: the form has enough parameters to follow any slow signal. Its start point has all parameters at
-  /// zero, so a scan of start points does not show how well the form fits.
+  /// True: the form has enough parameters to follow any slow signal. The start point sets all parameters to
+  /// zero, so a scan of start points gives no information about the form.
   bool free_form = false;
-  /// Returns the start points of fits. They lie within the declared bounds and cover the plausible range for
-  /// data of these scales.
+  /// Function that returns the start points of the fits. They lie within the bounds of the parameters and
+  /// cover the plausible values for data with these scales.
   std::vector<model::BlockSpec> (*starts)(const Scales& scales) = nullptr;
-  /// Returns true if a block of this type has this form. If the pointer is null, every block of the type has
+  /// Function that returns true if the block represents this form. Null: every block of the type represents
   /// this form.
   bool (*holds)(const model::BlockSpec& block) = nullptr;
-  /// Returns true if a fit may change the parameter `index`. The other parameters keep their start values,
-  /// such as the calibrated range of a sensor or a limit that the data do not reach.
+  /// Function that returns true if a fit may change the parameter `index`. Every other parameter keeps its
+  /// start value, for example the calibrated range of a sensor or a limit that the data do not reach.
   bool (*is_fitted)(std::size_t index) = nullptr;
-  /// Returns the range in which a fit may change the parameter `index`, in addition to its declared bounds.
-  /// Outside this range, the block would represent a different effect.
+  /// Function that returns the range in which a fit may change the parameter `index`. The bounds of the
+  /// parameter apply too. Outside the returned range, the block would represent a different effect.
   Range (*range)(std::size_t index, const Scales& scales, const model::Model& model) = nullptr;
-  /// Returns the reading of a sensor with this block at a displacement [mm]. If the pointer is null, the form
-  /// is not a static sensor (sensor_shape).
+  /// Function that returns the reading of a sensor with this block [mm] at a displacement [mm]. Null: the
+  /// form does not describe the static shape of a sensor (sensor_shape).
   double (*shown_mm)(const model::BlockSpec& block, double displacement_mm) = nullptr;
 };
 
-/// A cause, as declared in its file (form.h).
+/// A cause as it is declared in its file (see form.h).
 struct Cause {
   std::string_view id;
   std::string_view title;
@@ -49,7 +49,7 @@ struct Cause {
   bool found_by_fitting = true;
   Column needs = Column::none;
   std::span<const Advice> advice;
-  /// Id of the cause that gives the same readings as this cause for every command; empty: there is no such
+  /// Id of a cause that leads to the same readings as this cause for every command; empty: there is no such
   /// cause.
   std::string_view indistinguishable;
   std::span<const std::string_view> counterparts;
@@ -63,7 +63,7 @@ struct Cause {
   WhenChanged when_changed;
 
   [[nodiscard]] constexpr bool is_static_sensor() const { return !sensor_shape.empty(); }
-  /// Returns true if the parameters of this cause may absorb part of the effect of `other`.
+  /// Returns true if a fit of this cause may absorb part of the effect of `other`.
   [[nodiscard]] constexpr bool is_confounded_with(const Cause& other) const {
     return std::find(confounded_with.begin(), confounded_with.end(), other.id) != confounded_with.end();
   }
@@ -74,25 +74,27 @@ struct Cause {
 [[nodiscard]] std::span<const Cause> all_causes();
 [[nodiscard]] std::optional<Cause> find_cause(std::string_view id);
 /// Returns the cause that has a form with this block type. Returns nullptr if the block belongs to the base
-/// structure or describes the random error of the sensor, because such blocks are not causes.
+/// structure or describes the random error of the sensor. Blocks of these two types are not causes.
 [[nodiscard]] const Cause* cause_of(std::size_t block_type);
 
-/// Returns the form of `cause` that `block` represents.
+/// Returns the form of `cause` to which `block` belongs.
 [[nodiscard]] const CauseForm& form_of(const Cause& cause, const model::BlockSpec& block);
-/// Returns the form that `block` represents, from the forms of all `causes`. Returns nullptr if none of the
-/// causes has a form that matches the block.
+/// Returns the form to which `block` belongs. Only the forms of `causes` are considered. Returns nullptr if
+/// no form matches the block.
 [[nodiscard]] const CauseForm* form_among(std::span<const Cause> causes, const model::BlockSpec& block);
 
-/// Returns the index of the block in `model` that is a form of `cause`, or nullopt if there is no such block.
+/// Returns the index of the block in `model` that belongs to a form of `cause`, or nullopt if the model has
+/// no such block.
 [[nodiscard]] std::optional<std::size_t> position_of(const model::Model& model, const Cause& cause);
 /// Returns `model` without the block of `cause`.
 [[nodiscard]] model::Model without(model::Model model, const Cause& cause);
 
-/// Returns the reason why the data cannot test this cause, such as "needs a temperature_c column that
+/// Returns the reason why the data cannot test this cause, for example "needs a temperature_c column that
 /// varies". Returns an empty string if the data can test the cause.
 [[nodiscard]] std::string unanswerable(const Cause& cause, const Scales& scales);
 
-/// Returns the start points of all forms of a cause. The list is empty if a fit cannot find the cause.
+/// Returns the start points of all forms of a cause. The list is empty for a cause that is not found by fits,
+/// such as outliers.
 [[nodiscard]] std::vector<model::BlockSpec> starts_of(const Cause& cause, const Scales& scales);
 
 }  // namespace softgrip::sysid

@@ -6,13 +6,13 @@
 
 namespace softgrip::sysid::causes {
 
-/// This cause covers readings with an early time stamp. A late time stamp has the same effect as a dead time,
-/// and no log can separate the two.
+/// This cause describes readings with time stamps that are too early. Time stamps that are too late have the
+/// same effect as a dead time, and no log can separate these two effects.
 struct ClockOffset : FormOf<model::ClockOffset> {
   static constexpr bool is_ideal = true;
   static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{
-      "the reading leads its command",
+      "the reading changes before its command",
       {"Compare the clocks of the devices that record command and reading.",
        "Record command and reading with one device, then record the same log again."},
       {},

@@ -21,9 +21,9 @@ struct Contact : FormOf<model::Contact> {
                    {0.35 * s.span_mm, 0.55 * s.span_mm, 0.7 * s.span_mm, 0.85 * s.span_mm, 0.95 * s.span_mm}},
                   {"stiffening", {0.2, 1.5}}});
   }
-  /// The position of the contact is between 5 % and 100 % of the span of the readings. A contact closer to
-  /// zero would have the same effect as a smaller gain. A contact beyond the span would have no effect on the
-  /// readings.
+  /// The position of the contact is between 5 % and 100 % of the span of the readings. With a smaller
+  /// position, the contact would have the same effect as a smaller gain. With a larger position, the contact
+  /// would not affect the readings.
   static Bounds bounds(const Scales& s, const model::Model&) {
     return {{"position_mm", 0.05 * s.span_mm, s.span_mm}};
   }

@@ -1,5 +1,6 @@
 #pragma once
-// Defines the indicators that are computed from a recorded grip, and how a cause changes them.
+// Defines the indicators that are computed from a recorded grip, and the directions in which causes change
+// them.
 
 #include <array>
 #include <cstddef>
@@ -12,19 +13,19 @@ namespace softgrip::sysid {
 enum class HealthNumber : std::uint8_t {
   gain,           ///< displacement at full pressure in free motion
   zero,           ///< reading at rest before the first motion, relative to the baseline
-  lag,            ///< delay of free motion relative to the baseline
-  creep,          ///< creep at constant pressure, minus the creep in the baseline
-  loop_width,     ///< displacement during unloading in addition to that of the baseline
+  lag,            ///< delay of the free motion, compared with the baseline
+  creep,          ///< creep at constant pressure minus creep in the baseline
+  loop_width,     ///< displacement during unloading minus displacement during unloading in the baseline
   pressure_loss,  ///< command minus measured pressure during HOLDING
-  leak,           ///< decrease of the measured pressure per second at constant command
-  contact,        ///< reading at which a contact with the object is detected
+  leak,           ///< pressure decrease per second while the command is constant
+  contact,        ///< reading at which the finger touches the object
   time_to_grip,   ///< time from the first step of the sequence to the result HOLDING
 };
 inline constexpr std::size_t health_numbers = 9;
 
 struct HealthNumberInfo {
-  std::string_view id;     ///< key of the indicator in JSON, which includes the unit
-  std::string_view title;  ///< name of the indicator for display, such as "gain"
+  std::string_view id;     ///< key of the indicator in JSON; the key includes the unit
+  std::string_view title;  ///< display name of the indicator, for example "gain (at full pressure)"
   std::string_view unit;
 };
 inline constexpr std::array<HealthNumberInfo, health_numbers> health_number_infos{{
@@ -50,7 +51,7 @@ struct HealthSign {
   HealthNumber number = HealthNumber::gain;
   Moves moves = Moves::not_at_all;
 };
-/// All indicators that a cause changes. An unused element has its default value.
+/// The indicators that a cause changes. Unused elements have the direction Moves::not_at_all.
 using HealthSigns = std::array<HealthSign, 4>;
 
 }  // namespace softgrip::sysid

@@ -1,13 +1,14 @@
 #pragma once
-// Defines a cause: the measured loops differ in shape from the hysteresis of the model.
+// Defines a cause: the shape of the measured hysteresis loops differs from the shape that the model can
+// describe.
 
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "sysid/diagnosis/causes/form.h"
 
 namespace softgrip::sysid::causes {
 
-/// No block represents this cause. It is found by fitting complete model structures with a different type of
-/// hysteresis (verdict/base_findings.h).
+/// No block adds this cause to a model. The cause is found if a complete model structure with a different
+/// type of hysteresis fits better (verdict/base_findings.h).
 struct HysteresisShape {
   static constexpr std::string_view id = "hysteresis_shape";
   static constexpr std::string_view title = "Hysteresis shape";

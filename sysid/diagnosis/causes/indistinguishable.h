@@ -1,5 +1,5 @@
 #pragma once
-// Finds causes that no command can separate, because they give the same readings.
+// Finds causes that lead to the same readings for every command, so that no command can separate them.
 
 #include <optional>
 #include <vector>
@@ -9,20 +9,20 @@
 
 namespace softgrip::sysid {
 
-/// Returns the cause in another component that gives the same readings as `cause` for every command. For
-/// example, stiffening of the finger and a nonlinear sensor are both unknown functions of the displacement,
-/// so a fit does not show which of the two is present. Returns nullopt if there is no such cause. Also
-/// returns nullopt if `model` has a block with memory between the two components, because the readings then
-/// differ (Cause::makes_distinguishable).
+/// Returns the cause in another component that leads to the same readings as `cause` for every command.
+/// Example: stiffening of the finger and a nonlinear sensor are both unknown functions of the displacement,
+/// so a fit cannot show which one is present. Returns nullopt if there is no such cause. Returns nullopt too
+/// if `model` has a block with memory between the two components, because the readings then differ
+/// (Cause::makes_distinguishable).
 [[nodiscard]] std::optional<Cause> indistinguishable_from(const Cause& cause, const model::Model& model);
 
-/// Returns the causes that may explain the effect of `cause` instead, in the order of testing. For an
-/// actuator or load cause, these are sensor causes. For a sensor cause, these are actuator and load causes.
-/// The list is empty if `cause` has no static nonlinearity.
+/// Returns the causes that may explain the effect of `cause` in its place, in the order of testing. An
+/// actuator or load cause has sensor causes as counterparts. A sensor cause has actuator and load causes as
+/// counterparts. The list is empty if `cause` is not a static nonlinearity.
 [[nodiscard]] std::vector<Cause> sensor_counterparts(const Cause& cause);
 
-/// Returns true if no command can separate the two causes. The other blocks of `model` are assumed to be
-/// correct.
+/// Returns true if no command can separate the two causes. The function assumes that all other blocks of
+/// `model` are correct.
 [[nodiscard]] bool are_indistinguishable(const Cause& one, const Cause& other, const model::Model& model);
 
 }  // namespace softgrip::sysid

@@ -1,5 +1,5 @@
 #pragma once
-// Defines a cause: the finger oscillates in a second-order resonance.
+// Defines a cause: the finger has a second-order resonance and oscillates.
 
 #include "model/blocks/inertia.h"
 #include "sysid/diagnosis/causes/form.h"
@@ -17,8 +17,8 @@ struct Inertia : FormOf<model::Inertia> {
     return every({{"period_s", {0.05, 0.15, 0.4, 1.0}}, {"damping_ratio", {0.15, 0.5}}});
   }
   static Bounds bounds(const Scales& s, const model::Model&) {
-    // A period shorter than two sample intervals cannot be resolved. A block with a damping ratio of
-    // 1/sqrt(2) or more has no resonance and acts like two lags in series.
+    // A period below two sampling intervals cannot be resolved. With a damping ratio of 1/sqrt(2) or more,
+    // the block has no resonance peak and acts like two lags in series.
     return {{"period_s", 2 * s.sample_s}, {"damping_ratio", 0.005, 0.7}};
   }
 };

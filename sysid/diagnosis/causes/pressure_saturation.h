@@ -1,5 +1,5 @@
 #pragma once
-// Defines a cause: the pressure saturates at a value below the command.
+// Defines a cause: the pressure saturates at a limit, although the command is higher.
 
 #include "model/blocks/pressure_saturation.h"
 #include "sysid/diagnosis/causes/form.h"

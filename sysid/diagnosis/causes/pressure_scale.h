@@ -7,11 +7,11 @@
 namespace softgrip::sysid::causes {
 
 /// A diagnosis lists this cause only as an alternative to a leak (verdict/valve_findings.h). The scale is a
-/// setting that the user enters. The displacement alone does not distinguish a wrong scale from a different
-/// gain of the finger.
+/// setting that the user enters. The displacement alone cannot separate a wrong scale from a different gain
+/// of the finger.
 struct PressureScale : FormOf<model::PressureScale> {
   static constexpr bool found_by_fitting = false;
-  /// Empty, because no recorded quantity separates a changed scale from a leak or from a change of the
+  /// Empty, because no recorded quantity can separate a changed scale from a leak or from a change of the
   /// finger.
   static constexpr WhenChanged when_changed{};
 };

@@ -1,6 +1,6 @@
 #pragma once
-// Defines a cause: the width of the hysteresis loop depends on the rate of the pressure, in addition to the
-// effect of creep.
+// Defines a cause: the width of the hysteresis loop depends on the rate of the pressure, beyond the
+// dependence that creep causes.
 
 #include "model/blocks/rate_dependent_levelling.h"
 #include "model/blocks/rate_dependent_width.h"
@@ -28,32 +28,33 @@ struct RateDependentHysteresis {
                     {"time_constant_s", {0.3, 3.0}}});
     }
     static Bounds bounds(const Scales& s, const model::Model&) {
-      return {// An element that does not saturate within the pressure range acts like a linear
-              // viscous branch.
+      return {// If the width is larger than half of the pressure range, the element does not saturate and
+              // acts like a linear viscous branch.
               {"width_kpa", 0.01 * s.largest_kpa, 0.5 * s.largest_kpa},
-              // The time constant is at most 10 % of the campaign. The data cannot determine a longer one.
+              // The time constant is at most 10 % of the measurement campaign, because the data cannot
+              // determine a longer one.
               {"time_constant_s", s.sample_s, 0.1 * s.campaign_s}};
     }
   };
 
-  /// Form of the cause: the hysteresis of the base structure, with parameters that depend on the rate of the
+  /// Form of the cause: the parameters of the hysteresis in the base structure depend on the rate of the
   /// pressure.
   template <template <class> class Block>
   struct Following : FormOf<Block> {
     using Form = FormOf<Block>;
     static typename Form::Starts sized(typename Form::Parameter size, const std::vector<double>& sizes,
                                        const Scales& s) {
-      // These three rates correspond to a rise of the pressure from 0 to its largest value in 5 s, in 1 s and
-      // in 0.2 s.
+      // At these three rates, the pressure rises from 0 to its largest value in 5 s, in 1 s and in 0.2 s.
       return Form::every({{"rate_kpa_per_s", {0.2 * s.largest_kpa, s.largest_kpa, 5 * s.largest_kpa}},
                           {"settling_s", {0.03, 0.2}},
                           {size, sizes}});
     }
     static typename Form::Bounds bounds(const Scales& s, const model::Model&) {
-      return {// A change that is equal at all rates of the data is only a different loop width.
+      return {// A change of the loop width that is equal at all rates in the data is not a dependence on the
+              // rate.
               {"rate_kpa_per_s", 0.05 * s.largest_kpa, 20 * s.largest_kpa},
-              // If the rate were averaged over a longer time, the block would describe the history of the
-              // pressure instead of its rate.
+              // With a longer averaging time, the block would describe the history of the pressure and not
+              // its rate.
               {"settling_s", 0.5 * s.sample_s, 0.5}};
     }
   };
@@ -61,7 +62,7 @@ struct RateDependentHysteresis {
   struct Growing : Following<model::RateDependentWidth> {
     static Starts starts(const Scales& s) { return sized("growth", {0.06, 0.2, 0.6}, s); }
   };
-  /// Form of the cause: the saturation of the hysteresis changes with the rate of the pressure.
+  /// Form of the cause: the saturation value of the hysteretic state depends on the rate of the pressure.
   struct Saturating : Following<model::RateDependentLevelling> {
     static Starts starts(const Scales& s) { return sized("levelling", {-0.3, 0.5, 3.0}, s); }
   };

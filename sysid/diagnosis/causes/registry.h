@@ -1,7 +1,7 @@
 #pragma once
 // Lists all causes of the project. To add a cause, write its file and add the cause to the list `All`
-// (docs/how-to/add-a-cause.md). If a block of the catalogue is neither a form of a listed cause nor in the
-// list `NoCauses`, the compiler reports an error.
+// (docs/how-to/add-a-cause.md). Each block of the catalogue must belong to a cause of this list or to the
+// list `NoCauses`. Otherwise the compiler reports an error.
 
 #include "model/registry.h"
 #include "sysid/diagnosis/causes/actuator_threshold.h"
@@ -62,7 +62,7 @@ using All = List<ActuatorThreshold,        //
                  ValveDeadband,            //
                  ValveLag>;
 
-/// Blocks that are not a form of a cause. They belong to the base structure or describe the random error of
+/// Blocks that do not belong to a cause. They are part of the base structure or describe the random error of
 /// the sensor.
 using NoCauses = List<model::AsymmetricValveLag<double>,      //
                       model::PressureRegulator<double>,       //

@@ -1,6 +1,6 @@
 #pragma once
-// Defines a cause: the zero offset of the sensor drifts steadily, during warm-up, sinusoidally, or along a
-// piecewise linear curve.
+// Defines a cause: the zero offset of the sensor drifts. The drift is steady, caused by the warm-up of the
+// sensor, sinusoidal, or piecewise linear.
 
 #include <algorithm>
 #include <cmath>
@@ -39,9 +39,9 @@ struct SensorDrift {
       return every(
           {{"warm_up_mm", {-0.05 * s.span_mm, 0.05 * s.span_mm}}, {"warm_up_time_s", {0.3 * s.campaign_s}}});
     }
-    /// The warm-up time is at least Scales::soonest_s() and at most the duration of the campaign. A faster
-    /// warm-up has the same effect as creep of the actuator. A slower warm-up has the same effect as a steady
-    /// drift.
+    /// The warm-up time is at least Scales::soonest_s() and at most the duration of the measurement campaign.
+    /// A shorter warm-up has the same effect as creep of the actuator. A longer warm-up has the same effect
+    /// as a steady drift.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"warm_up_time_s", s.soonest_s(), s.campaign_s}};
     }
@@ -49,7 +49,7 @@ struct SensorDrift {
 
   /// Form of the cause: the zero offset follows a slow sinusoid.
   struct Sinusoidal : FormOf<model::SensorWander> {
-    /// Returns start points with different periods, eight phases and two amplitudes.
+    /// Returns start points with six periods, eight phases and two amplitudes.
     static Starts starts(const Scales& s) {
       Starts starts;
       for (const double campaigns : {0.15, 0.25, 0.4, 0.65, 1.0, 1.7}) {
@@ -64,8 +64,8 @@ struct SensorDrift {
       }
       return starts;
     }
-    /// The period is at least 1/12 of the campaign and at most 3 campaigns. If the period were longer, the
-    /// data would contain only a trend.
+    /// The period is at least 1/12 of the duration of the measurement campaign and at most 3 times this
+    /// duration. With a longer period, the data would contain only a trend.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"wander_period_s", s.campaign_s / 12, 3 * s.campaign_s}};
     }
@@ -76,7 +76,7 @@ struct SensorDrift {
     static constexpr bool free_form = true;
     static constexpr std::array<Parameter, 0> fitted{};
     static Starts starts(const Scales& s) {
-      // smallest knot interval; with a shorter one, the curve would follow the load cycles
+      // smallest knot interval [s]; with a shorter interval, the curve would follow the load cycles
       constexpr double closest_s = 12;
       const auto knots = static_cast<std::size_t>(std::clamp(s.campaign_s / closest_s, 2.0, 16.0));
       Values values = start({{"knot_interval_s", s.campaign_s / static_cast<double>(knots)}});

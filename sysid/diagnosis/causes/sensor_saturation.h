@@ -12,7 +12,7 @@ struct SensorSaturation : FormOf<model::SensorSaturation> {
   static constexpr std::array advice{Advice::change_load};
   static constexpr std::array<std::string_view, 1> counterparts{"contact"};
   static constexpr bool is_stop = true;
-  static constexpr std::string_view sensor_shape = "a saturated end";
+  static constexpr std::string_view sensor_shape = "a sensor that saturates at an end of its range";
   static constexpr WhenChanged when_changed{
       "the reading saturates",
       {"Check the distance between sensor and target: the range of the sensor must cover the whole stroke.",
@@ -26,7 +26,7 @@ struct SensorSaturation : FormOf<model::SensorSaturation> {
                   {"upper_mm", {0.97 * s.span_mm, 0.9 * s.span_mm, 0.75 * s.span_mm, 0.6 * s.span_mm}}});
   }
   /// Returns the parameter values of a block that saturates at `upper_mm`. The gauge check fits `upper_mm` to
-  /// readings of the sensor at positions that a gauge measured.
+  /// the gauge readings.
   static Values ending(double upper_mm) {
     return start({{"lower_mm", no_floor_mm}, {"upper_mm", std::max(upper_mm, 0.9 * no_floor_mm)}});
   }

@@ -22,8 +22,8 @@ struct SlowCreep : FormOf<model::SlowCreep> {
     return every({{"gain_mm_per_kpa", {0.05 * gain, 0.2 * gain, 0.8 * gain}},
                   {"time_constant_s", {0.15 * s.campaign_s, 0.5 * s.campaign_s, 2 * s.campaign_s}}});
   }
-  /// Limits the time constant. Below the lower limit, the creep would have the same effect as a creep branch
-  /// of the base structure. Above the upper limit, it would appear as a linear change with time.
+  /// With a smaller time constant, the creep would have the same effect as a creep branch of the base
+  /// structure. With a larger time constant, the creep would be a linear change with time in these data.
   static Bounds bounds(const Scales& s, const model::Model& model) {
     double slowest_s = 0;
     for (const double tau_s : branch_time_constants_s(model)) slowest_s = std::max(slowest_s, tau_s);

@@ -1,5 +1,5 @@
 #pragma once
-// Defines a cause: the gain changes with the displacement, equally for loading and unloading.
+// Defines a cause: the gain changes with the displacement. The change is the same for loading and unloading.
 
 #include "model/blocks/stiffening.h"
 #include "sysid/diagnosis/causes/form.h"

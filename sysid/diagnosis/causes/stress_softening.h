@@ -1,5 +1,5 @@
 #pragma once
-// Defines a cause: the largest load so far has made the finger softer (Mullins effect).
+// Defines a cause: the largest load up to the current time has made the finger softer (Mullins effect).
 
 #include "model/blocks/pseudo_elastic_softening.h"
 #include "model/blocks/stress_softening.h"
@@ -17,7 +17,7 @@ struct StressSoftening {
        "wear."},
       {{{HealthNumber::gain, Moves::up}, {HealthNumber::loop_width, Moves::up}}}};
 
-  /// Form of the cause: the softening is proportional to the largest pressure so far.
+  /// Form of the cause: the softening is proportional to the largest pressure up to the current time.
   struct Proportional : FormOf<model::StressSoftening> {
     static constexpr std::array<Parameter, 1> fitted{"softening_per_kpa"};
     static bool holds(const model::BlockSpec& block) {
@@ -35,15 +35,15 @@ struct StressSoftening {
     }
   };
 
-  /// Form of the cause: the softening increases gradually as the pressure falls below the largest pressure so
-  /// far.
+  /// Form of the cause: the softening acts at pressures below the largest pressure up to the current time. It
+  /// increases gradually when the pressure falls.
   struct PseudoElastic : FormOf<model::PseudoElasticSoftening> {
     static Starts starts(const Scales& s) {
       return every({{"softening_per_kpa", {0.05 / s.largest_kpa, 0.3 / s.largest_kpa}},
                     {"range_kpa", {0.1 * s.largest_kpa, 0.3 * s.largest_kpa}}});
     }
-    /// Limits `range_kpa` to between 2 % and 200 % of the largest pressure. Below this range, the softening
-    /// is practically immediate. Above it, the effect of the softening is not visible.
+    /// The parameter `range_kpa` is between 2 % and 200 % of the largest pressure. With a smaller value, the
+    /// softening is practically a step. With a larger value, the softening has no visible effect.
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {{"range_kpa", 0.02 * s.largest_kpa, 2 * s.largest_kpa}};
     }

@@ -9,14 +9,13 @@ namespace softgrip::sysid::causes {
 struct SupplySag : FormOf<model::SupplySag> {
   static constexpr Column needs = Column::supply_kpa;
   static constexpr WhenChanged when_changed{
-      "the pressure decreases with the supply",
+      "the pressure decreases when the supply pressure decreases",
       {"Read the supply gauge while the compressor refills.",
        "Connect other consumers to another line, or set the supply regulator higher, and record again."},
       {{{HealthNumber::pressure_loss, Moves::up}}},
       {SizedBy::Of::number, "relative pressure decrease at the finger per relative decrease of the supply",
        "%", "coupling", 100}};
-  /// The nominal supply is not fitted, because the parameter `coupling` is defined relative to the nominal
-  /// supply.
+  /// The nominal supply pressure is not fitted, because the parameter `coupling` is defined relative to it.
   static constexpr std::array<Parameter, 1> fitted{"coupling"};
 
   static Starts starts(const Scales& s) {

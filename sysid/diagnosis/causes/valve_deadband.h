@@ -1,6 +1,6 @@
 #pragma once
-// Defines a cause: the valve ignores command changes that are smaller than a band. It either follows the
-// command with play, or it sticks and jumps.
+// Defines a cause: the valve has a dead band. It does not respond to changes of the command within this band.
+// When the command leaves the band, the valve follows with play, or it sticks and jumps.
 
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace softgrip::sysid::causes {
 struct ValveDeadband {
   static constexpr std::string_view id = "valve_deadband";
   static constexpr WhenChanged when_changed{
-      "the valve ignores small changes",
+      "the valve ignores small changes of the command",
       {"Command steps of 1 kPa up and down and note which steps the pressure follows.",
        "Clean the valve or cycle it 50 times over its range, and record the same log again."},
       {},
@@ -34,10 +34,10 @@ struct ValveDeadband {
       return starts;
     }
 
-    /// Returns start values of the band. A sticking valve reaches the largest pressure in jumps as large as
-    /// the band. The model error has a local minimum at each band that gives a whole number of jumps. One
-    /// start value per number of jumps covers all minima down to a band of 1/60 of the largest pressure.
-    /// Smaller bands have similar effects, so their start values are 10 % apart.
+    /// Returns start values of the band. A sticking valve reaches the largest pressure in jumps whose size
+    /// equals the band. The model error has a local minimum at each band for which the number of jumps is an
+    /// integer. There is one start value per number of jumps, down to a band of 1/60 of the largest pressure.
+    /// Smaller bands have similar effects, so the next start values are 10 % apart.
     static std::vector<double> bands_kpa(const Scales& s) {
       std::vector<double> bands;
       for (int steps = 5; steps < 60; ++steps) bands.push_back(s.largest_kpa / steps);

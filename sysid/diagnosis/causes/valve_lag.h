@@ -1,5 +1,5 @@
 #pragma once
-// Defines a cause: the pressure lags behind the command because of the regulator and the tube.
+// Defines a cause: the pressure follows the command with a lag, because of the regulator and the tube.
 
 #include "model/blocks/valve_lag.h"
 #include "sysid/diagnosis/causes/form.h"
@@ -13,8 +13,8 @@ struct ValveLag : FormOf<model::ValveLag> {
       "the pressure responds more slowly than before",
       {"Check for a kinked tube and a clogged filter or silencer, and check the supply pressure during "
        "motion.",
-       "Close the tube of the finger at the valve and step the command. If the pressure there is slow, the "
-       "valve is the cause."},
+       "Close the tube of the finger at the valve and step the command. If the pressure at the valve is "
+       "slow, the valve is the cause."},
       {{{HealthNumber::lag, Moves::up}}},
       {SizedBy::Of::number, "increase of the lag of the valve", "s", "time_constant_s"}};
   static Starts starts(const Scales&) { return every({{"time_constant_s", {0.02, 0.1, 0.3, 0.6}}}); }

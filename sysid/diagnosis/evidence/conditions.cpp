@@ -11,8 +11,8 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-/// Half the width of the time window in which the slope of the pressure is computed [s]. Deliberate pressure
-/// changes by a user or a regulator last longer than this window.
+/// Half of the time window over which the slope of the pressure is computed [s]. Intended pressure changes
+/// last longer than this window.
 constexpr double half_window_s = 0.05;
 constexpr std::size_t most_cycles = 8;
 
@@ -25,7 +25,7 @@ void add_rates(const Record& record, DriveHistory& h) {
     while (record.time_s[i] - record.time_s[before] > half_window_s) ++before;
     while (after + 1 < p.size() && record.time_s[after] - record.time_s[i] < half_window_s) ++after;
     after = std::max(after, i);
-    // If the window contains only this sample, the slope is computed from the adjacent samples.
+    // If there is no earlier sample within the window, the slope starts at the previous sample.
     const std::size_t a = before == i && i > 0 ? i - 1 : before;
     const double change = p[after] - p[a];
     const double time = record.time_s[after] - record.time_s[a];
@@ -85,8 +85,8 @@ bool varies(const std::vector<double>& values) {
   return high - low > 1e-6 * std::max(1.0, std::abs(high));
 }
 
-/// Returns a condition with its value at each of the samples. @param value  function that computes the value
-/// from a record and the index of a sample.
+/// Returns a condition and its value at each sample.
+/// @param value  function that computes the value from the index of a record and the index of a sample.
 template <class Value>
 Condition condition(std::string id, std::string axis, std::string phrase, const Samples& samples,
                     Value&& value) {
@@ -114,7 +114,7 @@ Condition column(std::string id, std::string axis, std::string phrase, const Sam
                           [&](std::size_t k, std::size_t i) {
                             return (records[k].*values).empty() ? none : (records[k].*values)[i];
                           });
-  if (!varies(c.value)) c.why_not = "no column " + name + " that varies";
+  if (!varies(c.value)) c.why_not = "the logs contain no column " + name + " that varies";
   return c;
 }
 
@@ -198,7 +198,7 @@ std::vector<Condition> conditions_of(const std::vector<Record>& records,
                              return h[k].rate_kpa_per_s[i] == 0 ? none : h[k].rate_kpa_per_s[i];
                            }));
   list.push_back(condition(
-      "dwell", "time since the pressure stopped [s]", "the time since the pressure stopped", samples,
+      "dwell", "time since the last pressure change [s]", "the time since the last pressure change", samples,
       [&](std::size_t k, std::size_t i) { return h[k].dwell_s[i] > 0 ? h[k].dwell_s[i] : none; }));
   list.back().logarithmic = true;
   group_by(list.back(), samples, {"at rest", "under load"},

@@ -1,5 +1,6 @@
 #pragma once
-// Computes, for each sample, the conditions on which an error may depend.
+// Computes conditions on which a model error may depend, such as the rate of the pressure. Each condition has
+// a value at each sample.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,22 +17,24 @@ enum class Branch : std::uint8_t { rest, loading, hold, unloading };
 
 /// History of the drive of a record. Each vector has one value per sample.
 struct DriveHistory {
-  std::vector<double> rate_kpa_per_s;  ///< slope of the pressure over 0.1 s; 0 at constant pressure
+  std::vector<double> rate_kpa_per_s;  ///< slope of the pressure over a window of 0.1 s; 0 while the pressure
+                                       ///< is constant
   std::vector<Branch> branch;
-  std::vector<bool> falling;    ///< true: the last change of the pressure was a decrease
+  std::vector<bool> falling;    ///< true: the last change of the pressure was a fall
   std::vector<double> dwell_s;  ///< time since the pressure became constant; NaN while the pressure changes
-  /// Time since the pressure last reversed, started to change or stopped changing.
+  /// Time since the pressure last changed its phase (rest, loading, hold or unloading).
   std::vector<double> since_turn_s;
-  std::vector<double> turn_kpa;  ///< pressure at the last reversal, start or stop of a change
-  /// Peak pressure of the current excursion from rest; at rest, peak pressure of the previous excursion.
+  std::vector<double> turn_kpa;  ///< pressure at the last change of the phase
+  /// Peak pressure of the current load cycle. While the finger rests, this is the peak pressure of the
+  /// previous load cycle.
   std::vector<double> amplitude_kpa;
-  std::vector<double> largest_kpa;  ///< largest pressure so far, in this record and in all records before
+  std::vector<double> largest_kpa;  ///< largest pressure up to this sample; all earlier records are included
   std::vector<std::size_t> cycle;   ///< index of the load cycle, from 0; see cycle_starts()
 };
 [[nodiscard]] DriveHistory history_of(const Record& record);
 
-/// Samples of all records in one list. Only samples with a reading are included, and the list is thinned
-/// evenly.
+/// Samples of all records in one list. Samples without a reading are left out, and the remaining samples are
+/// thinned evenly.
 struct Samples {
   std::vector<std::size_t> record;
   std::vector<std::size_t> index;  ///< for each sample, its index in its record
@@ -39,30 +42,27 @@ struct Samples {
 
   [[nodiscard]] std::size_t size() const noexcept { return record.size(); }
 };
-/// Returns about `most` samples of all records. Samples whose residual is NaN are omitted.
+/// Returns about `most` samples of all records, or fewer. Samples with the residual NaN are left out.
 [[nodiscard]] Samples pooled_samples(const std::vector<Record>& records,
                                      const std::vector<std::vector<double>>& residual_mm, std::size_t most);
-/// Returns the values of `by_record` at these samples, in one list. `by_record` has one vector per record.
+/// Returns the values that belong to these samples, in one list. `by_record` has one vector per record.
 [[nodiscard]] std::vector<double> pooled(const Samples& samples,
                                          const std::vector<std::vector<double>>& by_record);
 
-/// A condition on which the error may depend, with its value at each sample.
+/// A condition on which the error may depend, and its value at each sample.
 struct Condition {
-  std::string id;    ///< id of the condition: "rate"
-  std::string axis;  ///< axis label: "rate of the pressure [kPa/s]"
-  /// End of the sentence "the error depends on ...", such as "the rate of the pressure".
+  std::string id;    ///< id of the condition, for example "rate"
+  std::string axis;  ///< axis label, for example "rate of the pressure [kPa/s]"
+  /// Text that completes the sentence "the error depends on ...", for example "the rate of the pressure".
   std::string phrase;
-  std::vector<double>
-      value;  ///< value of the condition at each sample; NaN: the condition is not defined for the sample
+  std::vector<double> value;  ///< value of the condition at each sample; NaN: the sample has no value
   bool logarithmic = false;
-  /// Names of the categories if the condition has the values 0, 1, ... for categories; empty: the values are
-  /// numbers.
+  /// Names of the categories if the values 0, 1, ... denote categories; empty: the values are numbers.
   std::vector<std::string> categories;
-  /// For each sample, the index of its group in `groups`. Each group, such as loading or unloading, gets its
-  /// own curve.
+  /// Index in `groups` for each sample. Each group, for example loading or unloading, gets its own curve.
   std::vector<std::uint8_t> group;
   std::vector<std::string> groups;
-  std::string why_not;  ///< reason why the condition was not tested; empty: it was tested
+  std::string why_not;  ///< reason why the condition was not tested; empty: the condition was tested
 };
 
 /// Returns the conditions branch, cycle, amplitude, rate, dwell, history, position, loop (position and

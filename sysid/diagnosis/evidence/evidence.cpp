@@ -17,13 +17,13 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_samples = 12000;
 constexpr std::size_t most_bins = 10;
-/// Smallest length of a block, as a multiple of the correlation time of the residual, and smallest number of
-/// blocks.
+/// Limits of the blocks: the intended length of a block as a multiple of the correlation time of the
+/// residual, and the smallest number of blocks.
 constexpr double memories_per_block = 8;
 constexpr std::size_t fewest_blocks = 12;
 
-/// Returns the correlation time [s] of the residual without its white noise: the integral of the
-/// autocorrelation from the first lag on, divided by its value at the first lag.
+/// Returns the correlation time of the residual without its white noise [s]. It is the integral of the
+/// autocorrelation from the first lag on, divided by the autocorrelation at the first lag.
 double memory_s(const Samples& samples, const std::vector<double>& residual, double interval_s) {
   const double mean =
       std::accumulate(residual.begin(), residual.end(), 0.0) / static_cast<double>(residual.size());
@@ -40,8 +40,8 @@ double memory_s(const Samples& samples, const std::vector<double>& residual, dou
   if (first < 4 / std::sqrt(static_cast<double>(residual.size()))) return interval_s;
   double sum = 0;
   const std::size_t furthest = residual.size() / fewest_blocks / 2;
-  // The step from one lag to the next grows with the lag, because the autocorrelation is smooth at large
-  // lags.
+  // The distance between the evaluated lags grows with the lag, because the autocorrelation is smooth at
+  // large lags.
   for (std::size_t lag = 1, step = 1; lag < furthest; lag += step) {
     const double r = correlation(lag) / first;
     if (r < 0.05) break;
@@ -51,7 +51,7 @@ double memory_s(const Samples& samples, const std::vector<double>& residual, dou
   return std::max(interval_s, sum * interval_s);
 }
 
-/// Assigns each sample to a block of about `block_s` seconds within its record.
+/// Assigns each sample to a block within its record. A block lasts about `block_s` seconds.
 std::vector<std::size_t> blocks_of(const Samples& samples, double block_s, std::size_t& count) {
   std::vector<std::size_t> block(samples.size());
   count = 0;
@@ -68,7 +68,7 @@ std::vector<std::size_t> blocks_of(const Samples& samples, double block_s, std::
   return block;
 }
 
-/// Assigns each sample to a bin of a condition. A sample that belongs to no bin has the index none_bin.
+/// Assigns each sample to a bin of a condition. The index none_bin means that the sample belongs to no bin.
 struct Binning {
   static constexpr std::size_t none_bin = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> bin;
@@ -87,7 +87,8 @@ std::vector<double> edges_of(std::vector<double> values, bool logarithmic) {
     for (std::size_t k = 1; k < most_bins; ++k) edges.push_back(values[values.size() * k / most_bins]);
   }
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  // If the first edge equals the smallest value, the bin below it would be empty, so the edge is removed.
+  // If the first edge equals the smallest value, the bin below this edge would be empty. The edge is
+  // therefore removed.
   if (!edges.empty() && edges.front() <= values.front()) edges.erase(edges.begin());
   return edges;
 }
@@ -141,7 +142,7 @@ Binning bin(const Condition& c) {
   return kept;
 }
 
-/// Sums of the residual by block and bin, from which all tests and intervals are computed.
+/// Sums of the residual for each block and bin. All tests and intervals are computed from these sums.
 struct Sums {
   std::size_t bins = 0, blocks = 0;
   std::vector<double> sum;    ///< sum of the residual, with the index [block * bins + bin]
@@ -167,8 +168,8 @@ Sums sums_of(const Binning& binning, const std::vector<double>& residual,
   return s;
 }
 
-/// Multiplies the residuals of each block by the sign of this block and returns the resulting sum of squares
-/// between bins.
+/// Multiplies the residuals in each block by the sign of this block, and returns the sum of squares between
+/// the bins.
 double between(const Sums& s, const std::vector<double>& counts, const std::vector<double>& sign,
                std::vector<double>& scratch) {
   scratch.assign(s.bins, 0.0);
@@ -198,8 +199,9 @@ double sign_flip_p(const Sums& s, std::uint64_t seed) {
   return static_cast<double>(as_large + 1) / static_cast<double>(limits::bootstrap_draws + 1);
 }
 
-/// Returns the reduction of the sum of squared prediction errors if each residual is predicted by the mean of
-/// its bin instead of the overall mean. For each block, both means are computed from the other blocks.
+/// Returns how much the squared prediction error decreases if each residual is predicted by the mean of its
+/// bin. The comparison is a prediction by the overall mean. Both means are computed from all blocks except
+/// the block of the residual.
 double cross_validated_gain(const Sums& s) {
   std::vector<double> sum(s.bins), count(s.bins);
   for (std::size_t k = 0; k < s.bins; ++k) {
@@ -222,8 +224,8 @@ double cross_validated_gain(const Sums& s) {
       if (n == 0) continue;
       const double rest = count[k] - n;
       const double mean = rest > 0 ? (sum[k] - here) / rest : overall;
-      // The reduction in this bin of the block is the sum of (r - overall)^2 - (r - mean)^2 over its
-      // residuals r.
+      // In this block and bin, the reduction is the sum of (r - overall)^2 - (r - mean)^2 over the residuals
+      // r.
       gain += 2 * here * (mean - overall) + n * (square(overall) - square(mean));
     }
   }
@@ -276,7 +278,7 @@ ConditionEvidence judge(const Condition& condition, const std::vector<double>& r
   return e;
 }
 
-/// Adjusts the p-values for the number of tests by Holm's step-down method.
+/// Adjusts the p-values for the number of tests with Holm's step-down method.
 void adjust(std::vector<ConditionEvidence>& list) {
   std::vector<ConditionEvidence*> judged;
   for (ConditionEvidence& e : list) {
@@ -292,8 +294,8 @@ void adjust(std::vector<ConditionEvidence>& list) {
   }
 }
 
-/// Returns the sum of squared differences between each sample and the mean of all blocks except the sample's
-/// own block.
+/// Returns the sum of squared deviations. The deviation of a sample is its difference from the mean of the
+/// samples in all other blocks.
 double squares_about_others(const std::vector<double>& residual, const std::vector<std::size_t>& block,
                             std::size_t blocks) {
   std::vector<double> sum(blocks, 0.0), count(blocks, 0.0);
@@ -388,7 +390,7 @@ std::string dependence_sentence(const ResidualEvidence& evidence) {
   }
   if (named == 0) return "The error does not significantly depend on any condition in these logs.";
   return "The error depends on " + text +
-         " (in brackets: share of the residual variance that the condition alone explains).";
+         " (in brackets: share of the residual variance that this condition alone explains).";
 }
 
 }  // namespace softgrip::sysid

@@ -17,17 +17,18 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr std::size_t shown = 100;
-/// Number of frequency bins on each side of a line that form its neighbourhood. A bin is as wide as the
+/// Number of frequency bins on each side of a line with which the line is compared. The width of a bin is the
 /// frequency resolution of one record.
 constexpr std::size_t around = 40;
-/// Half the width of the main lobe of a Hann window plus a margin, in frequency bins.
+/// Half of the width of the main lobe of a Hann window, plus a margin [frequency bins].
 constexpr std::size_t lobe = 3;
 
 /// Sum of |FFT(window * residual)|^2 over the records, for each frequency of a common grid.
 struct Periodogram {
   double step_hz = 0;
   double window_squares = 0;      ///< sum of the squared windows of all records
-  double window_mean_square = 0;  ///< sum over all records of the squared sum of the window
+  double window_mean_square = 0;  ///< sum over all records; the term of a record is the square of the sum of
+                                  ///< its window values
   double interval_s = 0;
   std::size_t longest = 0;
   std::vector<double> power;
@@ -91,9 +92,9 @@ void add_curve(const Periodogram& p, SpectrumEvidence& evidence) {
   }
 }
 
-/// Returns the level of the spectrum around bin b, without the main lobe of the line in this bin. The
-/// spectrum of a model error is steep, so the level is the larger of two medians: below the line and above
-/// the line. Returns 0 if there are too few bins below or above the line.
+/// Returns the level of the spectrum near the bin b. The main lobe of the line in this bin is excluded. The
+/// spectrum of a model error is steep. Therefore the level is the larger one of two medians, below and above
+/// the line. Returns 0 if there are not enough bins below the line.
 double level_around(const Periodogram& p, std::size_t b, std::size_t padding) {
   const std::size_t reach = around * padding, width = lobe * padding;
   std::vector<double> low, high;
@@ -106,8 +107,8 @@ double level_around(const Periodogram& p, std::size_t b, std::size_t padding) {
   return high.size() < fewest ? below : std::max(below, median_of(std::span(high)));
 }
 
-/// Returns true if the command has a line at this frequency. Every response to such a command has a line at
-/// the same frequency.
+/// Returns true if the command has a line at this frequency. The response to such a command has a line at the
+/// same frequency, which is not a disturbance.
 bool driven(const Periodogram& drive, std::size_t b, std::size_t padding) {
   constexpr double stands_out = 10;
   const std::size_t width = lobe * padding;
@@ -136,8 +137,8 @@ void find_line(const Periodogram& p, const Periodogram& drive, double structural
   const double amplitude2 = 4 * std::max(0.0, p.power[at] - background) / p.window_mean_square;
   evidence.peak_amplitude_mm = std::sqrt(amplitude2);
   const auto lines = static_cast<double>(p.power.size()) / static_cast<double>(padding);
-  // For a single record of noise, the ratio of the power in a bin to the mean level is exponentially
-  // distributed. For several records, large ratios are less likely, so this p-value is an upper bound.
+  // For one record of noise, the ratio of the power in a bin to the mean level has an exponential
+  // distribution. For several records, large ratios are less likely. The p-value is therefore an upper bound.
   evidence.p_value = std::min(1.0, lines * std::exp(-strongest * std::numbers::ln2));
   if (structural_mm2 > 0)
     evidence.share_percent = std::clamp(100 * amplitude2 / 2 / structural_mm2, 0.0, 100.0);

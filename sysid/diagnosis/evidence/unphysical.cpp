@@ -12,8 +12,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Limit of the motion of a creep branch, as a multiple of the measured span. If a branch adds a larger
-/// motion, its stiffness counts as near zero.
+/// Largest plausible motion of a creep branch, as a multiple of the measured span. If the motion of a branch
+/// is larger, the stiffness of the branch counts as near zero.
 constexpr double spans_of_a_branch = 3;
 
 void add_branches(const model::Model& model, const std::vector<Record>& records,
@@ -34,7 +34,7 @@ void add_branches(const model::Model& model, const std::vector<Record>& records,
                            significant(span_mm, 3) + " " + unit + ".",
                        moved_mm, spans_of_a_branch * span_mm});
     }
-    // The data cannot determine a time constant that is longer than the longest log.
+    // A time constant above the length of the longest log cannot be determined from the data.
     if (constants_s[b] > longest_s) {
       signs.push_back({"creep_beyond_data",
                        "the time constant " + c + "/" + k + " is " + significant(constants_s[b], 3) +

@@ -17,18 +17,21 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Largest separation that the ranking takes into account [standard deviations]. The result of an experiment
-/// with a larger separation is practically certain, so a further increase has no value.
+/// Separation above which the result of an experiment is practically certain [standard deviations]. A larger
+/// separation does not improve the rank of an experiment.
 constexpr double certain_sigma = 40;
-/// Number of the best waveforms whose separations are computed again with nonlinear fits.
+/// Number of waveforms whose separations are computed a second time with nonlinear fits. These are the
+/// waveforms that the linear computation ranks first.
 constexpr std::size_t confirmed = 2;
 constexpr double usual_slew_kpa_per_s = 300;
-/// Time [s] in which a rig comes to rest before an experiment starts.
+/// Time for a rig to come to rest before an experiment starts [s].
 constexpr double rest_before_s = 10;
 
-/// Competing explanations of the logs that an experiment should separate: a named cause and its alternatives.
+/// Competing explanations of the logs: a named cause and its alternatives. An experiment should separate
+/// them.
 struct Contest {
-  std::vector<Hypothesis> hypotheses;  ///< hypotheses; the first one contains the named cause
+  std::vector<Hypothesis> hypotheses;  ///< one hypothesis per explanation; the first one contains the named
+                                       ///< cause
   std::vector<std::string> ids;
 };
 
@@ -49,7 +52,8 @@ std::vector<Cause> next_best(const NamedCause& named) {
   return causes;
 }
 
-/// Returns the reason why the diagnosis contains no causes that an experiment should separate.
+/// Returns the reason why no experiment is designed if the diagnosis contains no causes that an experiment
+/// can separate.
 std::string without_pairs(const Diagnosis& d) {
   std::string open;
   for (const NamedCause& named : d.causes) {
@@ -57,10 +61,12 @@ std::string without_pairs(const Diagnosis& d) {
     open += (open.empty() ? "" : ", ") + std::string(named.cause.id);
     for (const Cause& alternative : named.alternatives) open += " or " + std::string(alternative.id);
   }
-  if (open.empty()) return "an experiment requires two explanations that it can separate";
-  return "no experiment can be designed for " + open +
-         ": these causes belong to a different model structure, and experiments are predicted only for the "
-         "structure of the given model";
+  if (open.empty())
+    return "No experiment was designed, because the diagnosis contains no two explanations that an "
+           "experiment can separate";
+  return "No experiment can be designed for " + open +
+         ", because these causes belong to a different model structure. Experiments are predicted only for "
+         "the structure of the given model";
 }
 
 class Designer {
@@ -120,8 +126,8 @@ class Designer {
     add_contest(rest, alternatives, std::string(named.cause.id), d_.extended);
   }
 
-  /// Adds a comparison of the refitted model with at most two rejected causes. It is used if the verdict
-  /// names no cause.
+  /// Adds a comparison between the refitted model and at most two rejected causes. The comparison is used if
+  /// the verdict names no cause.
   void add_contest_of_rejected() {
     std::vector<Cause> alternatives;
     for (const CandidateScore& score : d_.rejected) {
@@ -144,8 +150,8 @@ class Designer {
     contests_.push_back(std::move(contest));
   }
 
-  /// Returns the waveform as a record that follows the last log. Conditions such as the temperature keep the
-  /// values that they have at the end of the last log.
+  /// Returns the waveform as a record that follows the last log. Temperature and supply pressure keep the
+  /// values from the end of the last log.
   [[nodiscard]] Record record_of(const Waveform& waveform) const {
     const Record& last = d_.records.back();
     Record record;
@@ -174,8 +180,8 @@ class Designer {
 
   [[nodiscard]] double distance(const Record& record, const Pair& pair, Way way) const {
     const Contest& contest = contests_[pair.contest];
-    // No waveform separates these two causes, so their distance is 0. A computed distance would only show
-    // that their blocks have different equations.
+    // No waveform separates indistinguishable causes, so the distance is 0. A computed distance would be
+    // larger than 0 because the blocks of the two causes have slightly different equations.
     if (pair.indistinguishable) return 0;
     const auto from = [&](std::size_t truth, std::size_t alternative) {
       const std::vector<double> truth_mm = contest.hypotheses[truth].prediction(record);
@@ -210,8 +216,8 @@ class Designer {
   }
 
   /// Computes the separations of causes for the first `count` waveforms in `menu`.
-  /// @param way  linear approximation or nonlinear refit. The result of the refit replaces the linear result
-  /// if it is smaller than the linear result.
+  /// @param way  linear approximation or nonlinear refit. A separation from a refit replaces the linear
+  /// separation only if it is smaller.
   void separate(std::size_t count, Way way) {
     parallel_for(count * pairs_.size(), options_.threads, [&](std::size_t job) {
       JudgedWaveform& judged = result_.menu[job / pairs_.size()];
@@ -221,8 +227,8 @@ class Designer {
     });
   }
 
-  /// Ranks the waveforms by the squared separation per minute, because the squared separations of repeated
-  /// experiments add up.
+  /// Ranks the waveforms by the squared separation per minute. This measure is used because the squared
+  /// separations of repeated experiments add up.
   void rank() {
     for (JudgedWaveform& judged : result_.menu) {
       double learnt = 0;
@@ -251,7 +257,7 @@ class Designer {
     result_.predicted_separation_sigma = least;
   }
 
-  /// Returns true if no waveform can separate the two causes but a gauge can.
+  /// Returns true if no waveform can separate the two causes, but a check of the sensor against a gauge can.
   [[nodiscard]] bool asks_for_gauge(const Pair& pair, const AdviceFacts& facts) const {
     const auto one = find_cause(contests_[pair.contest].ids[pair.one]);
     const auto other = find_cause(contests_[pair.contest].ids[pair.other]);

@@ -1,7 +1,7 @@
 #pragma once
-// Designs the next experiment. Several causes may explain the logs equally well; the waveform that best
-// separates these causes is selected. To compare two causes, the response with one cause is predicted, and
-// the model with the other cause is refitted to this response.
+// Designs the next experiment if several causes explain the logs equally well. The result is the waveform
+// that best separates these causes. To compare two causes, the program predicts the response with one cause
+// and refits the model with the other cause to this response.
 
 #include <optional>
 #include <string>
@@ -15,80 +15,82 @@
 namespace softgrip::sysid {
 
 struct ExperimentOptions {
-  /// Pressure limits of the rig. If not set, the limits are the largest pressure of the logs and 300 kPa/s.
+  /// Pressure limits of the rig. Not set: the largest pressure of the logs, and a slew rate of 300 kPa/s.
   std::optional<RigLimits> limits;
-  /// True: if the verdict lists no alternatives, the experiment compares the verdict with the best rejected
-  /// candidates.
+  /// True: an experiment is designed even if the verdict lists no alternatives. It then compares the named
+  /// cause with the best rejected candidates.
   bool always = false;
-  /// True: the pressure is recorded. If false, the advice may propose to record the pressure.
+  /// True: the logs contain the measured pressure. False: the advice may be to record the pressure.
   bool pressure_recorded = false;
   double most_minutes = 10;
-  /// Names of waveforms that the rig has already executed. They are not proposed.
+  /// Names of the waveforms that the rig has already executed. They are not proposed a second time.
   std::vector<std::string> done;
   unsigned threads = 0;
 };
 
-/// Predicted distance between the responses of two structures in one experiment.
+/// Predicted distance between the responses of two hypotheses in one experiment.
 struct Separation {
   std::string one;
   std::string other;
-  /// Distance of the two responses in standard deviations of the noise. The correlation of the noise is taken
-  /// into account. The distance is computed twice: once, the structure `one` is true and `other` is refitted
-  /// to its response; once, `other` is true and `one` is refitted. This member is the smaller distance.
+  /// Distance of the two responses in standard deviations of the noise; the correlation of the noise is
+  /// included. The distance is computed twice. First, `other` is refitted to the response of `one`. Second,
+  /// `one` is refitted to the response of `other`. This member is the smaller one of both distances.
   double sigma = 0;
 };
 
-/// A waveform that an experiment can apply, and the predicted separation of each pair of causes.
+/// A possible waveform for the experiment, and the predicted separation of each pair of causes by this
+/// waveform.
 struct JudgedWaveform {
   Waveform waveform;
-  double minutes = 0;  ///< duration of the waveform and of the rest before it
+  double minutes = 0;  ///< duration of the waveform plus the rest before the waveform
   std::vector<Separation> separations;
   double merit = 0;  ///< sum of the squared separations, divided by `minutes`
 };
 
-/// A proposed check of the sensor at known positions. It can separate causes that no waveform separates if
-/// these causes imply different static shapes of the sensor.
+/// A proposed check of the sensor at known positions. It separates causes that imply different static shapes
+/// of the sensor, even if no waveform separates them.
 struct ProposedGaugeCheck {
-  /// Positions at which the sensor is to be read, in this order.
+  /// Positions in the order in which the operator reads the sensor.
   std::vector<double> positions_mm;
   model::OutputUnit output_unit = model::OutputUnit::mm;  ///< unit of `positions_mm`
   std::vector<std::string> separates;                     ///< ids of the causes that the check separates
   double minutes = 0;
 };
 
-/// Proposal for the next experiment.
+/// Proposal for the next experiment: a waveform, a gauge check or advice.
 struct NextExperiment {
   std::optional<JudgedWaveform> best;
   std::vector<std::string> separates;  ///< ids of the causes that `best` separates
-  /// Smallest separation of all pairs of causes that `best` separates.
+  /// Smallest separation among the pairs of causes that `best` separates [standard deviations].
   double predicted_separation_sigma = 0;
   std::vector<JudgedWaveform> menu;  ///< all waveforms that were evaluated
-  /// Proposed gauge check; not set if a gauge check separates no causes or was already made.
+  /// Proposed gauge check. Not set: a gauge check would separate no causes, or the operator has already made
+  /// one.
   std::optional<ProposedGaugeCheck> gauge_check;
-  /// Advice on actions that supplement the waveform, such as recording a further column or changing the load.
-  /// Each element is one or more sentences.
+  /// Advice on further actions, such as recording one more column or changing the load. Each element consists
+  /// of one or more sentences.
   std::vector<std::string> advice;
 };
 
-/// Name of the gauge file without readings. It is written next to diagnosis.json if a gauge check is
-/// proposed.
+/// Name of the gauge file with empty readings. If a gauge check is proposed, the file is written to the
+/// folder of diagnosis.json.
 inline constexpr const char* gauge_positions_file = "gauge_positions.csv";
 
-/// Smallest separation [standard deviations] at which two causes count as distinguishable.
+/// Smallest separation for which two causes count as distinguishable [standard deviations].
 inline constexpr double separation_needed_sigma = 5;
 
-/// Designs the next experiment for a diagnosis. If the verdict requires no experiment, the result contains no
-/// waveform.
+/// Designs the next experiment for a diagnosis. The result contains no waveform if the verdict requires no
+/// experiment.
 [[nodiscard]] NextExperiment design_experiment(const Diagnosis& diagnosis, const ExperimentOptions& options);
 
-/// Returns the proposed experiment as a sequence file for softgripd.
-/// @param channel  channel that the sequence drives; empty: all channels of the rig.
+/// Returns the proposed experiment as the text of a sequence file for softgripd.
+/// @param channel  channel on which the sequence runs; empty: all channels of the rig.
 [[nodiscard]] std::string sequence_yaml(const NextExperiment& experiment, const std::string& channel = "");
-/// Returns the sequence file for one waveform.
+/// Returns the text of the sequence file for one waveform.
 [[nodiscard]] std::string sequence_yaml(const Waveform& waveform, const std::string& channel);
 
-/// Adds the keys next_experiment, gauge_check and experiment_advice to the content of diagnosis.json.
-/// gauge_check is null if no gauge check is proposed.
+/// Adds the keys next_experiment, gauge_check and experiment_advice to the content of diagnosis.json. The
+/// value of gauge_check is null if no gauge check is proposed.
 void add_experiment(nlohmann::ordered_json& diagnosis_json, const NextExperiment& experiment,
                     const std::string& file);
 

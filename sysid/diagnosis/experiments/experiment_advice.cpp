@@ -15,21 +15,23 @@ bool has(const Cause& cause, Advice advice) {
 }
 
 constexpr const char* vary_temperature =
-    "add a temperature_c column and repeat the run at a different temperature: if the gain depends on the "
+    "Add a temperature_c column and repeat the run at a different temperature. If the gain depends on the "
     "temperature, the cause is not wear or drift";
 
-/// Returns advice on how to separate two causes that no waveform can separate.
+/// Returns the advice for two causes that no waveform can separate: change the load, or leave the finger
+/// vented. Returns an empty text if neither action separates them.
 std::string instead_of_waveform(const Cause& one, const Cause& other, const std::string& names,
                                 bool gauge_made) {
   if (has(one, Advice::change_load) && has(other, Advice::change_load)) {
-    return std::string(gauge_made ? "the gauge check was not conclusive: repeat the check with more "
-                                    "positions over a wider range, or change the load or move the object"
-                                  : "change the load or move the object") +
-           ": a nonlinearity that stays at the same reading is caused by the sensor; a nonlinearity that "
+    return std::string(gauge_made
+                           ? "The gauge check was not conclusive. Repeat the check with more positions over "
+                             "a wider range, or change the load or move the object that the finger touches"
+                           : "Change the load or move the object that the finger touches") +
+           ". A nonlinearity that stays at the same reading is caused by the sensor. A nonlinearity that "
            "moves with the load is not caused by the sensor";
   }
   if (has(one, Advice::leave_vented) && has(other, Advice::leave_vented)) {
-    return "leave the finger vented for an hour and record the zero offset of the sensor, because no "
+    return "Leave the finger vented for an hour and record the zero offset of the sensor, because no "
            "waveform in softgrip's list of experiments separates " +
            names;
   }
@@ -47,7 +49,7 @@ std::vector<std::string> advice_for(std::string_view one, std::string_view other
   const bool one_in_valve =
       known && (first.station == model::Station::valve) != (second.station == model::Station::valve);
   if (one_in_valve && !facts.pressure_recorded) {
-    advice.push_back("record pressure_kpa, the pressure at the valve, because this signal separates " +
+    advice.push_back("Record pressure_kpa, the pressure at the valve, because this signal separates " +
                      names);
   }
   const bool may_be_warmth =
@@ -59,8 +61,8 @@ std::vector<std::string> advice_for(std::string_view one, std::string_view other
   if (facts.separable) return advice;
   std::string instead = instead_of_waveform(first, second, names, facts.gauge_made);
   if (instead.empty() && advice.empty()) {
-    instead = "no waveform in softgrip's list of experiments separates " + names +
-              " within the limits of the rig: a separation requires less sensor noise or a higher pressure";
+    instead = "No waveform in softgrip's list of experiments separates " + names +
+              " within the limits of the rig. A separation requires less sensor noise or a higher pressure";
   }
   if (!instead.empty()) advice.push_back(std::move(instead));
   return advice;
@@ -71,11 +73,12 @@ std::string gauge_advice(const std::vector<double>& positions_mm, const std::vec
   std::string ids;
   for (std::size_t i = 0; i < separates.size(); ++i)
     ids += (i == 0 ? "" : i + 1 == separates.size() ? " and " : ", ") + separates[i];
-  return "check the sensor against a gauge: " + ids +
+  return "Check the sensor against a gauge, because " + ids +
          " give equal readings at all pressures. Place the target at " + std::to_string(distinct.size()) +
          " known positions from " + significant(distinct.front(), 3) + " to " +
          significant(distinct.back(), 3) +
-         " mm, in increasing, decreasing and again increasing order. Write the reading of the sensor at each "
+         " mm, first in increasing, then in decreasing and then again in increasing order. Write the reading "
+         "of the sensor at each "
          "position to " +
          gauge_positions_file + ", and diagnose again with --gauge " + gauge_positions_file;
 }

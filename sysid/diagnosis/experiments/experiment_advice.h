@@ -1,5 +1,5 @@
 #pragma once
-// Gives advice on causes that no waveform can separate.
+// Gives advice on measurements that separate two causes, in addition to a waveform or in place of a waveform.
 
 #include <string>
 #include <string_view>
@@ -8,18 +8,18 @@
 namespace softgrip::sysid {
 
 struct AdviceFacts {
-  bool pressure_recorded = false;  ///< true: the logs have the column pressure_kpa
+  bool pressure_recorded = false;  ///< true: the logs have a pressure_kpa column
   bool temperature_varies = false;
   bool separable = false;   ///< true: a waveform separates the two causes
   bool gauge_made = false;  ///< true: the sensor was already checked against a gauge
 };
 
 /// Returns advice on how to separate the causes with the ids `one` and `other`. Each element is a sentence.
-/// The list is empty if a waveform separates the causes.
+/// Some advice is given even if a waveform separates the causes, for example to record the pressure.
 [[nodiscard]] std::vector<std::string> advice_for(std::string_view one, std::string_view other,
                                                   const AdviceFacts& facts);
 
-/// Returns the sentence that proposes a check of the sensor against a gauge.
+/// Returns the sentence that proposes to check the sensor against a gauge.
 [[nodiscard]] std::string gauge_advice(const std::vector<double>& positions_mm,
                                        const std::vector<std::string>& separates);
 

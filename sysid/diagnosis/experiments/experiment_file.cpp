@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 std::string sequence_yaml(const NextExperiment& experiment, const std::string& channel) {
   const JudgedWaveform& best = experiment.best.value();
-  return "# Proposed by softgrip diagnose: separates " + enumerated(experiment.separates, " and ") + " by " +
+  return "# Proposed by softgrip diagnose to separate " + enumerated(experiment.separates, " and ") + " by " +
          significant(experiment.predicted_separation_sigma, 3) + " standard deviations (predicted), in " +
          significant(best.minutes, 3) + " minutes of motion on the rig.\n" +
          sequence_yaml(best.waveform, channel);

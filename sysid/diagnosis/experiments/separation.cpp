@@ -15,12 +15,12 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Each diagonal element of the information matrix is increased by this share of its value. The system of
-/// equations can then be solved even if the data contain no information on some combination of parameters.
+/// Relative increase of the diagonal elements of the information matrix. With this increase, the linear
+/// system has a solution even if the data do not determine some combination of parameters.
 constexpr double ridge = 1e-9;
 constexpr FitEffort few_iterations{.most_iterations = 10, .tolerance = 1e-6};
 
-/// Whitens the rows `first` to `last` of each column of a matrix with the noise model.
+/// Whitens each column of a matrix with the noise model, in the rows from `first` to before `last`.
 void whiten(Jacobian& matrix, std::size_t first, std::size_t last, const NoiseModel& noise) {
   const std::vector<double>& a = noise.coefficients;
   const auto row = [](std::size_t i) { return static_cast<Eigen::Index>(i); };
@@ -36,8 +36,8 @@ std::size_t readings_of(const Record& record) {
                                                 [](double y) { return std::isfinite(y); }));
 }
 
-/// Returns the Jacobian of all readings, whitened record by record. The result is empty if the prediction of
-/// the model is not finite.
+/// Returns the Jacobian of all readings. The rows of each record are whitened separately. The result is empty
+/// if the prediction of the model is not finite.
 Jacobian whitened_jacobian(const std::vector<Record>& records, const FitSpace& space, const FitPoint& point,
                            const NoiseModel& noise) {
   const auto residuals = residuals_for(records, space);
@@ -55,8 +55,8 @@ Jacobian whitened_jacobian(const std::vector<Record>& records, const FitSpace& s
   return jacobian;
 }
 
-/// Returns the upper left `keep` x `keep` block of an information matrix after elimination of the other
-/// parameters.
+/// Eliminates all parameters except the first `keep` parameters from an information matrix. Returns the
+/// remaining matrix with `keep` rows.
 Eigen::MatrixXd eliminated(const Eigen::MatrixXd& information, Eigen::Index keep) {
   const Eigen::Index rest = information.rows() - keep;
   if (rest == 0) return information;

@@ -7,15 +7,15 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Share of the slew limit of the rig that a waveform uses. If a command reached the slew limit, the rig
-/// would change the shape of the command.
+/// Highest slew rate of a waveform, as a share of the slew limit of the rig. At the slew limit itself, the
+/// rig would change the shape of the command.
 constexpr double slew_share = 0.9;
-/// Time at zero pressure before and after a waveform [s]. With it, the log contains the complete first and
-/// last motion.
+/// Times at zero pressure before (`lead_s`) and after (`tail_s`) a waveform [s]. With these times, the log
+/// contains the complete first and last motion.
 constexpr double lead_s = 1;
 constexpr double tail_s = 5;
 
-/// Builds a waveform corner by corner. Levels are shares of the largest pressure.
+/// Builds a waveform corner by corner. The pressure of a corner is stated as a share of the largest pressure.
 class Pen {
  public:
   Pen(std::string name, std::string about, const RigLimits& limits) : limits_(limits) {
@@ -28,7 +28,7 @@ class Pen {
     const double target = level * limits_.pressure_max_kpa;
     const Corner last = waveform_.corners.back();
     const double fastest_s = std::abs(target - last.pressure_kpa) / (slew_share * limits_.slew_kpa_per_s);
-    // Times are rounded to 1 ms, so that they are readable in the file and lie on the time grid of most rigs.
+    // Times are rounded up to 1 ms, so that the file is readable and most rigs can execute the times exactly.
     const double taken_s = std::ceil(1000 * std::max(seconds, fastest_s) - 1e-9) / 1000;
     waveform_.corners.push_back({round_ms(last.time_s + std::max(taken_s, 0.001)), target});
     return *this;
@@ -55,7 +55,8 @@ class Pen {
 };
 
 Waveform rest_and_repeat(const RigLimits& limits) {
-  Pen pen("rest_and_repeat", "equal loads repeated after rests: creep recovers, softening does not", limits);
+  Pen pen("rest_and_repeat",
+          "equal loads, repeated after rests; creep recovers during a rest, but softening does not", limits);
   pen.triangles(0.55, 2.5, 2).hold(20).triangles(0.55, 2.5, 1);
   pen.triangles(1, 2.5, 2).hold(40).triangles(1, 2.5, 1).triangles(0.55, 2.5, 2);
   return pen.done();

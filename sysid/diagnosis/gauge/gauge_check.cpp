@@ -17,16 +17,16 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Distance of a clipping limit from the nearest extreme reading of the logs: the larger of this share of the
-/// range of the readings, and this number of standard deviations of the noise. The distance is large enough
-/// to distinguish a sensor that saturates from a sensor that does not.
+/// Distance between a clipping limit and the nearest extreme reading of the logs. It is the larger one of two
+/// values: `beyond_share` times the range of the readings, and `beyond_noise` standard deviations of the
+/// noise. With this distance, the check can distinguish a saturated sensor from a sensor without saturation.
 constexpr double beyond_share = 0.05;
 constexpr double beyond_noise = 10;
 
-using Line = std::pair<double, double>;  // a straight line: its value at 0, and its slope
+using Line = std::pair<double, double>;  // a straight line, stated as its value at 0 and its slope
 
-/// Returns the value that a chi-square variable with `freedom` degrees of freedom exceeds with a probability
-/// of 1 in 1000 (Wilson and Hilferty 1931).
+/// Returns the value that a chi-square variable with `freedom` degrees of freedom exceeds in 1 of 1000 cases
+/// (Wilson and Hilferty 1931).
 double chi_square_limit(double freedom) {
   if (freedom < 1) return std::numeric_limits<double>::infinity();
   const double v = 2 / (9 * freedom);
@@ -108,9 +108,9 @@ class Checker {
     return values;
   }
 
-  /// Returns start values of zero and scale as straight lines. The first line is fitted to all readings, and
-  /// the second to the readings that are not clipped. The third is fitted to the lower half of the unclipped
-  /// readings, which a saturation does not affect. The last line has zero 0 and scale 1.
+  /// Returns start values of zero and scale as four straight lines. The first line is fitted to all readings,
+  /// and the second to the readings that are not clipped. The third line is fitted to the lower half of these
+  /// readings, because a saturation does not affect them. The fourth line is the identity (zero 0, scale 1).
   [[nodiscard]] std::vector<Line> starts(double offset_mm) const {
     const double middle = (scales_.lowest_mm + scales_.highest_mm) / 2;
     const auto all = [](std::size_t) { return true; };
@@ -130,8 +130,9 @@ class Checker {
   using Bent = causes::SensorNonlinearity;
   using Ending = causes::SensorSaturation;
 
-  /// Fits zero and scale together with the parameters of the sensor shape. @param shape_of  converts these
-  /// parameters to a sensor shape. @param own  start values of these parameters.
+  /// Fits zero and scale together with the parameters of a sensor shape.
+  /// @param shape_of  function that converts these parameters to a sensor shape.
+  /// @param own  start values of these parameters.
   [[nodiscard]] GaugeFit fitted_with(const std::function<SensorShape(Numbers own)>& shape_of,
                                      const std::vector<std::vector<double>>& own, double offset_mm) const {
     const auto residuals = [&](Numbers p, std::span<double> r) {
@@ -184,7 +185,7 @@ class Checker {
         ends, offset_mm);
   }
 
-  /// Returns the root mean square of the difference between the predictions of two hypotheses.
+  /// Returns the RMS difference between the predictions of two hypotheses.
   [[nodiscard]] double apart_mm(const GaugeFit& one, const GaugeFit& other) const {
     double sum = 0;
     for (std::size_t i = 0; i < readings_.size(); ++i)
@@ -202,8 +203,8 @@ class Checker {
     return chi_square(fit, tolerance_mm) <= chi_square_limit(freedom);
   }
 
-  /// Compares every hypothesis with the most likely hypothesis. Part of the difference between their
-  /// predictions is tolerated in addition to the noise.
+  /// Compares every hypothesis with the most likely one. A share of the difference between their predictions
+  /// is tolerated in addition to the noise.
   void compare() {
     std::vector<GaugeFit>& fits = result_.fits;
     const auto likelier = [](const GaugeFit& a, const GaugeFit& b) { return a.rms_mm < b.rms_mm; };
@@ -236,8 +237,8 @@ class Checker {
   }
 
   void judge_coverage() {
-    // The covered range is computed from the fitted line. If it were computed from the readings, the noise of
-    // a sensor that does not move would count as coverage.
+    // The covered range is computed from the fitted straight line and not from the readings. If the sensor
+    // does not move, the noise of the readings would otherwise count as coverage.
     const auto [least, most] =
         std::minmax_element(result_.straight.predicted_mm.begin(), result_.straight.predicted_mm.end());
     result_.covered_share = (*most - *least) / std::max(1e-9, scales_.highest_mm - scales_.lowest_mm);
@@ -302,8 +303,8 @@ GaugeCheck::Departure GaugeCheck::departure() const {
     result.largest_mm = std::max(result.largest_mm, std::abs(apart));
   }
   result.rms_mm = std::sqrt(sum / n);
-  // The deviation from a straight line is compared with the noise alone, because there is no second
-  // hypothesis that defines a tolerance.
+  // The deviation from a straight line is compared with the noise only. The tolerance of compare() cannot be
+  // used, because it requires a second hypothesis.
   const double gained = n * (square(straight.rms_mm) - square(fit.rms_mm)) / (2 * square(noise_mm));
   const auto more = static_cast<double>(fit.free - straight.free);
   result.clear = n > static_cast<double>(fit.free) && gained - more >= gauge_log_likelihood_needed;

@@ -14,20 +14,21 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::size_t most_bytes = std::size_t{16} * 1024 * 1024;
-/// Largest distance of two positions that count as equal.
+/// Largest distance between two positions that count as the same position.
 constexpr double same_mm = 1e-6;
 constexpr double beyond = 1.3;
 constexpr std::size_t fewest_planned = 9;
 
-/// Names of the columns that can contain the positions. The columns of the readings are those of a log
-/// (log_columns.h).
+/// Possible names of the column that contains the positions. The column of the readings has the same name as
+/// in a log (log_columns.h).
 constexpr std::array<std::string_view, reading_columns.size()> position_columns{"gauge_mm", "gauge_deg",
                                                                                 "gauge_rad"};
 constexpr std::size_t column_count = 3;
 constexpr std::size_t needed_columns = 2;
 
-/// Finds the column of the readings among the column names of a file. Returns the index of its name in
-/// reading_columns.
+/// Searches the column names of a file for a column of positions or of readings. Returns the index of this
+/// column in position_columns or reading_columns, which determines the unit. Returns 0 (mm) if there is no
+/// such column.
 std::size_t reading_column_in(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < reading_columns.size(); ++i) {
     const bool here = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
@@ -101,7 +102,7 @@ class GaugeReader {
     if (cells.size() != count_ || !closed) {
       report_.add(
           "row", {number, 1}, line,
-          std::to_string(cells.size()) + " cells where the header has " + std::to_string(count_),
+          std::to_string(cells.size()) + " cells, but the header has " + std::to_string(count_),
           cells.size() == 2 * count_ ? "if the numbers have a decimal comma, use a decimal point" : "");
       return;
     }
@@ -154,7 +155,8 @@ class GaugeReader {
   std::vector<GaugeReading> readings_;
 };
 
-/// Returns the largest round step with which the span contains at least `fewest_planned` positions.
+/// Returns the largest step from a list of round numbers with which at least `fewest_planned` positions lie
+/// within the span.
 double round_step(double span) {
   const double most = span / static_cast<double>(fewest_planned - 1);
   const double decade = std::pow(10.0, std::floor(std::log10(most)));
@@ -211,7 +213,7 @@ std::vector<double> planned_positions(double largest_reading_mm) {
   const double step = round_step(span);
   const auto last = static_cast<int>(std::ceil(span / step - 1e-9));
   for (int i = 0; i <= last; ++i) {
-    // Rounding errors are removed from the decimal values, because users read these values.
+    // Users read these values, so rounding errors in the last decimals are removed.
     up.push_back(std::copysign(std::round(1e6 * step * i) / 1e6, largest_reading_mm) + 0.0);
   }
   std::vector<double> all = up;

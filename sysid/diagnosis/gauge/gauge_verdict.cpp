@@ -15,17 +15,19 @@
 namespace softgrip::sysid {
 namespace {
 
-/// One of the causes between which a gauge check decides: a named cause or a cause that may replace it.
+/// A cause that may explain one effect: the named cause, or another cause in its place. The gauge check
+/// decides between these causes.
 struct Standing {
   Cause cause;
   StructureFit fit;
-  /// True: the logs do not list this cause as an alternative, but the gauge check may add it.
+  /// True: the logs do not list the cause as an alternative; the gauge check may add it.
   bool implied = false;
 };
 
-/// A possible explanation of the logs. For each named cause, it contains this cause or a replacement.
+/// A possible explanation of the logs, with one cause for each named cause: either the named cause itself or
+/// its replacement.
 struct Explanation {
-  /// for each named cause, the index of the cause that is used: the named cause or a replacement
+  /// for each named cause, the index of the cause that this explanation contains
   std::vector<std::size_t> standing;
   std::size_t shape = 0;
 };
@@ -57,7 +59,8 @@ class Weighing {
     const GaugeScales scales = gauge_scales(data_.records, question_.noise_mm);
     explain(false);
     evidence_.check = check_gauge(question_.file.readings, shapes_, scales);
-    // A cause that the logs ruled out is considered only if no other cause explains the gauge readings.
+    // If at least one explanation fits the gauge readings, causes that the logs do not list are not
+    // considered.
     const std::size_t left_by_logs = shapes_.size();
     if (evidence_.check.outcome == GaugeOutcome::unexplained) explain(true);
     if (shapes_.size() > left_by_logs)
@@ -76,7 +79,7 @@ class Weighing {
     for (const Cause& cause : sensor_counterparts(chosen.cause)) {
       if (std::find(others.begin(), others.end(), cause) == others.end()) others.push_back(cause);
     }
-    // A gauge check is relevant only if one of the causes is a nonlinear or a saturated sensor.
+    // A gauge check has an influence only if one of the causes is a nonlinear or saturated sensor.
     std::vector<Cause> all = others;
     all.push_back(chosen.cause);
     const bool matters =
@@ -98,8 +101,9 @@ class Weighing {
     return fit_without_cause(data_.records, selection_.extended, selection_.chosen[place].cause);
   }
 
-  /// Lists every combination in which each named cause is kept or replaced, and the resulting sensor shapes.
-  /// @param with_implied  true: include replacements that the logs do not list as alternatives.
+  /// Lists every combination in which each named cause is kept or replaced, and the sensor shapes of these
+  /// combinations.
+  /// @param with_implied  true: replacements are included even if the logs do not list them as alternatives.
   void explain(bool with_implied) {
     std::vector<std::size_t> at(places_.size(), 0);
     explanations_.clear();
@@ -141,11 +145,12 @@ class Weighing {
     return shapes_.size() - 1;
   }
 
-  /// Returns true if at least one explanation with this cause is not ruled out by the gauge readings.
-  /// @param place  index of the named cause. @param standing  index of the cause that is used for it.
-  [[nodiscard]] bool survives(std::size_t place, std::size_t standing) const {
+  /// Returns true if the gauge readings permit at least one explanation that contains this cause.
+  /// @param place  index of the named cause.
+  /// @param candidate  index of the cause that the explanation contains in its place.
+  [[nodiscard]] bool survives(std::size_t place, std::size_t candidate) const {
     return std::any_of(explanations_.begin(), explanations_.end(), [&](const Explanation& e) {
-      return e.standing[place] == standing && !evidence_.check.fits[e.shape].ruled_out;
+      return e.standing[place] == candidate && !evidence_.check.fits[e.shape].ruled_out;
     });
   }
 
@@ -176,8 +181,9 @@ class Weighing {
     replace(now);
   }
 
-  /// Reduces the alternatives of a named cause to those that the gauge readings permit. If the gauge check
-  /// has put a new cause first, the cause that the logs named becomes an alternative to the new cause.
+  /// Removes those alternatives of a named cause that contradict the gauge readings. The gauge check may have
+  /// added a cause that the logs did not list. In this case, the added cause comes first, and the cause that
+  /// the logs named becomes its alternative.
   void keep(std::size_t place, const std::vector<std::size_t>& left, bool brought_in) {
     ChosenCause& chosen = selection_.chosen[place];
     const std::vector<Standing>& standing = places_[place];
@@ -185,7 +191,7 @@ class Weighing {
     for (const Cause& alternative : chosen.alternatives) {
       const auto fitted = std::find_if(standing.begin(), standing.end(),
                                        [&](const Standing& s) { return s.cause == alternative; });
-      // An alternative that was not fitted could not be tested, so it is kept.
+      // An alternative that was not fitted was not tested, so it is kept.
       const bool stays = fitted == standing.end() ||
                          std::find(left.begin() + 1, left.end(),
                                    static_cast<std::size_t>(fitted - standing.begin())) != left.end();
@@ -193,10 +199,11 @@ class Weighing {
     }
     if (brought_in) {
       alternatives.push_back(chosen.cause);
-      warnings_.push_back("the logs name " + std::string(chosen.cause.id) +
-                          ", but the gauge contradicts this cause. The gauge indicates " +
+      warnings_.push_back("the logs indicate " + std::string(chosen.cause.id) +
+                          ", but the gauge readings contradict this cause. The gauge readings indicate " +
                           std::string(standing[left.front()].cause.id) +
-                          ", which explains these logs less well. Check that nothing was changed between the "
+                          ", but this cause explains the logs less well than the first cause. Check that "
+                          "nothing was changed between the "
                           "logs and the gauge check");
     }
     chosen.alternatives = std::move(alternatives);
@@ -226,7 +233,7 @@ class Weighing {
     evidence_.replaced = true;
     if (!left_too_much && leaves_too_much(selection_.left, selection_.base_unexplained, question_.noise_mm)) {
       warnings_.push_back(
-          "the gauge has located the nonlinearity, but the block of the catalogue for this nonlinearity "
+          "the gauge check shows which component is nonlinear, but the model block for this nonlinearity "
           "leaves an unexplained error of " +
           with_unit(selection_.left.excess_mm));
     }
@@ -255,7 +262,7 @@ class Weighing {
     return "over " + significant(positions.front(), 3) + " to " + significant(positions.back(), 3) + unit();
   }
 
-  /// Describes the deviation of a nonlinear sensor from a straight line.
+  /// Returns a description of the deviation of the sensor from a straight line.
   [[nodiscard]] std::string bend_in_words() const {
     const GaugeCheck::Departure departure = evidence_.check.departure();
     if (!departure.clips) return "nonlinear by up to " + with_unit(departure.largest_mm);
@@ -263,7 +270,7 @@ class Weighing {
     return "saturated at " + significant(end.shape.at(1e6), 3) + unit();
   }
 
-  /// Returns true if the logs alone do not determine the shape of the sensor.
+  /// Returns true if the logs alone do not decide between different shapes of the sensor.
   [[nodiscard]] bool is_asked() const {
     return std::any_of(places_.begin(), places_.end(), [](const std::vector<Standing>& standing) {
       return std::any_of(standing.begin(), standing.end(), [&](const Standing& s) {
@@ -275,15 +282,16 @@ class Weighing {
   [[nodiscard]] std::string sentence_decided() const {
     const GaugeFit& best = evidence_.check.fits[evidence_.check.best];
     if (best.shape.blocks.empty()) {
-      return "The gauge check shows a linear sensor " + covered() + ", within " + with_unit(best.rms_mm) +
-             ": the finger or a contact causes the nonlinearity of these readings, not the sensor.";
+      return "The gauge check shows that the sensor is linear " + covered() + ", within " +
+             with_unit(best.rms_mm) +
+             ". The finger or a contact therefore causes the nonlinearity in these logs, not the sensor.";
     }
     return "The gauge check shows that the sensor is " + bend_in_words() +
-           ", as the nonlinearity in these logs requires, within " + with_unit(best.rms_mm) +
-           ": the sensor is the cause, not the finger.";
+           ". This nonlinearity agrees with the nonlinearity in these logs within " + with_unit(best.rms_mm) +
+           ", so the sensor is the cause, not the finger.";
   }
 
-  /// Returns the sentence on the result of the check if more than one sensor shape remains possible.
+  /// Returns the sentence on the result of the check if several sensor shapes remain possible.
   [[nodiscard]] std::string sentence_open(bool bent) const {
     const GaugeCheck& check = evidence_.check;
     std::string left, out;
@@ -291,18 +299,20 @@ class Weighing {
       std::string& list = fit.ruled_out ? out : left;
       list += (list.empty() ? "" : ", ") + in_words(fit.shape);
     }
-    const std::string besides = out.empty() ? "" : " It rules out: " + out + ".";
+    const std::string besides = out.empty() ? "" : " The gauge check rules out: " + out + ".";
     if (check.outcome != GaugeOutcome::unexplained) {
-      return "The gauge check does not decide between the explanations. Its readings fit these explanations "
+      return "The gauge check does not decide between the explanations. The gauge readings fit these "
+             "explanations "
              "equally well: " +
              left + " (" + with_unit(check.noise_mm) +
-             " of noise). Take readings up to the largest reading of the logs and beyond it, take more "
-             "readings, or use a better gauge." +
+             " of noise in the gauge readings). Take gauge readings beyond the largest reading of the logs, "
+             "take more gauge readings, or use a more accurate gauge." +
              besides;
     }
     return "The gauge check contradicts all explanations of these logs" +
-           (bent ? ": the sensor is " + bend_in_words() +
-                       ", but not in the form that the nonlinearity in these logs requires."
+           (bent ? ". The sensor is " + bend_in_words() +
+                       ", but the shape of this nonlinearity does not agree with the nonlinearity in these "
+                       "logs."
                  : std::string(".")) +
            besides;
   }
@@ -311,7 +321,7 @@ class Weighing {
     const GaugeCheck& check = evidence_.check;
     if (check.outcome == GaugeOutcome::uncovered) {
       evidence_.sentence =
-          "The gauge check is not conclusive: its readings cover only " +
+          "The gauge check is not conclusive, because its readings cover only " +
           significant(100 * check.covered_share, 2) +
           " % of the range of the readings in these logs. Check that the sensor follows the target.";
       warnings_.push_back(evidence_.sentence);
@@ -328,20 +338,20 @@ class Weighing {
       evidence_.sentence = sentence_open(bent);
     } else {
       evidence_.sentence = bent ? "The gauge check shows that the sensor is " + bend_in_words() + "."
-                                : "The gauge check shows a linear sensor " + covered() + ".";
+                                : "The gauge check shows that the sensor is linear " + covered() + ".";
     }
     if (!settled && bent) add_sensor_alternatives();
     if (bent && check.fits[check.best].shape.blocks.empty()) tell_of_bend();
     if (asked_ && !settled && check.outcome == GaugeOutcome::unexplained) {
-      warnings_.push_back("the gauge readings fit no explanation of these logs (" +
-                          with_unit(check.fits[check.best].rms_mm) +
-                          " remain with the best explanation, but the noise of the gauge readings is " +
-                          with_unit(check.noise_mm) + "), so the verdict remains open");
+      warnings_.push_back(
+          "the gauge readings fit no explanation of these logs (" + with_unit(check.fits[check.best].rms_mm) +
+          " is the RMS error of the best explanation, but the noise of the gauge readings is only " +
+          with_unit(check.noise_mm) + "), so the gauge check does not change the verdict");
     }
   }
 
-  /// Adds alternatives if the sensor is nonlinear but no named cause describes this nonlinearity. A named
-  /// cause with a nonlinearity in another component gets the sensor causes as alternatives.
+  /// Adds the sensor causes as alternatives to named causes in other components. It is called if the sensor
+  /// is nonlinear and no named cause describes this nonlinearity.
   void add_sensor_alternatives() {
     for (ChosenCause& chosen : selection_.chosen) {
       if (!chosen.alternatives.empty() || chosen.cause.is_static_sensor()) continue;

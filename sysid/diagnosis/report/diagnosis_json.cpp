@@ -40,7 +40,7 @@ Json cause_json(const NamedCause& named, const Budget& budget) {
   return json;
 }
 
-/// Returns the model of the dynamics between the command and the measured pressure as JSON.
+/// Returns the model of the path from the command to the measured pressure as JSON.
 Json valve_json(const ValveFindings& in_valve) {
   const ValveStage& stage = in_valve.stage;
   return {{"delay_s", stage.delay_s},
@@ -50,7 +50,7 @@ Json valve_json(const ValveFindings& in_valve) {
           {"noise_kpa", in_valve.noise_kpa}};
 }
 
-/// Returns the error budget as JSON. Its values are mean squares of held-out readings.
+/// Returns the error budget as JSON. The values are mean square errors on held-out readings.
 Json budget_json(const Diagnosis& d, const Budget& budget) {
   Json causes = Json::object();
   for (const NamedCause& named : d.causes) causes[std::string(named.cause.id)] = spread(named.gain_mm2);
@@ -167,7 +167,8 @@ Json gauge_json(const GaugeEvidence& gauge) {
                                   {"zero_mm", fit.zero_mm},
                                   {"scale", fit.scale}});
   }
-  // This nonlinearity of the sensor is determined from the gauge readings alone, without the logs.
+  // The deviation of the sensor from a straight line is determined from the gauge readings alone; the logs
+  // are not used.
   const GaugeCheck::Departure departure = check.departure();
   json["sensor_alone"] = {{"straight_rms_mm", check.straight.rms_mm},
                           {"bent_rms_mm", check.free_bend.rms_mm},

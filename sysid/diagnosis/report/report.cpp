@@ -25,11 +25,11 @@ Tone tone_of(Verdict verdict) {
   return Tone::bad;
 }
 
-/// Maximum number of parameters per cause that the first part of the report lists.
+/// Largest number of parameters per cause in the first part of the report.
 constexpr std::size_t parameters_shown = 6;
 
-/// Returns a list of terms that describes the data of the diagnosis. The hashes of the logs are in the
-/// appendix.
+/// Returns a list of terms that describe the data of the diagnosis. The hashes of the logs are not part of
+/// this list; they are in the appendix.
 Terms looked_at(const DiagnosisReport& report) {
   const Diagnosis& d = report.result;
   std::size_t samples = 0;
@@ -54,12 +54,14 @@ void add_next(Page& page, const DiagnosisReport& report) {
   page.list(report.advice);
   if (!report.next_experiment) return;
   const ProposedExperiment& next = *report.next_experiment;
-  page.paragraph(
-      "Next experiment: " + (next.waveform.empty() ? "" : next.waveform + ". ") + "It separates " +
-      with_commas(next.separates) + ": the responses of these explanations differ by " +
-      significant(next.predicted_separation_sigma, 3) +
-      " standard deviations of the noise, after each explanation is refitted to the response of the other. " +
-      significant(next.rig_minutes, 2) + " minutes of motion on the rig; sequence file: " + next.file + ".");
+  page.paragraph("Next experiment: " + (next.waveform.empty() ? "" : next.waveform + ". ") +
+                 "This experiment separates " + with_commas(next.separates) +
+                 ". Even if each of these explanations is refitted to the response of the other explanation, "
+                 "their responses differ by " +
+                 significant(next.predicted_separation_sigma, 3) +
+                 " standard deviations of the noise. The experiment takes " +
+                 significant(next.rig_minutes, 2) +
+                 " minutes of motion on the rig; sequence file: " + next.file + ".");
 }
 
 void add_found(Page& page, const DiagnosisReport& report) {
@@ -78,12 +80,12 @@ void add_found(Page& page, const DiagnosisReport& report) {
   page.figure(error_figure(d, logs_by_gain(d).front()));
   if (const auto looped = first_with_loops(d)) page.figure(loops_figure(d, *looped));
   if (!report.closed_loop) return;
-  // If there is only the curve of the PID controller, the figure contains no information about the models and
-  // is left out.
+  // A figure with the PID controller alone shows nothing about the models, so it is left out.
   if (report.closed_loop->schemes.size() > 1) {
     page.figure(closed_loop_figure(*report.closed_loop));
   } else {
-    page.paragraph("The closed loop uses no model (" + report.closed_loop->reference + "):");
+    page.paragraph("No controller with a model was simulated in closed loop (" +
+                   report.closed_loop->reference + "):");
   }
   page.list(report.closed_loop->notes);
 }

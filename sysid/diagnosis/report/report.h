@@ -1,7 +1,7 @@
 #pragma once
-// Writes a diagnosis as an HTML page. Its first sentence is for technicians, and the rest is for readers who
-// check the result.
-// Writes diagnosis.json in the documented format.
+// Writes a diagnosis as an HTML page. The first sentence of the page is for technicians. The rest of the page
+// is for readers who check the result.
+// Converts a diagnosis to the content of diagnosis.json. docs/reference documents the keys.
 
 #include <cstdint>
 #include <optional>
@@ -17,7 +17,7 @@
 
 namespace softgrip::sysid {
 
-/// An experiment that separates causes that the logs cannot separate.
+/// A proposed experiment. It separates causes that explain the logs equally well.
 struct ProposedExperiment {
   std::string file;                    ///< name of the sequence file in the folder of the report
   std::vector<std::string> separates;  ///< ids of the causes that the experiment separates
@@ -26,10 +26,12 @@ struct ProposedExperiment {
   std::string waveform;  ///< description of the waveform
 };
 
-/// Simulated tracking of a reference trajectory. The feedforward of each scheme uses a different model.
+/// Simulated tracking of a reference trajectory with several control schemes. Each scheme uses a different
+/// model for its feedforward, or no model.
 struct ClosedLoopCurves {
   struct Scheme {
-    /// "PID alone", "recalibrated model" or "extended model"; the name determines the line style.
+    /// "PID alone", "recalibrated model" or "extended model". The name determines the line style in the
+    /// figure.
     std::string name;
     double rmse_mm = 0;
     std::vector<double> displacement_mm;  ///< displacement at the times in `time_s`
@@ -37,7 +39,7 @@ struct ClosedLoopCurves {
   std::string reference;  ///< description of the reference trajectory
   std::vector<double> time_s;
   std::vector<double> reference_mm;
-  std::vector<Scheme> schemes;  ///< at most three schemes; the best one comes last
+  std::vector<Scheme> schemes;  ///< at most three schemes; the scheme with the best model comes last
   std::vector<std::string> notes;
   model::OutputUnit output_unit = model::OutputUnit::mm;
 };
@@ -49,14 +51,14 @@ struct DiagnosisReport {
   const model::Model& given;
   std::uint64_t seed = 1;
   std::optional<ProposedExperiment> next_experiment;
-  std::vector<std::string> advice;  ///< proposed measurements, one sentence each
+  std::vector<std::string> advice;  ///< proposed measurements; each element is one sentence
   std::optional<ClosedLoopCurves> closed_loop;
 };
 
-/// Returns the page for report.html.
+/// Returns the report as an HTML page.
 [[nodiscard]] Page diagnosis_page(const DiagnosisReport& report);
 
-/// Returns the content of diagnosis.json. `next_experiment` is null until add_experiment() replaces it.
+/// Returns the content of diagnosis.json. The key `next_experiment` is null until add_experiment() sets it.
 [[nodiscard]] nlohmann::ordered_json json_of(const Diagnosis& diagnosis);
 
 }  // namespace softgrip::sysid

@@ -16,8 +16,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Maximum number of logs for which the report contains figures. It includes the log that the first part of
-/// the report shows.
+/// Largest number of logs that the report shows in figures. The log in the first part of the report is one of
+/// them.
 constexpr std::size_t logs_shown = 3;
 
 void add_other_logs(Page& page, const Diagnosis& d) {
@@ -37,13 +37,15 @@ void add_conditions(Page& page, const Diagnosis& d) {
   const ResidualEvidence& e = d.evidence->recalibrated;
   page.subsection("Conditions");
   page.table(condition_table(*d.evidence, is_extended(d)));
-  page.paragraph("The correlation time of the residual is " + significant(e.memory_s, 2) +
-                 " s. The tests therefore apply random signs to whole blocks of " +
-                 significant(e.block_s, 3) + " s (" + std::to_string(e.blocks) +
-                 " blocks) and count how often the means differ as much by chance. The share of each "
-                 "condition is evaluated on blocks that are not used for the means. If conditions are "
-                 "correlated, their shares overlap. A dependence is significant if p < 0.02 and the "
-                 "condition explains at least 5 % of the residual variance beyond the noise.");
+  page.paragraph(
+      "The correlation time of the residual is " + significant(e.memory_s, 2) +
+      " s. The tests therefore apply random signs to whole blocks of " + significant(e.block_s, 3) + " s (" +
+      std::to_string(e.blocks) +
+      " blocks). The tests count how often  random signs give differences between the means that are as "
+      "large as the measured differences. The means are computed from one part of the blocks, and "
+      "the share of each condition is evaluated on the other blocks. If conditions are "
+      "correlated, their shares overlap. A dependence is significant if p < 0.02 and the "
+      "condition explains at least 5 % of the residual variance beyond the noise.");
   if (e.spectrum.why_not.empty() && !is_clear(e.spectrum.p_value, e.spectrum.share_percent))
     page.figure(spectrum_figure(d));
 }
@@ -92,7 +94,7 @@ void add_appendix(Page& page, const DiagnosisReport& report) {
   add_conditions(page, report.result);
   add_model(page, report);
   add_sources(page, report);
-  if (report.result.records.size() > 1) page.subsection("The other logs");
+  if (report.result.records.size() > 1) page.subsection("Figures of the other logs");
   add_other_logs(page, report.result);
 }
 

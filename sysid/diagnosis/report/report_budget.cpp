@@ -22,7 +22,8 @@ std::string letter(std::size_t i) {
   return {static_cast<char>('A' + static_cast<char>(i))};
 }
 
-/// Returns a mean square as text, such as "0.012 mm²". The unit is the square of the unit of the readings.
+/// Returns a mean square as text, for example "0.012 mm²". The unit is the square of the unit of the
+/// readings.
 std::string square_text(double mm2, model::OutputUnit unit) {
   return significant(mm2, 3) + model::in_unit(" mm\xc2\xb2", unit);
 }
@@ -31,15 +32,16 @@ std::string amount(double mm2, double whole_mm2, model::OutputUnit unit) {
   return square_text(mm2, unit) + ", " + fixed(100 * mm2 / whole_mm2, 1) + " %";
 }
 
-/// Draws the error of the given model as a bar. A second bar below it shows the error after the refit at a
-/// larger scale. Returns the vertical position of the top of the second bar. The title of the second bar is
-/// placed above the second bar, between the connecting lines.
+/// Draws the error of the given model as a bar, with connecting lines to a second bar below. The second bar
+/// shows the error after the refit, at a larger scale. The title of the second bar is above it, between the
+/// lines. Returns the vertical position of the top of the second bar.
 double given_bar(Canvas& canvas, const Budget& budget, model::OutputUnit unit, double top) {
   const double kept = std::clamp(budget.recalibrated / budget.as_given, 0.0, 1.0);
   const double split = right - kept * (right - left);
   canvas.words({left, top - 6}, Anchor::start,
                "Given model, mean square error " + square_text(budget.as_given, unit) +
-                   ": refitted parameters explain " + fixed(100 * (1 - kept), kept < 0.01 ? 1 : 0) + " %");
+                   ": refitted parameters explain " + fixed(100 * (1 - kept), kept < 0.01 ? 1 : 0) +
+                   " % of this error");
   canvas.box(left, top, split - left, bar_px / 2, Colour::grid);
   canvas.box(split, top, right - split, bar_px / 2, Colour::axis);
   const double below = top + bar_px / 2, spread = below + fan_px, bar = spread + line_px + 4;
@@ -91,10 +93,10 @@ std::vector<BudgetPart> budget_parts(const Diagnosis& d) {
                      significant(gain.lower, 3) + " to " + significant(gain.upper, 3)});
   }
   const double together = taken - scale * one_by_one;
-  // A part below 0.1 % of the bar would not be visible.
+  // A part with less than 0.1 % of the total would not be visible in the bar, so it is left out.
   if (together > 1e-3 * budget.recalibrated)
-    parts.push_back({d.causes.empty() ? (d.base.empty() ? "Explained, but by causes that are not reported"
-                                                        : "Another structure")
+    parts.push_back({d.causes.empty() ? (d.base.empty() ? "Explained by causes that are not reported"
+                                                        : "Explained by another model structure")
                                       : "Explained only by the combination of several causes",
                      together, Colour::muted, ""});
   const double noise = std::min(budget.noise, budget.recalibrated - taken);

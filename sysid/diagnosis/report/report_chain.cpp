@@ -24,7 +24,7 @@ double box_width(std::size_t boxes) {
   return (width_px - 2 * ends_px - (count - 1) * gap_px) / count;
 }
 
-/// Returns the name of a parameter without its unit: "alpha_mm_per_kpa" gives "alpha".
+/// Returns the name of a parameter without its unit, for example "alpha" for "alpha_mm_per_kpa".
 std::string without_unit(std::string name, std::string_view unit) {
   std::string tail = "_";
   for (const char c : unit) {
@@ -55,7 +55,7 @@ std::vector<std::string> lines_of(const model::BlockSpec& block, model::OutputUn
   return lines;
 }
 
-/// Returns the number of boxes per row of the diagram that leaves enough space for the texts in the boxes.
+/// Returns the number of boxes in a row of the diagram for which the texts fit into the boxes.
 std::size_t boxes_in_a_row(const model::Model& model) {
   double widest = 0;
   for (const model::BlockSpec& block : model.blocks) {

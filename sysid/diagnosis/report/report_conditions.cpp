@@ -10,7 +10,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// Draws the bins of one group as points, with intervals if `whiskers` is true.
+/// Adds the mean errors of one group to a chart. If `whiskers` is true, adds their confidence intervals too.
 void add_bins(Chart& chart, const ConditionEvidence& e, std::size_t group, const std::string& label,
               Colour colour, bool whiskers) {
   Series means, intervals;
@@ -74,14 +74,14 @@ Chart condition_chart(const ConditionEvidence& recalibrated, const ConditionEvid
 
 Figure conditions_figure(const Diagnosis& d) {
   constexpr std::size_t most = 4;
-  Figure figure{
-      "error by condition",
-      "Mean error with its 95 % interval for each condition on which it significantly depends. "
-      "The position is that of the prediction, because a reading and its error contain the same noise." +
-          std::string(is_extended(d) ? " Dashed: extended model. Where the dashed curve is flat, "
-                                       "the extended model explains the dependence."
-                                     : ""),
-      {}};
+  Figure figure{"error by condition",
+                "Mean error with its 95 % interval for each condition on which the error depends "
+                "significantly. A position is a predicted displacement and not a reading, because a reading "
+                "and its error contain the same noise." +
+                    std::string(is_extended(d) ? " Dashed: extended model. Where the dashed curve is flat, "
+                                                 "the extended model explains the dependence."
+                                               : ""),
+                {}};
   std::size_t charts = 0;
   for (const ConditionEvidence& e : d.evidence->recalibrated.conditions) {
     if (!e.condition.why_not.empty() || !e.clear || charts == most) continue;

@@ -15,7 +15,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A model that the figures show.
+/// A model whose curves the figures show, with its label and line style.
 struct Shown {
   const char* label;
   Colour colour;
@@ -30,13 +30,13 @@ std::vector<Shown> shown(const Diagnosis& d) {
   return list;
 }
 
-/// Returns the fit of the final model of a diagnosis: the extended model if there is one, otherwise the
-/// recalibrated model.
+/// Returns the fit of the final model of a diagnosis. This is the extended model. If the diagnosis has no
+/// extended model, it is the refitted model.
 const StructureFit& final_fit(const Diagnosis& d) {
   return is_extended(d) ? d.extended : d.recalibrated;
 }
-/// Returns the fit with which the figures compare the final model: the recalibrated model if the diagnosis
-/// extended the model, otherwise the given model.
+/// Returns the fit with which the figures compare the final model. If the diagnosis extended the model, this
+/// is the refitted model; otherwise it is the given model.
 const StructureFit& first_fit(const Diagnosis& d) {
   return is_extended(d) ? d.recalibrated : d.as_given;
 }
@@ -68,7 +68,7 @@ Series curve_of(const Shown& model, const std::vector<double>& x, const std::vec
   return series;
 }
 
-/// A rectangle in the plane of pressure and displacement.
+/// A rectangular section of a chart with pressure and displacement as axes.
 struct Window {
   double lower_kpa, upper_kpa, lower_mm, upper_mm;
 
@@ -81,9 +81,9 @@ std::vector<double> prediction(const StructureFit& fit, const Record& record, st
   return predict(fit.point.model, record, fit.point.starts[k]);
 }
 
-/// Returns a window around the sample at which the predictions `first` and `final` differ most. The window
-/// covers a tenth of the pressure range. Its height is large enough to show the difference between the
-/// predictions.
+/// Returns a window around the sample with the largest difference between the predictions `first` and
+/// `final`. The window covers 10 % of the pressure range. Its height is at least 2.4 times the largest
+/// difference.
 Window window_of(const Record& record, const std::vector<double>& first, const std::vector<double>& final) {
   std::size_t at = 0;
   double most = 0;
@@ -102,7 +102,8 @@ Window window_of(const Record& record, const std::vector<double>& first, const s
   return {kpa - half_kpa, kpa + half_kpa, mm - half_mm, mm + half_mm};
 }
 
-/// Returns the lowest and the highest value of the curves in a chart, extended by a margin of 4 %.
+/// Returns the lowest and the highest value of the curves in a chart. A margin of 4 % of the range is
+/// subtracted and added.
 std::pair<double, double> reach_of(const Chart& chart) {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
@@ -118,7 +119,7 @@ std::pair<double, double> reach_of(const Chart& chart) {
   return {lowest - margin, highest + margin};
 }
 
-/// Returns the part of a curve that lies inside the window. Points outside the window become gaps.
+/// Returns the part of a curve within the window. A point outside the window is replaced by a gap.
 Series within(Series series, const Window& window) {
   for (std::size_t i = 0; i < series.x.size(); ++i) {
     if (!window.holds(series.x[i], series.y[i])) series.y[i] = std::numeric_limits<double>::quiet_NaN();
@@ -159,13 +160,13 @@ std::optional<std::size_t> first_with_loops(const Diagnosis& d) {
 
 Figure error_figure(const Diagnosis& d, std::size_t k) {
   const Record& record = d.records[k];
-  // If the error of the given model exceeds that of the recalibrated model by this factor, its curve would
-  // compress the scale of the other curves.
+  // Ratio of the errors of the given and the refitted model above which the given model is not drawn. Its
+  // curve would compress the scale for the other curves.
   constexpr double far_off = 4;
   const bool given_far_off = std::sqrt(mean_square(d.as_given.residual_mm[k])) >
                              far_off * std::sqrt(mean_square(d.recalibrated.residual_mm[k]));
   Chart values, before, after;
-  // The titles of the charts name the quantities, so the axis labels contain only the unit.
+  // The titles of the charts state the quantities. The axis labels therefore contain only the units.
   const std::string unit(model::name_of(record.output_unit));
   values.title = record.name + ": " + model::in_unit("displacement", record.output_unit);
   values.y.label = before.y.label = after.y.label = "[" + unit + "]";
@@ -199,8 +200,8 @@ Figure error_figure(const Diagnosis& d, std::size_t k) {
       record.name +
           ": measured and predicted displacement, and the difference between reading and prediction. RMSE: " +
           numbers + "." +
-          (given_far_off ? " The error of the given model is not drawn, because it is too large for the "
-                           "scale of the figure."
+          (given_far_off ? " The error of the given model is not drawn, because this error is too large for "
+                           "the scale of the figure."
                          : "") +
           (d.outliers.present ? " Outliers are omitted." : ""),
       stacked(std::move(charts))};
@@ -225,8 +226,8 @@ Figure runs_figure(const Diagnosis& d) {
   chart.marks.push_back({Mark::Direction::horizontal, d.noise_mm, "noise of the readings"});
   return {"error by run",
           std::string("RMSE of each ") + (d.records.size() > 1 ? "run" : "half of the run") +
-              ", predicted by a model that was fitted to the other logs or halves. The given model is not "
-              "fitted.",
+              ". For each value, the recalibrated and the extended model were fitted to the other logs or to "
+              "the other half of the log. The given model was not fitted.",
           {{chart}}};
 }
 
@@ -244,7 +245,7 @@ Figure loops_figure(const Diagnosis& d, std::size_t k) {
   zoom.x.upper = window.upper_kpa;
   zoom.y.lower = window.lower_mm;
   zoom.y.upper = window.upper_mm;
-  zoom.title = "where the models differ most";
+  zoom.title = "enlarged: largest difference between the models";
   const Series measured = curve("measured", Colour::measured, 2.2, record.drive_kpa, record.reading_mm);
   whole.series.push_back(measured);
   zoom.series.push_back(within(measured, window));
@@ -282,7 +283,7 @@ Figure closed_loop_figure(const ClosedLoopCurves& curves) {
   values.series.push_back(curve("reference", Colour::measured, 2.4, curves.time_s, curves.reference_mm));
   std::string numbers;
   for (const ClosedLoopCurves::Scheme& scheme : curves.schemes) {
-    // A model has the same line style in all figures, even if a figure does not show all models.
+    // Each model keeps its line style in all figures, even if a figure shows only some of the models.
     const bool extended = scheme.name.starts_with("extended");
     const bool recalibrated = scheme.name.starts_with("recalibrated");
     const Colour colour = extended ? Colour::good : recalibrated ? Colour::model : Colour::other;
@@ -298,7 +299,7 @@ Figure closed_loop_figure(const ClosedLoopCurves& curves) {
   }
   return {"closed loop",
           "In closed loop, " + curves.reference + ". RMSE: " + numbers +
-              ". The controller gains of each scheme come from the same search.",
+              ". The controller gains of all schemes were found with the same search method.",
           stacked({values, errors})};
 }
 
@@ -318,14 +319,14 @@ Figure spectrum_figure(const Diagnosis& d) {
   if (is_extended(d)) add(models[2], d.evidence->extended);
   const SpectrumEvidence& s = d.evidence->recalibrated.spectrum;
   if (!s.frequency_hz.empty()) {
-    // This is the spectral density of white noise that has the standard deviation of the noise and extends to
-    // half the sampling rate.
+    // Spectral density of white noise. Its standard deviation is the noise of the readings, and it extends
+    // from 0 to half the sampling rate.
     const double density = d.noise_mm * d.noise_mm / s.frequency_hz.back();
     chart.marks.push_back({Mark::Direction::horizontal, density, "noise of the readings"});
   }
   return {"spectrum of the error",
           is_clear(s.p_value, s.share_percent)
-              ? "Spectrum of the error. Strongest line that is not in the command: " +
+              ? "Spectrum of the error. Strongest spectral line that is not in the command: " +
                     significant(s.peak_hz, 4) + " Hz, amplitude " + significant(s.peak_amplitude_mm, 2) +
                     " " + std::string(model::name_of(d.extended_model.output_unit)) + " (p " +
                     significant(s.p_value, 2) + ")."

@@ -25,7 +25,8 @@ constexpr double top_px = 34;
 struct Row {
   std::string name;
   bool alternative = false;
-  /// Error reduction by the cause; nullptr: no command separates this cause from the cause in the row above.
+  /// Error reduction by the cause; nullptr: no interval of the reduction was computed. An example is a cause
+  /// that no command separates from the named cause.
   const Spread* gain = nullptr;
   double inclusion = 0;
 };
@@ -118,7 +119,8 @@ Figure forest_figure(const Diagnosis& d) {
           std::string("Reduction of the held-out error by each cause, with 95 % interval. ") +
               "Inclusion frequency: share of bootstrap resamples in which the model with the cause predicts "
               "better than the model without the cause." +
-              (alternatives ? " Hollow: an alternative that these logs cannot separate from the cause above."
+              (alternatives ? " Hollow symbol: alternative that these logs cannot separate from the cause in "
+                              "the row above."
                             : ""),
           {},
           std::move(drawing)};

@@ -11,7 +11,7 @@ namespace softgrip::sysid {
 namespace {
 
 std::string title_of(const GaugeFit& fit) {
-  return fit.shape.blocks.empty() ? "linear sensor" : fit.shape.id() + " nonlinearity as fitted to the logs";
+  return fit.shape.blocks.empty() ? "linear sensor" : fit.shape.id() + " as fitted to the logs";
 }
 
 Colour colour_of(std::size_t hypothesis) {
@@ -52,7 +52,7 @@ Chart gauge_chart(const GaugeEvidence& gauge) {
     return series;
   };
   Chart chart;
-  chart.x.label = model::in_unit("position by the gauge [mm]", gauge.file.output_unit);
+  chart.x.label = model::in_unit("position on the gauge [mm]", gauge.file.output_unit);
   chart.y.label = model::in_unit("reading minus best straight line [mm]", gauge.file.output_unit);
   for (std::size_t h = 0; h < check.fits.size(); ++h) {
     Series curve = beside(check.fits[h].predicted_mm);
@@ -62,7 +62,7 @@ Chart gauge_chart(const GaugeEvidence& gauge) {
     chart.series.push_back(std::move(curve));
   }
   Series points = beside(check.cut_mm);
-  points.label = "read";
+  points.label = "gauge readings";
   points.style = Series::Style::points;
   points.width = 2.5;
   chart.series.push_back(std::move(points));
@@ -76,7 +76,7 @@ void add_gauge_section(Page& page, const GaugeEvidence& gauge) {
   page.figure({"gauge check of the sensor",
                "Readings of the sensor at known positions (" + gauge.file.path +
                    "), relative to the straight line that fits best. Dashed: hypotheses that are ruled out. "
-                   "Only readings in slightly more than the range of the logs are used.",
+                   "The figure uses only readings within the range of the logs, widened slightly.",
                {{gauge_chart(gauge)}}});
   page.table(hypotheses_table(check, gauge.file.output_unit));
   page.paragraph("Zero and scale of every hypothesis are fitted to the readings. Noise of a reading: " +
@@ -84,7 +84,8 @@ void add_gauge_section(Page& page, const GaugeEvidence& gauge) {
                  " (readings at one position differ by " + significant(check.repeat_noise_mm, 2) +
                  "). In the comparison of two hypotheses, an error of 20 % of the difference between the "
                  "hypotheses is tolerated in addition to the noise. A hypothesis is ruled out if the most "
-                 "likely hypothesis explains the readings and is at least 1000 times as likely (" +
+                 "likely hypothesis explains the readings and is at least 1000 times as likely as this "
+                 "hypothesis (a difference of " +
                  significant(gauge_log_likelihood_needed, 2) + " in log likelihood).");
 }
 

@@ -16,7 +16,7 @@ std::string range(const Spread& s, int decimals) {
          ")";
 }
 
-/// Returns the sentence that explains why alternatives are listed for a cause.
+/// Returns the text that explains why the report lists alternatives to a cause.
 std::string alternatives_text(const NamedCause& named, const model::Model& extended) {
   std::string alike, indistinguishable;
   for (const Cause& alternative : named.alternatives) {
@@ -29,15 +29,17 @@ std::string alternatives_text(const NamedCause& named, const model::Model& exten
   std::string text;
   if (!alike.empty())
     text = "These logs cannot separate this cause from " + alike +
-           ": each of these causes explains the error equally well within one standard error. ";
+           ", because each of these causes explains the error equally well (within one standard error). ";
   if (!indistinguishable.empty())
-    text += "No command can separate this cause from " + indistinguishable +
-            ": each of these causes makes the readings nonlinear in the displacement. A better fit of one of "
-            "them therefore does not show if the nonlinearity is in the finger or in the sensor.";
+    text +=
+        "No command can separate this cause from " + indistinguishable +
+        ", because each of these causes makes the readings a nonlinear function of the displacement. A "
+        "better fit of one of these causes therefore does not show if the finger or the sensor is nonlinear.";
   return text;
 }
 
-/// Adds a paragraph that states how often the search finds a cause in simulated data that contain no cause.
+/// Adds a paragraph about the search in simulated data without a cause. The paragraph states how often the
+/// search names a cause in these data.
 void add_null_calibration(Page& page, const NullCalibration& nulls) {
   page.paragraph("The same search was applied to " + std::to_string(nulls.campaigns) +
                  " simulated data sets that contain only the recalibrated model and correlated noise. The "
@@ -51,22 +53,25 @@ void add_errors(Page& page, const Diagnosis& d) {
   page.section("Method and evidence");
   page.paragraph(
       "The given model was evaluated first, then recalibrated (same structure, all parameters fitted), then "
-      "extended cause by cause. Each model was refitted without some blocks of the logs. Its error was "
-      "evaluated on these blocks, in a simulation from the start of the log. The intervals follow from a "
+      "extended cause by cause. For the held-out error, each model was refitted without some blocks of the "
+      "logs. The error of the model was then evaluated on these held-out blocks, in a simulation from the "
+      "start of the "
+      "log. The intervals follow from a "
       "block bootstrap.");
   page.table(rmse_table(d));
   page.figure(runs_figure(d));
   if (is_extended(d) && d.extended_rmse_mm < d.recalibrated_rmse_mm)
     page.paragraph(
-        "The held-out error of the extended model is smaller than that of the recalibrated model by " +
+        "The held-out error of the extended model is smaller than the held-out error of the recalibrated "
+        "model by " +
         range(d.gain, 1) + ".");
   if (!d.recalibrated_other_logs_rmse_mm || !d.extended_other_logs_rmse_mm || !is_extended(d)) return;
   const double before = *d.recalibrated_other_logs_rmse_mm;
   const double after = *d.extended_other_logs_rmse_mm;
   if (after >= before)
     page.paragraph(
-        "The error reduction does not hold for logs that were not fitted: if whole logs are held out, the "
-        "error changes from " +
+        "The extension does not reduce the error of logs that were not fitted: if whole logs are held out, "
+        "the error changes from " +
         significant(before, 3) + " to " + significant(after, 3) + " " +
         std::string(model::name_of(d.extended_model.output_unit)) + ".");
 }
@@ -84,7 +89,8 @@ void add_evidence(Page& page, const Diagnosis& d) {
   for (const UnphysicalSign& sign : d.evidence->unphysical) signs.push_back(sign.sentence);
   if (signs.empty()) return;
   page.paragraph(
-      "The recalibration absorbed a part of the effect and made parameters of the model unphysical:");
+      "The recalibration absorbed a part of the effect that the given model lacks, and made these parameters "
+      "of the model unphysical:");
   page.list(signs);
 }
 

@@ -19,18 +19,19 @@
 
 namespace softgrip::sysid {
 
-/// One part of the mean square error of the recalibrated model.
+/// One part of the mean square error of the refitted model.
 struct BudgetPart {
   std::string name;
   double mm2 = 0;
   Colour colour = Colour::faint;
-  std::string interval;  ///< confidence interval as text, such as "0.01 to 0.02", or empty
+  std::string interval;  ///< confidence interval as text, for example "0.01 to 0.02"; empty: there is no
+                         ///< interval
 };
 
-/// Returns parts whose sum is the mean square error of the recalibrated model on held-out readings. There are
-/// four kinds of parts: the error reduction by each cause, measured by the removal of this cause; the
-/// additional reduction that only several causes together achieve; the unexplained error; and the noise. If
-/// the reductions by single causes add up to more than the reduction by all causes together, they are scaled
+/// Divides the mean square error of the refitted model on held-out readings into parts. The first parts are
+/// the error reductions by the single causes; each one is measured by the removal of this cause. The next
+/// part is the reduction that only several causes together achieve. The last parts are the unexplained error
+/// and the noise. If the reductions by the single causes exceed the reduction by all causes, they are scaled
 /// down in proportion.
 [[nodiscard]] std::vector<BudgetPart> budget_parts(const Diagnosis& diagnosis);
 
@@ -40,34 +41,37 @@ struct BudgetPart {
 /// parameters and hashes.
 void add_appendix(Page& page, const DiagnosisReport& report);
 
-/// Returns the block diagram of `model` from command to reading. Blocks that the model `given` does not
-/// contain are marked.
+/// Returns the block diagram of `model` from the command to the reading. A block is marked if the model
+/// `given` does not contain it.
 [[nodiscard]] Figure chain_figure(const model::Model& model, const model::Model& given);
 
-/// Returns one chart for each condition on which the error depends significantly. Each chart shows the mean
-/// error and its 95 % interval as a function of the condition. Two charts are side by side. If there is no
-/// such condition, the figure has no charts.
+/// Returns one chart for each condition on which the error depends significantly. A chart shows the mean
+/// error and its 95 % interval over the condition. Two charts are placed side by side. If the error depends
+/// on no condition, the figure contains no charts.
 [[nodiscard]] Figure conditions_figure(const Diagnosis& diagnosis);
 
-/// Returns the indices of the logs in the order of decreasing error reduction. This is the reduction by the
-/// extended model or, if there is no extended model, by the recalibrated model.
+/// Returns the indices of the logs, sorted by the error reduction, the largest first. The reduction is that
+/// by the extended model. If there is no extended model, it is the reduction by the refitted model.
 [[nodiscard]] std::vector<std::size_t> logs_by_gain(const Diagnosis& diagnosis);
-/// Returns true if the pressure changes during at least 10 % of the time. Otherwise the log contains only
-/// pressure steps, and a plot over the pressure shows no loops.
+/// Returns true if the pressure changes during at least 10 % of the duration of the log. A log with shorter
+/// changes consists of pressure steps, and a plot of the displacement over the pressure shows no loops.
 [[nodiscard]] bool has_loops(const Record& record);
-/// Returns the index of the log that comes first in logs_by_gain() and has loops (has_loops()). Returns
-/// nullopt if no log has loops.
+/// Returns the index of the first log in logs_by_gain() for which has_loops() is true. Returns nullopt if
+/// there is no such log.
 [[nodiscard]] std::optional<std::size_t> first_with_loops(const Diagnosis& diagnosis);
 
-/// Returns two charts with the same time axis. The first chart shows the measured and the predicted
-/// displacement. The second one shows the errors of two models, before and after the extension or refit.
+/// Returns two charts with a common time axis. The first chart shows the measured and the predicted
+/// displacement. The second chart shows the errors of the model before and after the extension. If the model
+/// was not extended, it shows the errors before and after the refit.
 [[nodiscard]] Figure error_figure(const Diagnosis& diagnosis, std::size_t record);
-/// Returns the error of each available model on each run. The models were fitted to the other runs.
+/// Returns the error of each available model on each run. For the error on a run, the model was fitted to the
+/// other runs.
 [[nodiscard]] Figure runs_figure(const Diagnosis& diagnosis);
-/// Returns two charts of the displacement over the pressure: the complete loops, and the region where the
-/// models differ most.
+/// Returns two charts of the displacement over the pressure. The first chart shows the complete loops. The
+/// second chart shows the section in which the models differ most.
 [[nodiscard]] Figure loops_figure(const Diagnosis& diagnosis, std::size_t record);
-/// Returns two charts: the reference with the tracked displacements, and the tracking errors.
+/// Returns two charts. The first chart shows the reference and the displacements that the schemes reach. The
+/// second chart shows the tracking errors.
 [[nodiscard]] Figure closed_loop_figure(const ClosedLoopCurves& curves);
 [[nodiscard]] Figure spectrum_figure(const Diagnosis& diagnosis);
 
@@ -75,8 +79,8 @@ void add_appendix(Page& page, const DiagnosisReport& report);
 /// must contain at least one named cause or partial explanation.
 [[nodiscard]] Figure forest_figure(const Diagnosis& diagnosis);
 
-/// Returns a chart of the readings and the predictions of the hypotheses over the gauge position. The
-/// straight line that fits the readings best is subtracted from the readings and from the predictions.
+/// Returns a chart of the gauge readings and of the predictions of all hypotheses over the gauge position.
+/// The chart shows deviations from the straight line that fits the readings best.
 [[nodiscard]] Chart gauge_chart(const GaugeEvidence& gauge);
 
 /// Adds the section about the gauge check to the page.
@@ -86,26 +90,27 @@ void add_gauge_section(Page& page, const GaugeEvidence& gauge);
 /// which these errors depend, reasons for the named causes, and limitations of the data.
 void add_reached(Page& page, const DiagnosisReport& report);
 
-/// Returns a percentage with its interval as text: "41.2 (33.6 to 46.6)".
+/// Returns a percentage with its interval as text, for example "41.2 (33.6 to 46.6)".
 [[nodiscard]] std::string percent_range(const Spread& share);
-/// Returns the errors of the given, the recalibrated and the extended model on all readings, on held-out
-/// blocks and on held-out logs.
+/// Returns a table of the errors of the given, the refitted and the extended model. The errors are evaluated
+/// on all readings, on held-out blocks and on held-out logs.
 [[nodiscard]] Table rmse_table(const Diagnosis& diagnosis);
-/// Returns a table with one row per condition. For each available model, it states the share of the residual
-/// variance that the condition explains, and the p-value.
+/// Returns a table with one row per condition. For each available model, a row states the p-value and the
+/// share of the residual variance that the condition explains.
 [[nodiscard]] Table condition_table(const Evidence& evidence, bool extended);
-/// Returns one table per cause with the candidates that were tested as its replacement. The last table
-/// contains the candidates that were tested as an additional cause.
+/// Returns one table of candidates per named cause, and a last table. The candidates in the table of a cause
+/// were tested as its replacement. The candidates in the last table were tested as an additional cause.
 [[nodiscard]] std::vector<Table> candidate_tables(const Diagnosis& diagnosis);
-/// Returns the errors of the models on each run. The models were fitted to the other runs.
+/// Returns a table of the errors of the models on each run. For the error on a run, the model was fitted to
+/// the other runs.
 [[nodiscard]] Table run_table(const Diagnosis& diagnosis);
 /// Returns the causes that the first part of the report shows. These are the named causes, and the partial
-/// explanations whose error reduction is significantly above zero.
+/// explanations whose error reduction is significantly greater than zero.
 [[nodiscard]] std::vector<const NamedCause*> shown_causes(const Diagnosis& diagnosis);
-/// Returns the parameters of the shown causes with their intervals. If a cause has more than `most`
-/// parameters, the table lists only the first ones that have an interval.
+/// Returns a table of the parameters of shown_causes() with their intervals. If a cause has more than `most`
+/// parameters, the table lists only the first parameters with an interval.
 [[nodiscard]] Table cause_parameter_table(const Diagnosis& diagnosis, std::size_t most);
-/// Returns the parameters of the given, the recalibrated and the extended model.
+/// Returns a table of the parameters of the given, the refitted and the extended model.
 [[nodiscard]] Table moved_table(const Diagnosis& diagnosis, const model::Model& given);
 
 /// Adds the section about the valve to the page. This section requires a measured pressure.

@@ -32,15 +32,15 @@ std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double
       return "equivalent";
   }
   if (!c.why_not.empty()) return c.why_not;
-  if (std::isnan(c.heldout_rmse_mm)) return "worse fit";
+  if (std::isnan(c.heldout_rmse_mm)) return "fit much worse than the best fit";
   if (c.gain_percent.lower <= 0) return "not significant";
   if (chosen == nullptr) return "the error reduction is too small";
   return "larger error: " + significant(c.heldout_rmse_mm, 3) + " instead of " +
          significant(chosen_rmse_mm, 3) + " " + std::string(model::name_of(unit));
 }
 
-/// Returns a table of the candidates with their errors and the reason why each candidate was rejected.
-/// @param chosen  cause that the candidates were tested to replace; nullptr: they were tested as an
+/// Returns a table of the candidates with their errors and the reasons why they were rejected.
+/// @param chosen  cause that the candidates were tested to replace; nullptr: the candidates were tested as an
 /// additional cause.
 Table candidate_table(const std::vector<CandidateScore>& candidates, const NamedCause* chosen,
                       double chosen_rmse_mm, model::OutputUnit unit, std::string caption) {
@@ -120,7 +120,8 @@ Table condition_table(const Evidence& evidence, bool extended) {
                           after != nullptr ? p_text(after->p_adjusted) : dash, e.clear ? "clear" : ""});
   }
   if (extended) return table;
-  constexpr long first = 4, count = 2;  // position and number of the columns of the extended model
+  constexpr long first = 4, count = 2;  // index of the first column of the extended model, and number of its
+                                        // columns
   table.header.erase(table.header.begin() + first, table.header.begin() + first + count);
   table.numeric.erase(table.numeric.begin() + first, table.numeric.begin() + first + count);
   for (auto& row : table.rows) row.erase(row.begin() + first, row.begin() + first + count);
@@ -134,7 +135,7 @@ std::vector<Table> candidate_tables(const Diagnosis& d) {
       if (!named.candidates.empty())
         tables.push_back(candidate_table(named.candidates, &named, d.extended_rmse_mm,
                                          d.extended_model.output_unit,
-                                         "Alternatives tested for " + std::string(named.cause.id)));
+                                         "Causes tested as alternatives to " + std::string(named.cause.id)));
     }
   }
   if (!d.rejected.empty())
@@ -182,14 +183,15 @@ Table cause_parameter_table(const Diagnosis& d, std::size_t most) {
     const bool short_enough = size <= most;
     std::size_t shown = 0;
     for (const CauseParameter& p : named->parameters) {
-      // If a cause has many parameters, the table lists only parameters whose interval is determined.
+      // If a cause has more than `most` parameters, only parameters with a determined interval are listed.
       if (!short_enough && (!p.determined() || shown + 1 >= most)) continue;
       table.rows.push_back(row(*named, p));
       ++shown;
     }
     if (shown < size)
       table.rows.push_back({std::string(named->cause.title),
-                            (shown > 0 ? "and " : "none determined: ") + std::to_string(size - shown) +
+                            (shown > 0 ? "and " : "no parameter determined: ") +
+                                std::to_string(size - shown) +
                                 (shown > 0 ? " more, listed in the appendix" : " in the appendix")});
   }
   return table;
@@ -201,7 +203,7 @@ Table moved_table(const Diagnosis& d, const model::Model& given) {
   table.header = {"parameter", "unit", "given", "recalibrated"};
   table.numeric = {false, false, true, true};
   if (extended) {
-    table.header.insert(table.header.end(), {"extended", "change from given"});
+    table.header.insert(table.header.end(), {"extended", "change from the given value"});
     table.numeric.insert(table.numeric.end(), {true, true});
   } else {
     table.header.emplace_back("change");

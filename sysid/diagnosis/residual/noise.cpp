@@ -20,21 +20,21 @@ void add_third_differences(const std::vector<double>& y, std::vector<double>& si
   }
 }
 
-/// Returns the finite readings in their order. Gaps between readings are ignored.
+/// Returns the finite readings in their order of time. Missing readings are skipped.
 std::vector<double> readings_alone(std::vector<double> y) {
   y.erase(std::remove_if(y.begin(), y.end(), [](double value) { return !std::isfinite(value); }), y.end());
   return y;
 }
 
-/// Largest permitted unexplained mean square of the model with the causes, as a share of the unexplained mean
-/// square of the refitted model without causes.
+/// Limit of the unexplained mean square of the model with causes, as a share of the unexplained mean square
+/// of the refitted model without causes.
 constexpr double may_be_left = 0.15;
-/// A stricter limit for an error that is clearly above the noise. The data are then sufficient to fit the
-/// complete cause, so a large remaining error has another source. A smaller remaining error may be due to the
-/// approximate equation of the cause.
+/// A stricter limit for a remaining error far above the noise. Such data determine a complete cause well. A
+/// large remaining error must therefore have another source, but a small one may result from the approximate
+/// equation of the cause.
 struct UnexplainedLimit {
-  double noises;  ///< the limit applies if the error exceeds this multiple of the noise
-  double share;   ///< largest permitted ratio of the mean squares, used in place of may_be_left
+  double noises;  ///< multiple of the noise above which this limit applies
+  double share;   ///< limit of the ratio of the mean squares; it replaces may_be_left
 };
 constexpr std::array unexplained_limits{UnexplainedLimit{3, limits::form_error_share},
                                         UnexplainedLimit{5, 0.02}};
@@ -42,22 +42,21 @@ constexpr std::array unexplained_limits{UnexplainedLimit{3, limits::form_error_s
 }  // namespace
 
 double measured_noise_mm(const std::vector<Record>& records) {
-  // The variance of the third difference of white noise is 1 + 9 + 9 + 1 = 20 times the variance of the
-  // noise.
+  // The third difference of white noise has 1 + 9 + 9 + 1 = 20 times the variance of the noise.
   constexpr double inflation = 20.0;
   std::vector<double> sizes;
   for (const Record& record : records) {
-    // If the sensor is slower than the log, third differences are computed from consecutive readings, and
-    // gaps between readings are ignored. Four adjacent samples that all have a reading are rare in such a
-    // log.
+    // If the sensor is slower than the log, four adjacent samples with readings are rare. In this case, the
+    // third differences are computed from consecutive readings, even if samples without a reading lie between
+    // them.
     const std::vector<double> readings = readings_alone(record.reading_mm);
     const bool is_slow = 5 * readings.size() < 4 * record.reading_mm.size();
     add_third_differences(is_slow ? readings : record.reading_mm, sizes);
   }
   if (sizes.empty()) return 0;
-  // The median of quantised readings has a coarse resolution, so the noise is not estimated from the median.
-  // The median only defines a limit that excludes wrong samples and corners of the motion. A limit of 4
-  // standard deviations removes 0.1 % of the variance of a normal distribution.
+  // The noise is not estimated from the median, because the median of quantised readings has a coarse
+  // resolution. The median only defines a limit that excludes wrong samples and corners of the motion. A
+  // limit of 4 standard deviations removes 0.1 % of the variance of a normal distribution.
   std::vector<double> sorted = sizes;
   const double bound = 4 * median_of(std::span(sorted)) / 0.6745;
   double sum = 0;
@@ -96,10 +95,10 @@ UnexplainedError unexplained_error_of(const std::vector<std::vector<double>>& re
     if (pairs[lag] > 0) sum += product[lag] / pairs[lag] / mean_square;
   }
   structure.slow_correlation = sum / lags;
-  // The mean autocorrelation of white noise over 25 lags has a standard deviation of 1/sqrt(25 n) for n
-  // readings. A correlation below 1 % of the variance is not reported, even if it is significant. A residual
-  // without correlation also counts as unexplained error if its mean square exceeds the noise variance by
-  // more than the uncertainty of this variance.
+  // For n readings of white noise, the mean autocorrelation over 25 lags has a standard deviation of
+  // 1/sqrt(25 n). A correlation below 1 % of the variance does not count, even if it is significant. The mean
+  // square of the residual is a second criterion: it must not exceed the noise variance by more than the
+  // uncertainty of this variance.
   const double known_to = 4 * std::sqrt(6.0 / static_cast<double>(count));
   structure.present = structure.slow_correlation >
                           limits::negligible_share + 4 / std::sqrt(lags * static_cast<double>(count)) ||

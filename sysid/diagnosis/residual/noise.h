@@ -1,6 +1,6 @@
 #pragma once
-// Measures the noise of the readings without a model, and tests whether a residual exceeds the noise.
-// Defines the largest unexplained error with which a set of causes counts as complete.
+// Measures the noise of the readings without a model, and tests if a residual exceeds the noise.
+// Defines the largest unexplained error for which a set of causes counts as complete.
 
 #include <vector>
 
@@ -8,25 +8,27 @@
 
 namespace softgrip::sysid {
 
-/// Returns the standard deviation of the random change between consecutive samples [mm], computed from third
-/// differences. Smooth motion and single wrong samples do not contribute to the result; quantisation does.
+/// Returns the standard deviation of the random change between consecutive samples [mm]. It is computed from
+/// third differences. Smooth motion and single wrong samples do not increase the result, but quantisation
+/// does.
 [[nodiscard]] double measured_noise_mm(const std::vector<Record>& records);
 
 /// The part of a residual that exceeds the measurement noise.
 struct UnexplainedError {
-  /// Square root of (mean square of the residual - noise squared); 0 if this difference is negative.
+  /// Square root of the mean square of the residual minus the noise variance; 0 if the noise variance is
+  /// larger.
   double excess_mm = 0;
   double slow_correlation = 0;  ///< mean autocorrelation of the residual over the first 25 lags
   bool present = false;         ///< true: the residual exceeds the noise
 };
 
-/// Returns the unexplained error in a residual.
+/// Computes the unexplained error of a residual.
 /// @param residual_mm  one vector per record; NaN for samples without a reading.
 [[nodiscard]] UnexplainedError unexplained_error_of(const std::vector<std::vector<double>>& residual_mm,
                                                     double noise_mm);
 
-/// Returns true if the unexplained error `left` is too large for a complete set of causes. In this case, the
-/// data contain another effect, or the equation of a cause does not match the real effect.
+/// Returns true if the unexplained error `left` is too large for a complete set of causes. The data then
+/// contain a further effect, or the equation of a cause does not match the real effect.
 /// @param before  unexplained error of the refitted model without causes.
 [[nodiscard]] bool leaves_too_much(const UnexplainedError& left, const UnexplainedError& before,
                                    double noise_mm);

@@ -18,9 +18,9 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest distance between an outlier and the median of four neighbours, in standard deviations of the
-/// noise. For a normal reading, this distance has a standard deviation of about 1.15. It exceeds the limit
-/// less than once in 10 million readings.
+/// Smallest distance of an outlier from the median of its four neighbours, in standard deviations of the
+/// noise. For a correct reading, the distance has a standard deviation of about 1.15. It exceeds the limit in
+/// less than 1 of 10 million readings.
 constexpr double beyond = 6.0;
 
 double neighbours_median(const std::vector<double>& y, std::size_t i) {
@@ -29,26 +29,26 @@ double neighbours_median(const std::vector<double>& y, std::size_t i) {
   return 0.5 * (near[1] + near[2]);
 }
 
-/// Returns the change of the reading from the two samples before sample `i` to the two samples after it. A
-/// reading in a fast motion deviates from its neighbours because of this change, so it does not count as an
-/// outlier.
+/// Returns the change of the reading from the two samples before sample `i` to the two samples after it. In a
+/// fast motion, this change alone makes a reading deviate from its neighbours. The reading then does not
+/// count as an outlier.
 double motion(const std::vector<double>& y, std::size_t i) {
   return std::abs(0.5 * (y[i + 1] + y[i + 2]) - 0.5 * (y[i - 1] + y[i - 2]));
 }
 
-/// `reach`: largest distance of a neighbour from its reading, in samples. `fewest_neighbours`: smallest
+/// `reach`: largest distance between a reading and its neighbours, in samples. `fewest_neighbours`: smallest
 /// number of neighbours on each side.
 constexpr std::size_t reach = 3;
 constexpr std::size_t fewest_neighbours = 2;
-/// A reading is isolated if its distance from the median of its neighbours exceeds this multiple of the
-/// spread of the neighbours.
+/// Smallest distance of an isolated reading from the median of its neighbours, as a multiple of the spread of
+/// the neighbours.
 constexpr double alone = 4.0;
-/// Uncertainty of the time of a reading, in samples. It is due to clocks, latencies and the corners of a
+/// Uncertainty of the time of a reading [samples]. Its reasons are clocks, latencies and the corners of a
 /// motion.
 constexpr double timing_samples = 1.5;
 
-/// Median and spread of the neighbours of a reading or residual. The spread is the second largest distance
-/// from the median, because the neighbour with the largest distance may be an outlier.
+/// Median and spread of the neighbours of a reading or of a residual. The spread is the second largest
+/// distance from the median, because the neighbour with the largest distance may itself be an outlier.
 struct Neighbourhood {
   double median_mm = 0;
   double spread_mm = 0;
@@ -83,7 +83,7 @@ bool is_outlier(const std::vector<double>& y, std::size_t i, double noise_mm, do
   return near.known && std::abs(size) > alone * near.spread_mm;
 }
 
-/// Returns the largest change of the prediction between adjacent samples near sample i.
+/// Returns the largest change of the prediction from one sample to the next, near sample i.
 double largest_step(const std::vector<double>& y, const std::vector<double>& r, std::size_t i) {
   double largest = 0;
   for (std::size_t j = i < reach ? 1 : i - reach + 1; j <= std::min(i + reach, r.size() - 1); ++j) {
@@ -115,7 +115,8 @@ void weigh(OutlierEvidence& evidence, double noise_mm) {
   const double deviation = std::sqrt(std::max(0.0, fourth / count - square / count * square / count) / count);
   evidence.size_low_mm = std::sqrt(std::max(0.0, square / count - z * deviation));
   evidence.size_high_mm = std::sqrt(square / count + z * deviation);
-  // Noise alone does not exceed the limit `beyond`, but a knock on the table can cause a few outliers.
+  // Noise alone causes no outliers above the limit `beyond`, but a knock on the table can cause a few.
+  // Therefore a minimum number of outliers is required.
   evidence.distorts = evidence.excess_mm > limits::hidden_by_noise * noise_mm;
   evidence.present = evidence.count >= limits::fewest_occurrences && evidence.distorts;
 }
@@ -140,7 +141,7 @@ void hide_codes(Record& record, OutlierEvidence& evidence) {
   }
 }
 
-/// The finite readings of a record and the indices of their samples.
+/// The finite readings of a record, with the index of the sample of each reading.
 struct Readings {
   std::vector<std::size_t> samples;
   std::vector<double> mm;
@@ -156,9 +157,9 @@ Readings readings_of(const Record& record) {
   return readings;
 }
 
-/// Hides the first and the last readings of a record that are far from all other readings. They have too few
-/// neighbours for a comparison with neighbours. A reading of 0 is never hidden here, because a log may begin
-/// with the last readings before a step.
+/// Hides the first two and the last two readings of a record if they are far from all other readings. These
+/// readings have too few neighbours for the test of isolated readings. A reading of 0 is never hidden by this
+/// function, because a log may begin with the last readings before a step.
 void hide_far_ends(Record& record, OutlierEvidence& evidence) {
   constexpr std::size_t ends = 2;
   constexpr double far_outside = 3;
@@ -183,11 +184,11 @@ void hide_isolated(Record& record, double noise_mm, OutlierEvidence& evidence) {
 }
 
 constexpr std::size_t named_readings = 3;
-/// Lower limit of the noise as a share of the span. It applies to readings that contain almost no noise.
+/// Lower limit of the noise as a share of the span. It is used if the readings contain almost no noise.
 constexpr double least_noise_share = 1e-3;
 
-/// Returns the range between the 5 % and the 95 % quantile of the readings. Wrong readings do not affect this
-/// range.
+/// Returns the distance from the 5 % quantile to the 95 % quantile of the readings. Single wrong readings do
+/// not change this distance.
 double usual_span_mm(const Record& record) {
   std::vector<double> sorted;
   std::copy_if(record.reading_mm.begin(), record.reading_mm.end(), std::back_inserter(sorted),

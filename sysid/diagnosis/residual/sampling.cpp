@@ -10,15 +10,15 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Share that identifies a sensor with a fine resolution: its smallest changes are below this share of its
-/// typical change.
+/// Largest ratio of the smallest changes of the reading to the typical change for which the resolution of a
+/// sensor counts as fine.
 constexpr double fine_share = 0.25;
-/// The reading counts as frozen in an interval under two conditions. The interval is at least `frozen_ratio`
-/// times as long as the 95 % quantile of the intervals of equal readings. The drive changes in the interval
-/// by at least `moved_share` of its range.
+/// A reading counts as frozen if two conditions hold. An interval of equal readings is at least
+/// `frozen_ratio` times as long as the 95 % quantile of such intervals. During the interval, the drive
+/// changes by more than `moved_share` of its range.
 constexpr double frozen_ratio = 5, moved_share = 0.1;
 
-/// An interval of equal consecutive readings. Its indices refer to the vector `samples`.
+/// An interval of equal consecutive readings. `first` is an index of the vector `samples`.
 struct Stretch {
   std::size_t first = 0, length = 0;
 };
@@ -45,8 +45,8 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
-/// Returns the lengths of all intervals of equal readings except the first and the last, which may be
-/// incomplete.
+/// Returns the lengths of all intervals of equal readings [samples]. The first and the last interval may be
+/// incomplete, so they are left out.
 std::vector<double> whole_lengths(const Stretches& readings) {
   std::vector<double> lengths;
   for (std::size_t k = 1; k + 1 < readings.stretches.size(); ++k)
@@ -64,7 +64,7 @@ bool is_fine(const Record& record, const Stretches& readings) {
   return quantile(changes, 0.05) < fine_share * quantile(changes, 0.5);
 }
 
-/// Returns the number of samples per new reading; 1 means that each sample is a new reading.
+/// Returns the number of samples from one new reading to the next; 1: each sample is a new reading.
 std::size_t samples_per_reading(const Record& record, const Stretches& readings) {
   const std::vector<double> lengths = whole_lengths(readings);
   if (lengths.size() < limits::fewest_events || quantile(lengths, 0.1) < 2 || !is_fine(record, readings))
@@ -87,8 +87,8 @@ bool is_frozen(const Record& record, const Stretches& readings, const Stretch& s
   return *most - *least > moved_share * (*highest - *lowest);
 }
 
-/// Returns the sum of the squared distances of the hidden readings from straight lines. Each line connects
-/// the kept readings before and after the hidden reading.
+/// Returns the sum of the squared distances between the hidden readings and straight lines. Each line
+/// connects the last kept reading before the hidden reading with the first kept reading after it.
 double squares_beside_lines(const Record& before, const Record& after) {
   double squares = 0;
   std::size_t last = after.size();

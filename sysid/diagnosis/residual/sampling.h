@@ -1,6 +1,6 @@
 #pragma once
-// Finds repeated readings and hides them from every fit. Readings are repeated if the sensor is slower than
-// the log or frozen.
+// Finds repeated readings and excludes them from every fit. Readings are repeated if the sensor is slower
+// than the log, or if the reading is frozen.
 
 #include <cstddef>
 #include <vector>
@@ -11,9 +11,9 @@ namespace softgrip::sysid {
 
 struct SamplingEvidence {
   double interval_s = 0;  ///< median time between new readings; 0: each sample is a new reading
-  double frozen_s = 0;    ///< total time in which the reading is frozen while the drive moves
-  /// Root mean square of the deviation of repeated readings from a line through the new readings, averaged
-  /// over all readings.
+  double frozen_s = 0;    ///< total time during which the reading is frozen although the drive changes
+  /// Root mean square error of all readings that the repetitions cause. The error of a repeated reading is
+  /// its distance from a line through the new readings.
   double excess_mm = 0;
   std::size_t hidden = 0, readings = 0;
   bool present = false;  ///< true: `excess_mm` exceeds a quarter of the noise

@@ -17,13 +17,13 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Number of frequency bins on each side of a peak that form its neighbourhood.
+/// Number of frequency bins on each side of a peak with which the peak is compared.
 constexpr std::size_t around = 60;
 constexpr double highest_looked_at_hz = 25;
 
-/// Returns the residuals of all records on a common grid of campaign time. A sample between two grid points
-/// is distributed to both points in proportion to its distance from them. This is accurate enough for a start
-/// value.
+/// Returns the residuals of all records on one common time grid over the campaign. A sample between two grid
+/// points is divided between both points; the nearer point gets the larger part. The accuracy is sufficient
+/// for a start value.
 std::vector<Complex> on_one_grid(const std::vector<Record>& records,
                                  const std::vector<std::vector<double>>& residual_mm, double interval_s,
                                  std::size_t size) {
@@ -43,9 +43,9 @@ std::vector<Complex> on_one_grid(const std::vector<Record>& records,
   return x;
 }
 
-/// Returns two numbers for every local maximum of the spectrum: the ratio of its power to the median power in
-/// its neighbourhood, and its bin. The largest ratio comes first. Slow model errors have no large ratio,
-/// because the power in their neighbourhood is large too.
+/// Returns two numbers for each local maximum of the spectrum: the ratio of its power to the median power of
+/// its neighbourhood, and its bin. The list is sorted by the ratio, the largest first. A slow model error has
+/// no large ratio, because it increases the power of its neighbourhood too.
 std::vector<std::pair<double, std::size_t>> peaks_of(const std::vector<double>& power, std::size_t lowest) {
   std::vector<std::pair<double, std::size_t>> peaks;
   std::vector<double> near;
@@ -71,7 +71,8 @@ std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
   }
   const double campaign_s = records.back().campaign_time_s + records.back().time_s.back() -
                             records.front().campaign_time_s - records.front().time_s.front();
-  // The length is doubled. The frequency grid is then finer than the frequency resolution of the campaign.
+  // The transform is twice as long as the campaign. The frequency grid is therefore finer than the frequency
+  // resolution of the campaign.
   const std::size_t size = std::bit_ceil(2 * static_cast<std::size_t>(campaign_s / interval_s) + 4);
   std::vector<Complex> x = on_one_grid(records, residual_mm, interval_s, size);
   std::vector<Complex> transformed;
@@ -90,8 +91,8 @@ std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
   std::vector<Line> lines;
   for (std::size_t i = 0; i < std::min(count, peaks.size()); ++i) {
     const double frequency_hz = step_hz * static_cast<double>(peaks[i].second);
-    // The phase is corrected, because time 0 of the transform is the first sample, and time 0 of the
-    // oscillation is the start of the campaign.
+    // The phase is corrected for different time origins. The transform begins at the first sample, and the
+    // oscillation is defined from the start of the campaign.
     const Complex amplitude = 2 / readings * transformed[peaks[i].second] *
                               std::polar(1.0, -2 * std::numbers::pi * frequency_hz * began_s);
     lines.push_back({frequency_hz, -amplitude.imag(), amplitude.real()});

@@ -17,8 +17,8 @@ namespace {
 
 constexpr FitEffort alone{.most_iterations = 40, .tolerance = 1e-6};
 
-/// Returns the share of the variance of the readings that the fit explains. The share is negative if the mean
-/// of the readings fits better than the model.
+/// Returns the share of the variance of the readings that the fit explains. The share is negative if the fit
+/// has a larger error than a constant prediction by the mean of the readings.
 double explained_share(const std::vector<Record>& records, const StructureFit& fit) {
   double sum = 0, squares = 0, count = 0;
   for (const Record& record : records) {
@@ -34,7 +34,8 @@ double explained_share(const std::vector<Record>& records, const StructureFit& f
   return variance > 0 ? 1 - fit.mean_square_mm2 / variance : 0;
 }
 
-/// Returns the ratio of the measured motion of a log to the motion that a model predicts.
+/// Returns the gain between the predicted and the measured motion of a log: the slope of a linear regression
+/// of the readings on the prediction.
 double relative_gain(const Record& record, const std::vector<double>& prediction_mm) {
   double count = 0, p = 0, y = 0, pp = 0, py = 0;
   for (std::size_t i = 0; i < record.size(); ++i) {
@@ -50,7 +51,7 @@ double relative_gain(const Record& record, const std::vector<double>& prediction
   return gain > 0.1 ? gain : 1;
 }
 
-/// Returns the model with the motion of its actuator multiplied by `gain`.
+/// Returns the model after the motion of its actuator is multiplied by `gain`.
 model::Model amplified(model::Model model, double gain) {
   if (const auto at = model::position_of<model::BoucWen>(model)) {
     model.blocks[*at].values[0] *= gain;
@@ -62,13 +63,13 @@ model::Model amplified(model::Model model, double gain) {
   return model;
 }
 
-/// Returns the RMSE over all logs after the structure was fitted to each log separately. Each fit starts at
-/// the common fit to all logs.
+/// Fits the structure to each log separately, starting at the common fit to all logs. Returns the RMSE of
+/// these fits over all logs.
 double rmse_apart_mm(const std::vector<Record>& records, const StructureFit& fit) {
   double squares = 0, count = 0;
   for (std::size_t k = 0; k < records.size(); ++k) {
     std::vector<Record> one{records[k]};
-    // The sensor zero is fitted for each log, because it differs between rigs.
+    // The sensor zero is fitted for each log, because logs from different rigs have different zeros.
     one.front().offset_free = true;
     const double gain = relative_gain(records[k], predict(fit.point.model, records[k], fit.point.starts[k]));
     const FitPoint from{fit.point.model, {fit.point.starts[k]}};
@@ -90,7 +91,7 @@ std::optional<std::string> inconsistent_among(const std::vector<Record>& records
   if (!(apart_mm * apart_mm < limits::equal_error_share * together_mm2)) return std::nullopt;
   const std::string unit(model::name_of(records.front().output_unit));
   return "after recalibration on each log separately, the error of the model is " + significant(apart_mm, 2) +
-         " " + unit + ", but after recalibration on all logs together " +
+         " " + unit + ", but after recalibration on all logs together, the error is " +
          significant(std::sqrt(together_mm2), 2) + " " + unit +
          ". Check that all logs come from one rig and that the rig was not changed between the logs";
 }

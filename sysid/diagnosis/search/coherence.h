@@ -1,5 +1,5 @@
 #pragma once
-// Tests whether a model can explain the logs, and whether one model can fit all logs together.
+// Tests if a model can explain the logs, and if one set of parameters fits all logs together.
 
 #include <optional>
 #include <string>
@@ -15,10 +15,10 @@ namespace softgrip::sysid {
                                                        const StructureFit& recalibrated);
 
 /// Returns a warning if the logs are inconsistent, for example because they come from two rigs or because the
-/// rig was changed between two logs. Logs are inconsistent if fits of each log alone leave at most 10 % of
-/// the mean square that a common fit leaves.
-/// @param together_mm2  mean square of the common fit with the causes that were found. The causes are
-/// included, because a drift also makes logs inconsistent but is explained by a cause.
+/// rig was changed between two logs. The structure is fitted to each log separately. The logs are
+/// inconsistent if the mean square error of these fits is below 10 % of `together_mm2`.
+/// @param together_mm2  mean square error of a common fit with all causes that were found. It includes the
+/// causes because a drift, for example, makes logs differ, but is explained by a cause.
 [[nodiscard]] std::optional<std::string> inconsistent_among(const std::vector<Record>& records,
                                                             const StructureFit& recalibrated,
                                                             double together_mm2);

@@ -1,6 +1,6 @@
 #pragma once
-// Fits a structure to a campaign. A structure consists of a base structure and of blocks. Each of these
-// blocks models a possible cause.
+// Fits a structure to a campaign. A structure consists of a base structure and additional blocks. Each
+// additional block models a possible cause of the model error.
 
 #include <cstddef>
 #include <vector>
@@ -14,7 +14,7 @@ namespace softgrip::sysid {
 
 /// A model structure with its fitted parameters.
 struct StructureFit {
-  /// Causes in the order in which they were added; empty: the base structure alone.
+  /// Causes in the order in which they were added to the base structure; empty: the structure has no causes.
   std::vector<Cause> causes;
   FitPoint point;
   /// Reading minus prediction, one vector per record; NaN for samples without a reading.
@@ -27,45 +27,48 @@ struct StructureFit {
 struct FitEffort {
   int most_iterations = 40;
   double tolerance = 1e-8;
-  bool hold_starts = false;  ///< true: each record keeps its initial state from the start point
+  bool hold_starts = false;  ///< true: the initial state of each record stays the same as at the start point
+                             ///< of the fit
 };
 
-/// Returns the indices of the parameters that a fit of this structure changes, in the list of all parameters.
-/// In the base structure, these are all parameters except exponents, fixed values and, if the hysteresis has
-/// an instantaneous gain, k0. In the other blocks, the forms of the causes define these parameters.
+/// Returns the indices of the parameters that a fit of this structure changes. The indices refer to the list
+/// of all parameters. In the base structure, the exponents and fixed values are not changed. k0 is not
+/// changed if the hysteresis has an instantaneous gain. In the blocks of causes, the forms of the causes
+/// define which parameters are changed.
 [[nodiscard]] std::vector<std::size_t> fitted_indices(const model::Model& model,
                                                       const std::vector<Cause>& causes);
 
-/// Returns the fit space of this structure. The forms of the causes define the ranges of their parameters.
+/// Returns the parameter space in which this structure is fitted. The forms of the causes limit the ranges of
+/// their parameters.
 [[nodiscard]] FitSpace structure_space(const std::vector<Record>& records, const model::Model& model,
                                        const std::vector<Cause>& causes);
 
-/// Returns a fit space that contains the parameters of one cause, within the ranges of the cause's form. All
+/// Returns a parameter space with the parameters of one cause. The form of the cause limits their ranges. All
 /// other parameters are fixed.
 [[nodiscard]] FitSpace cause_space(const std::vector<Record>& records, const FitPoint& point,
                                    const Cause& cause);
 
-/// Fits the structure to all readings of `records` by least squares, starting at `from`.
+/// Fits the structure to all readings of `records` by least squares. The fit starts at `from`.
 [[nodiscard]] StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause> causes,
                                          const FitPoint& from, const FitEffort& effort = {});
 
-/// Evaluates the structure at `point` without a fit.
+/// Computes the residual of the structure at `point`. Nothing is fitted.
 [[nodiscard]] StructureFit evaluate_structure(const std::vector<Record>& records, std::vector<Cause> causes,
                                               const FitPoint& point);
 
-/// Fits the unknown initial states of the records to all readings. The parameters of the model do not change.
+/// Fits only the unknown initial states of the records. The parameters of the model stay constant.
 [[nodiscard]] StructureFit fit_starts(const std::vector<Record>& records, std::vector<Cause> causes,
                                       const FitPoint& point);
 
-/// Subtracts the effects of these causes from the readings and returns the resulting records. The effects are
+/// Returns the records after the effects of these causes are subtracted from the readings. The effects are
 /// computed with the model of `point`.
 [[nodiscard]] std::vector<Record> without_effects(std::vector<Record> records, const FitPoint& point,
                                                   const std::vector<Cause>& causes);
 
-/// Removes one cause from the structure without a refit. The result keeps the residuals of the fit with the
-/// cause.
+/// Removes one cause from the model and from the list of causes. The remaining structure is not refitted, so
+/// the result keeps the residuals of the fit with the cause.
 [[nodiscard]] StructureFit without_cause(StructureFit fit, const Cause& cause);
-/// Removes one cause from the structure and refits the remaining structure, starting at its current
+/// Removes one cause from the structure and refits the remaining structure. The refit starts at the current
 /// parameters.
 [[nodiscard]] StructureFit fit_without_cause(const std::vector<Record>& records, const StructureFit& fit,
                                              const Cause& cause);

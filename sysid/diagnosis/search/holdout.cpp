@@ -14,22 +14,23 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Effort of the refits. They keep the initial states of the logs, which are not part of the model structure.
-/// If the first block of a log is held out, its initial state would otherwise be undetermined, and the
-/// simulation of the other blocks would start at an arbitrary state.
+/// Effort of the refits. The initial states of the logs stay fixed. Otherwise, the initial state of a log
+/// would be undetermined if the first block of the log is held out. The simulation of all later blocks would
+/// then start at an arbitrary state.
 constexpr FitEffort refit{.most_iterations = 8, .tolerance = 1e-6, .hold_starts = true};
 
 /// Damping of the Gauss-Newton step, as a share of the diagonal elements of the normal matrix.
 constexpr double block_damping = 1e-3;
 
-/// Rows of the Jacobian for the readings in a block, and for readings near the block that are also excluded
-/// from the fit.
+/// Ranges of Jacobian rows that belong to a block. The rows `first` to `last` are the readings in the block.
+/// The rows `hidden_first` to `hidden_last` are the readings that are excluded from the fit. The excluded
+/// readings include some readings near the block.
 struct BlockRows {
   Eigen::Index first, last, hidden_first, hidden_last;
 };
 
 std::vector<BlockRows> rows_of(const std::vector<Record>& records, const Division& division) {
-  // For each sample i, the number of readings before this sample.
+  // For each sample, the number of readings in all earlier samples and records.
   std::vector<std::vector<Eigen::Index>> before(records.size());
   Eigen::Index row = 0;
   for (std::size_t k = 0; k < records.size(); ++k) {
@@ -66,7 +67,7 @@ BlockLosses held_out_losses(const std::vector<Record>& records, const Division& 
 BlockLosses left_out_losses(const std::vector<Record>& records, const Division& by_unit,
                             const StructureFit& fit) {
   return held_out_losses(records, by_unit, [&](const std::vector<Record>& rest) {
-    // If only the unit that is left out contains readings, no fit is possible.
+    // No fit is possible if all readings belong to the cross-validation unit that is left out.
     const bool is_fitted =
         std::any_of(rest.begin(), rest.end(), [](const Record& r) { return r.readings > 0; });
     FitPoint point = is_fitted ? fit_structure(rest, fit.causes, fit.point, refit).point : fit.point;
@@ -98,7 +99,7 @@ BlockLosses linear_held_out_losses(const std::vector<Record>& records, const Div
   for (std::size_t fold = 0; fold < division.folds; ++fold) {
     Eigen::MatrixXd normal = whole;
     Eigen::VectorXd right = gradient;
-    // end of the rows that were removed for earlier blocks; the rows of two blocks may overlap
+    // end of the rows that were already removed; the excluded rows of two blocks may overlap
     Eigen::Index done = 0;
     for (std::size_t b = 0; b < rows.size(); ++b) {
       if (division.blocks[b].fold != fold) continue;

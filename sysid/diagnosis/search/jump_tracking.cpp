@@ -17,14 +17,14 @@ namespace {
 
 constexpr std::size_t most_tracks = 40;
 constexpr std::size_t most_jump_targets = 24;
-/// A path is removed if its squared error exceeds that of the best path by more than this multiple of the
-/// squared resolution (converted to mm).
+/// A path is removed if its squared error exceeds the squared error of the best path by more than a limit.
+/// The limit is this number times the squared resolution, converted from kPa to mm.
 constexpr double hopeless_resolutions = 4000;
-/// Number of samples without a jump after which the paths are compared. The paths are also compared after
-/// each jump.
+/// Number of samples after which the paths are compared if there is no jump. After a jump, the paths are
+/// compared at once.
 constexpr std::size_t look_again = 32;
-/// The time of a jump counts as well resolved if the command changes in its sample by less than this share of
-/// the band.
+/// Limit for the change of the command during the sample of a jump, as a share of the band. At a larger
+/// change, the time of the jump is not well resolved.
 constexpr double slow_share = 0.2;
 
 constexpr std::size_t no_jump = std::numeric_limits<std::size_t>::max();
@@ -34,7 +34,7 @@ struct Jump {
   double held_kpa = 0;
   double distance_kpa = 0;
   bool resolved = false;
-  std::size_t before = no_jump;  ///< index of the jump before this jump
+  std::size_t before = no_jump;  ///< index of the previous jump of this path
 };
 
 struct Track {
@@ -44,8 +44,8 @@ struct Track {
   std::size_t last = no_jump;
 };
 
-/// A list of tracks that avoids memory allocation. A removed track keeps its memory, and the next added track
-/// is copied into it.
+/// A list of tracks that reuses memory. The memory of a removed track is kept, and the next track that is
+/// added is copied into it.
 class Tracks {
  public:
   void clear() { count_ = 0; }
@@ -60,7 +60,7 @@ class Tracks {
       all_[count_] = track;
     return all_[count_++];
   }
-  /// Moves `track` into the list. After the call, `track` has a valid but unspecified value.
+  /// Moves `track` into the list. The value of `track` is unspecified after the call.
   Track& take(Track& track) {
     if (count_ == all_.size())
       all_.push_back(track);
@@ -70,13 +70,13 @@ class Tracks {
   }
 
  private:
-  std::vector<Track> all_;  ///< tracks; only the first `count_` of them are in use
+  std::vector<Track> all_;  ///< tracks in use (the first `count_`) and unused memory
   std::size_t count_ = 0;
 };
 
-/// Removes the whole samples from a transport delay and returns their number. The readings show a jump only
-/// after this number of samples. Until then, the readings do not distinguish a path with the jump from a path
-/// without it.
+/// Removes the whole samples from the transport delay of the model and returns their number. A jump is
+/// visible in the readings only after this number of samples. Before, the readings cannot distinguish a path
+/// with the jump from a path without the jump.
 std::size_t take_whole_samples(model::Model& model, const Record& record) {
   model::BlockSpec* delay = model::find_block<model::TransportDelay>(model);
   if (delay == nullptr || record.sample_time_s <= 0) return 0;
@@ -149,8 +149,8 @@ class JumpTracker {
     if (!std::isnan(error)) track.cost_mm2 += error * error;
   }
 
-  /// Returns the possible positions of the valve after a jump from the position `held`. During the sample of
-  /// the jump, the command changes from `from` to `to`.
+  /// Returns the possible positions of the valve after a jump. The valve jumps from the position `held` while
+  /// the command changes from `from` to `to`.
   const std::vector<double>& jump_targets_of(double held, double from, double to) {
     jump_targets_.clear();
     if (from == to) {
@@ -171,21 +171,22 @@ class JumpTracker {
     return jump_targets_;
   }
 
-  /// Removes all paths except the best ones, and keeps one path per position.
+  /// Keeps the best paths and removes all others. If several paths have the same valve position, keeps only
+  /// one of them.
   void prune() {
     order_.resize(next_.size());
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     std::sort(order_.begin(), order_.end(),
               [&](std::size_t a, std::size_t b) { return next_[a].cost_mm2 < next_[b].cost_mm2; });
     const double least_mm2 = next_[order_.front()].cost_mm2;
-    is_beaten_ = least_mm2 > worth_mm2_;  // the sum of squares does not decrease with additional samples
+    is_beaten_ = least_mm2 > worth_mm2_;  // further samples can only increase the sum of squares
     const double most_mm2 = least_mm2 + give_up_mm2_;
     tracks_.clear();
     for (const std::size_t at : order_) {
       Track& track = next_[at];
       if (tracks_.size() >= most_tracks || track.cost_mm2 > most_mm2) break;
-      // Paths with equal positions continue in the same way, so only the best of them is kept. The limited
-      // number of paths then covers different positions.
+      // Paths with the same valve position have the same future, so only the best one is kept. The limited
+      // number of paths then covers more positions.
       const bool duplicate = std::ranges::any_of(tracks_.span(), [&](const Track& kept) {
         return std::abs(kept.held_kpa - track.held_kpa) < resolution_kpa_;
       });
@@ -211,7 +212,8 @@ class JumpTracker {
 
   const Record& record_;
   double band_kpa_, resolution_kpa_, worth_mm2_;
-  std::size_t seen_later_ = 0;  ///< number of samples from a jump to the first reading that shows this jump
+  std::size_t seen_later_ = 0;  ///< number of samples from a jump to the first reading in which the jump is
+                                ///< visible
   double give_up_mm2_ = 0;
   bool is_beaten_ = false;
   std::vector<double> start_mm_;

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int look_iterations = 15;
 
-/// Residuals as a function of the parameters of one cause. The base structure has already absorbed as much of
-/// these residuals as its parameters can.
+/// Residuals as a function of the parameters of one cause. The part that the parameters of the base structure
+/// can absorb is removed from these residuals.
 class ResidualsBesideBase final : public Residuals {
  public:
   ResidualsBesideBase(const Scan& base, const std::vector<Record>& records, const FitSpace& of_the_cause)

@@ -20,26 +20,27 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Limit for candidates after the medium fit, as a multiple of the smallest mean square of all candidates. A
-/// candidate with a larger mean square has no chance, because the refit of a base structure absorbs at most
+/// Largest mean square of a candidate after the medium fit, as a multiple of the smallest mean square of all
+/// candidates. A candidate above this limit is dropped, because a refit of the base structure absorbs at most
 /// about half of the effect of a cause.
 constexpr double hopeless_ratio = 4;
-/// Number of rounds of alternating fits. Each round fits the base structure with the cause fixed, and then
-/// the cause with the base structure fixed.
+/// Number of rounds of the alternating fit. In each round, the base structure is fitted while the cause is
+/// fixed, and then the cause is fitted while the base structure is fixed.
 constexpr int turns = 2;
-/// Trial values for the share of the linear response that the parameters of the base structure make to a
-/// cause. The fit starts at the best share. For a strongly nonlinear base structure, the full response is too
-/// large.
+/// Trial shares of the linear response of the base structure to a cause. The fit starts at the share with the
+/// smallest error. If the base structure is strongly nonlinear, the full response is too large.
 constexpr std::array answers{1.0, 0.5, 0.2, 0.0};
-/// Limit of the mean logarithm of the ratio of the block losses. Above this value, the losses count as
-/// reduced in most blocks (see LeastTaken).
+/// Limit of the mean logarithm of the ratio of the block losses (without the cause / with the cause). Above
+/// this limit, the losses count as reduced in most blocks (see LeastTaken).
 constexpr double in_most_blocks = 0.15;
-/// Play operators may compensate for a backlash if elastic_share() is at most this value.
+/// Largest elastic_share() for which a backlash is searched that the play operators may have absorbed.
 constexpr double little_elastic = 0.3;
-/// Largest number of alternatives to a named cause. If more candidates fit nearly as well, no cause is named.
+/// Largest number of alternatives to a named cause. If more candidates fit nearly as well as the best one, no
+/// cause is named.
 constexpr std::size_t most_undecided = 2;
-/// Smallest share of the remaining mean square above the noise that a further cause must remove. If the data
-/// contain a second effect, its true cause removes almost all of this mean square.
+/// Smallest reduction by a further cause, as a share of the remaining mean square above the noise. If the
+/// data contain a second effect, the true cause of this effect removes almost all of the remaining mean
+/// square.
 constexpr double most_of_the_rest = 0.6;
 
 /// A start point of a fit, and the mean square of its residual.
@@ -84,9 +85,9 @@ class SelectorUpon {
   }
 
  private:
-  /// Returns the fits of all causes that the structure does not contain, in the order of increasing mean
-  /// square. A cause with a free form has two elements: the fit of its best physical law, and the fit of its
-  /// free form.
+  /// Returns linear fits of all causes that the structure does not contain, sorted by their mean square
+  /// (smallest first). A cause with a free form has two fits: the best fit of a physical law, and the fit of
+  /// the free form.
   std::vector<std::pair<Cause, LinearFit>> linear_fits(const Scan& scan) {
     const StructureFit& current = result_.extended;
     if (!scan.usable()) return {};
@@ -96,7 +97,7 @@ class SelectorUpon {
           unanswerable(cause, scales_).empty())
         causes.push_back(cause);
     }
-    // Fits of each cause: the best fit with a physical law, and the best fit with a free form.
+    // For each cause: the best fit of a physical law, and the best fit of a free form.
     std::vector<std::array<LinearFit, 2>> best(causes.size());
     std::atomic<std::size_t> tried{0};
     parallel_for(causes.size(), data_.threads, [&](std::size_t i) {
@@ -106,7 +107,7 @@ class SelectorUpon {
         if (fit.mean_square_mm2 < of_its_kind.mean_square_mm2) of_its_kind = std::move(fit);
       }
       if (options_.progress)
-        options_.progress("another base: tested " + std::to_string(++tried) + " of " +
+        options_.progress("another model structure: tested " + std::to_string(++tried) + " of " +
                           std::to_string(causes.size()));
     });
     std::vector<std::pair<Cause, LinearFit>> list;
@@ -121,9 +122,9 @@ class SelectorUpon {
     return list;
   }
 
-  /// Fits the base structure and the last cause of `causes` alternately. Each of the two is fitted to the
-  /// readings minus the effect of the other one. This is necessary because the base structure was fitted
-  /// without the cause and has therefore absorbed part of its effect.
+  /// Fits the base structure and the last one of `causes` alternately. Each of them is fitted to the readings
+  /// minus the effect of the other one. This is necessary because the base structure was fitted without the
+  /// cause and has absorbed part of its effect.
   [[nodiscard]] FitPoint settled(Start best, const std::vector<Cause>& causes) const {
     if (!options_.base_again) return best.point;
     const Cause& cause = causes.back();
@@ -148,8 +149,8 @@ class SelectorUpon {
     return best.point;
   }
 
-  /// Fits the structure with `causes` to all readings and computes its held-out losses. The fit starts at
-  /// `best`. The last element of `causes` is the cause that was added.
+  /// Fits the structure with `causes` to all readings, starting at `best`, and computes its held-out losses.
+  /// The last element of `causes` is the new cause.
   [[nodiscard]] ScoredCandidate finished(Start best, const std::vector<Cause>& causes) const {
     ScoredCandidate one;
     one.candidate.cause = causes.back();
@@ -182,9 +183,9 @@ class SelectorUpon {
     return scored;
   }
 
-  /// Returns a fit with a backlash that starts at reduced thresholds of the play operators. A fit that starts
-  /// at the current thresholds would not reach the optimum. Returns nullopt if the play operators cannot
-  /// compensate for a backlash.
+  /// Returns a fit with a backlash. The fit starts at reduced thresholds of the play operators, because a fit
+  /// from the current thresholds would not reach the optimum. Returns nullopt if the play operators cannot
+  /// have absorbed a backlash.
   [[nodiscard]] std::optional<ScoredCandidate> play_as_backlash() const {
     const FitPoint& point = result_.extended.point;
     if (elastic_share(point.model) > little_elastic) return std::nullopt;
@@ -238,8 +239,8 @@ class SelectorUpon {
            (gain.lower > 0 || ratio.lower > 0);
   }
 
-  /// Adds the best candidate to the selection if the candidate reduces the error sufficiently and few others
-  /// fit as well. Returns true if the candidate was added.
+  /// Adds the best candidate to the selection and returns true, under two conditions. The candidate must
+  /// reduce the error sufficiently, and at most most_undecided other candidates may fit nearly as well.
   bool take(const std::vector<ScoredCandidate>& scored) {
     const ScoredCandidate& best = scored.front();
     ChosenCause chosen =
@@ -253,10 +254,9 @@ class SelectorUpon {
     return true;
   }
 
-  /// Tests for each of two selected causes if it is needed. The first cause was selected and the base
-  /// structure was fitted before the second cause was added. Therefore each cause is now fitted alone,
-  /// starting from the common fit, and compared with the fit of both causes. If a cause does not reduce the
-  /// error sufficiently, it is removed.
+  /// Tests if both of two selected causes are needed. The first cause was selected before the second one was
+  /// added. Therefore each cause is now fitted alone, starting from the common fit, and compared with the fit
+  /// of both causes. A cause that does not reduce the error sufficiently is removed.
   bool both_stay(const BlockLosses& beside_the_first) {
     const Cause first = result_.extended.causes.front(), second = result_.extended.causes.back();
     ScoredCandidate first_alone = alone(first, second);
@@ -273,13 +273,13 @@ class SelectorUpon {
     return false;
   }
 
-  /// Returns true if one of the two causes reduces the error sufficiently in addition to the other cause.
-  /// @param before  losses of the structure without this cause.
+  /// Returns true if one of two selected causes reduces the error sufficiently in addition to the other one.
+  /// @param before  losses of the structure without the cause.
   [[nodiscard]] bool is_worth_its_place(const BlockLosses& before) const {
     return is_gain(before, result_.extended_losses, further_share_mm2(before));
   }
 
-  /// Returns the fit of the structure with `cause` but without `other`. The fit starts at the common fit of
+  /// Returns a fit of the structure with `cause` and without `other`. The fit starts at the common fit of
   /// both causes.
   [[nodiscard]] ScoredCandidate alone(const Cause& cause, const Cause& other) const {
     FitPoint rest = result_.extended.point;
@@ -311,15 +311,16 @@ class SelectorUpon {
     return std::pow(rmse_mm(losses), 2) - noise_mm_ * noise_mm_;
   }
 
-  /// Returns true if the remaining error is large enough for a further cause to reach the required reduction.
+  /// Returns true if the remaining error is large enough that a further cause can achieve the required
+  /// reduction.
   [[nodiscard]] bool more_can_be_worth() const {
     const double least_mm2 = options_.least_taken.in_most_blocks * noise_mm_ * noise_mm_;
     return beyond_noise_mm2(result_.extended_losses) > std::max(least_mm2, share_worth_mm2());
   }
 
-  /// Returns true if the candidate can be named, alone or with a few alternatives. Every candidate that fits
-  /// about as well as the best candidate is an alternative. If there are too many alternatives, no cause is
-  /// named.
+  /// Returns true if the candidate can be named. Every other candidate that fits nearly as well becomes its
+  /// alternative. If there are more than most_undecided alternatives, no cause is named and the result is
+  /// false.
   [[nodiscard]] bool stands(ChosenCause& chosen, const std::vector<ScoredCandidate>& scored) const {
     const ScoredCandidate& best = scored.front();
     const auto beats = [&](const BlockLosses& losses) {
@@ -345,7 +346,8 @@ class SelectorUpon {
   const SelectionOptions& options_;
   Scales scales_;
   Selection result_;
-  std::vector<ScoredCandidate> in_first_place_;  ///< candidates that were tested as the first cause
+  std::vector<ScoredCandidate> in_first_place_;  ///< candidates that were tested when the first cause was
+                                                 ///< selected
 };
 
 }  // namespace

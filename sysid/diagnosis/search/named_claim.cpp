@@ -19,8 +19,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Returns the largest range, over all records, of the signal with the unit `unit`. Returns infinity for any
-/// other unit.
+/// Returns the largest value or range of the signal with this unit over all records. Returns infinity for a
+/// unit other than mm, kPa or s.
 double range_of(const std::vector<Record>& records, std::string_view unit) {
   double span_mm = 0, largest_kpa = 0, length_s = 0;
   for (const Record& record : records) {
@@ -58,13 +58,13 @@ void claim_size(Claim& claim, const std::vector<Record>& records, const Cause& c
     farthest = distance;
     claim.size =
         Interval{free.to_value(z[j] - half) - spec.neutral, free.to_value(z[j] + half) - spec.neutral};
-    // The neutral value of a limit, such as a saturation, is far above all signals. The distance of a fitted
-    // limit from this value has no meaning, so its size is not restricted.
+    // The neutral value of a limit, such as a saturation, is far above all signals. The distance between the
+    // fitted limit and its neutral value is therefore not a meaningful size, and it has no upper limit here.
     claim.largest_size = spec.neutral == 0 ? range_of(records, spec.unit) : infinity;
   }
 }
 
-/// Returns, for each reading in the order of the records, true if the cause must have an effect on this
+/// Returns one value per reading, in the order of the records: true if the cause must have an effect on the
 /// reading.
 std::vector<bool> required_readings(const std::vector<Record>& records, Appears appears,
                                     const StructureFit& without) {
@@ -81,12 +81,12 @@ std::vector<bool> required_readings(const std::vector<Record>& records, Appears 
   return required_at(appears, conditions);
 }
 
-/// Returns for each block two sums of squared residuals: with the cause and without it. Only readings on
-/// which the cause must have an effect are included.
+/// Returns the sums of squared residuals with and without the cause, for each block. The sums include only
+/// readings on which the cause must have an effect.
 PairedLosses losses_there(const std::vector<Record>& records, const std::vector<bool>& required,
                           const StructureFit& with, const StructureFit& without) {
   PairedLosses losses;
-  std::vector<std::size_t> before{0};  // for each record, the number of readings in the records before
+  std::vector<std::size_t> before{0};  // for each record, number of readings in all earlier records
   for (const Record& record : records) before.push_back(before.back() + record.readings);
   std::vector<std::size_t> next = before;
   for (const Block& block : divide(records, limits::block_s).blocks) {
@@ -126,7 +126,8 @@ Veto veto_of(const std::vector<Record>& records, const Cause& cause, const Struc
 bool put_nameable_first(std::vector<ScoredCandidate>& scored, const std::vector<Record>& records,
                         const StructureFit& without, const std::function<bool(const ScoredCandidate&)>& gains,
                         const LeftOutLosses& left_out, std::uint64_t seed) {
-  std::optional<BlockLosses> losses_without;  // losses without the cause; all candidates share them
+  std::optional<BlockLosses> losses_without;  // losses of the structure without the cause, which are the same
+                                              // for all candidates
   const LeftOutLosses once = [&](const StructureFit& fit) {
     if (&fit != &without) return left_out(fit);
     if (!losses_without) losses_without = left_out(without);

@@ -20,7 +20,7 @@ namespace {
 constexpr FitEffort recalibration{.most_iterations = 12, .tolerance = 1e-6};
 constexpr std::size_t burn_in = 500;
 
-/// Autoregressive model of a residual that counts as noise, and the innovations of this residual.
+/// Autoregressive model of the noise, fitted to a residual, and the innovations of this residual.
 struct Innovations {
   NoiseModel model;
   std::vector<double> samples_mm;
@@ -57,24 +57,23 @@ std::vector<double> drawn_noise(const Innovations& innovations, std::size_t coun
   return e;
 }
 
-/// Returns the records with simulated readings. Each reading is the prediction of the recalibrated model plus
-/// simulated noise.
+/// Returns the records with simulated readings: the prediction of the refitted model plus simulated noise.
 std::vector<Record> null_records(const SearchData& data, const StructureFit& recalibrated,
                                  const Innovations& innovations, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<Record> records = data.records;
   for (std::size_t k = 0; k < records.size(); ++k) {
     const std::vector<double> noise = drawn_noise(innovations, records[k].size(), random);
-    // The prediction of the model is computed as reading minus residual. Samples without a reading have no
-    // residual.
+    // The prediction is computed as reading minus residual. A sample without a reading has no residual, so
+    // its simulated reading is missing too.
     for (std::size_t i = 0; i < records[k].size(); ++i)
       records[k].reading_mm[i] += noise[i] - recalibrated.residual_mm[k][i];
   }
   return records;
 }
 
-/// Applies the search to one simulated campaign without a cause. Returns the held-out error reduction of the
-/// cause that the search names [%], or 0 if it names no cause.
+/// Simulates one campaign without a cause and searches for causes in it. Returns the held-out error reduction
+/// by the cause that the search names [%]. Returns 0 if the search names no cause.
 double searched_gain_percent(const SearchData& data, const StructureFit& recalibrated,
                              const Innovations& innovations, const Division& division, std::uint64_t seed) {
   SearchData null = make_search_data(null_records(data, recalibrated, innovations, seed), data.given.model);
@@ -84,7 +83,7 @@ double searched_gain_percent(const SearchData& data, const StructureFit& recalib
   null.scales.residual_lines = spectrum_peaks(null.records, base.residual_mm);
   SelectionOptions options;
   options.seed = seed;
-  options.most_causes = 1;  // the first cause decides whether the search names a cause
+  options.most_causes = 1;  // one cause is sufficient to decide if the search names a cause
   const double noise_mm = measured_noise_mm(null.records);
   const Selection selection = select_causes(null, std::move(base), noise_mm, division, options);
   if (selection.chosen.empty()) return 0;

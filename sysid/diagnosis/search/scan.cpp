@@ -14,13 +14,13 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Damping of the step, as a share of the diagonal elements of the normal matrix. It suppresses steps in
-/// directions that the data hardly determine.
+/// Damping of the Gauss-Newton step, as a share of the diagonal elements of the normal matrix. The damping
+/// limits steps in directions that the data hardly determine.
 constexpr double damping = 1e-3;
 constexpr double least_size = 0.7;
 constexpr double largest_size = 1.4;
 
-/// A start point, and the mean square that one of the scans predicts for this start point.
+/// A start point of a cause, and the mean square that a scan predicts for it.
 struct Judged {
   double mean_square_mm2 = 0;
   const Scan* place = nullptr;

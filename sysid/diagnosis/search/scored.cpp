@@ -38,8 +38,8 @@ ChosenCause weigh(const Cause& cause, const ChosenBetween& between,
     if (is_free_form(s)) continue;
     chosen.inclusion = std::min(chosen.inclusion, winning_share(between.with_losses, s.losses, between.seed));
     const Spread behind = mean_difference(s.losses, between.with_losses, between.seed);
-    // A stiff object in contact and a saturated sensor have nearly the same effect. Only a few readings show
-    // how far the object yields.
+    // Contact with a stiff object and a saturated sensor have nearly the same effect on the readings. They
+    // differ only in the few readings that show how far the object yields.
     const bool stops = s.candidate.cause.is_stop && cause.is_stop;
     const double negligible = (stops ? 0.02 : 0.002) * between.noise_mm * between.noise_mm;
     if (behind.value <= std::max(behind.standard_error, negligible) &&

@@ -16,21 +16,21 @@
 namespace softgrip::sysid {
 namespace {
 
-/// `coarse_fit`: effort of the fits that start at every start point. `look`: effort of a medium fit, which
-/// continues a coarse fit that may become the best candidate or an alternative.
+/// `coarse_fit`: effort of the fits from all start points. `look`: effort of a medium fit. It continues a
+/// coarse fit that may become the best candidate or an alternative.
 constexpr FitEffort coarse_fit{.most_iterations = 8, .tolerance = 1e-5};
 constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
-/// Number of causes that always get a medium fit. Each further cause gets a medium fit if the mean square of
-/// its coarse fit is below worth_a_look times the smallest mean square of all coarse fits.
+/// Number of causes that always get a medium fit. A further cause gets a medium fit if its mean square after
+/// the coarse fit is below worth_a_look times the smallest one.
 constexpr std::size_t always_looked_at = 7;
 constexpr double worth_a_look = 1.5;
 constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
-/// A form with more parameters is preferred if it reduces the mean square by at least this share.
+/// Smallest relative reduction of the mean square for which a form with more parameters is preferred.
 constexpr double more_numbers_gain = 0.02;
-/// The best limits::finalists candidates get a full fit to thinned records. Each further candidate gets this
-/// fit if its mean square is below near_enough times the smallest mean square. The best `always_finished`
-/// candidates, and each candidate below next_to_best times the smallest mean square, get a full fit to all
-/// samples.
+/// Limits that select the candidates for the more precise fits. `near_enough`: candidates after the best
+/// limits::finalists also get a full fit to thinned records if their mean square is below this multiple of
+/// the smallest one. The best `always_finished` candidates get a full fit to all samples. `next_to_best`:
+/// further candidates get this fit if their mean square is below this multiple of the smallest one.
 constexpr double near_enough = 1.4;
 constexpr std::size_t always_finished = 4;
 constexpr double next_to_best = 1.05;
@@ -43,17 +43,17 @@ void sort_and_keep(std::vector<StructureFit>& fits, std::size_t count) {
   if (fits.size() > count) fits.resize(count);
 }
 
-/// Returns scans at the points from which the search for a further cause may start.
+/// Returns one scan for each point at which the search for a further cause may start.
 std::vector<Scan> places(const SearchData& data, const StructureFit& current) {
   std::vector<Scan> scans;
   scans.emplace_back(data.glimpsed, current.causes, current.point);
-  // The search also starts at the given model. The refit may have absorbed the effect, and its parameters may
-  // then be far from the true parameters.
+  // The search starts at the given model too. The refit may have absorbed the effect of the cause, so the
+  // parameters of the refitted model may be far from the true ones.
   if (current.causes.empty()) scans.emplace_back(data.glimpsed, current.causes, data.given);
   return scans;
 }
 
-/// Returns coarse fits of one candidate to thinned records. The best fit comes first.
+/// Returns the coarse fits of one candidate to strongly thinned records. The best fit comes first.
 std::vector<StructureFit> coarse_fits(const SearchData& data, const StructureFit& current,
                                       std::span<const Scan> scans, const Cause& cause) {
   std::vector<Cause> causes = current.causes;
@@ -66,7 +66,7 @@ std::vector<StructureFit> coarse_fits(const SearchData& data, const StructureFit
   return fits;
 }
 
-/// Returns the best medium fits. Each of them starts at a coarse fit.
+/// Continues each coarse fit by a medium fit and returns the best medium fits.
 std::vector<StructureFit> looks(const SearchData& data, const std::vector<StructureFit>& from) {
   std::vector<StructureFit> fits;
   fits.reserve(from.size());
@@ -76,8 +76,9 @@ std::vector<StructureFit> looks(const SearchData& data, const std::vector<Struct
   return fits;
 }
 
-/// Returns true if `fit` has a smaller mean square than `best`. If one of the two has more parameters, it
-/// must be better by at least more_numbers_gain.
+/// Returns true if `fit` is better than `best`. With equally many parameters, the fit with the smaller mean
+/// square is better. Otherwise, the fit with more parameters is better only if its mean square is smaller by
+/// at least the share more_numbers_gain.
 bool is_better(const StructureFit& fit, const StructureFit& best) {
   double needed = 1;
   if (fit.free_parameters > best.free_parameters) needed = 1 - more_numbers_gain;
@@ -95,8 +96,8 @@ StructureFit follow(const SearchData& data, const std::vector<StructureFit>& fro
   return best;
 }
 
-/// Fits the candidates for one structure in stages of increasing effort. If a candidate is much worse than
-/// the best candidate after a stage, the next stage leaves it out.
+/// Fits the candidates for an additional cause in stages of increasing effort. Each stage leaves out the
+/// candidates that are much worse than the best candidate after the previous stage.
 class CandidateFitter {
  public:
   CandidateFitter(const SearchData& data, const StructureFit& current, const CandidateSearch& search)
@@ -120,7 +121,7 @@ class CandidateFitter {
   }
 
  private:
-  /// Returns every permitted cause that the structure does not contain.
+  /// Returns all causes that are permitted and that the structure does not contain yet.
   [[nodiscard]] std::vector<Candidate> wanted() const {
     std::vector<Candidate> list;
     for (const Cause& cause : search_.only.empty() ? all_causes() : std::span(search_.only)) {
@@ -152,8 +153,8 @@ class CandidateFitter {
     });
   }
 
-  /// Fits the best candidate completely before all other candidates, because the comparison with another
-  /// explanation needs its full fit. Returns true if the other candidates need no full fit.
+  /// Makes the full fit of the best candidate before the full fits of all others. Returns true if the other
+  /// candidates need no full fit, because another explanation of the data has a much smaller error.
   bool is_hopeless() {
     if (!search_.is_hopeless) return false;
     leader_ = ranking().front();
@@ -171,7 +172,7 @@ class CandidateFitter {
     });
   }
 
-  /// Makes the final fits of the candidates on all samples.
+  /// Makes the final fits of the candidates to all samples.
   void finish() {
     const std::vector<std::size_t> order = ranking();
     const double best = best_of(order.front());
@@ -185,7 +186,8 @@ class CandidateFitter {
 
   [[nodiscard]] double best_of(std::size_t i) const { return fits_[i].front().mean_square_mm2; }
 
-  /// Returns the indices of the candidates that have a fit, in the order of increasing mean square.
+  /// Returns the indices of the candidates with a fit. They are sorted by the mean square, the smallest
+  /// first.
   [[nodiscard]] std::vector<std::size_t> ranking() const {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < fits_.size(); ++i) {
@@ -200,9 +202,9 @@ class CandidateFitter {
   const StructureFit& current_;
   const CandidateSearch& search_;
   std::vector<Candidate> candidates_;
-  /// For each candidate, its fits to thinned records; the best fit comes first.
+  /// For each candidate, its fits to thinned records. The best fit comes first.
   std::vector<std::vector<StructureFit>> fits_;
-  /// Index of the candidate that got its full fit before all other candidates.
+  /// Index of the candidate whose full fit was made first.
   std::optional<std::size_t> leader_;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
-// Searches for causes. Every candidate is fitted together with the base structure from several start points.
-// Fits causes that can absorb part of the effect of a selected cause (Cause::confounded_with), and tests
-// whether the data require each of these causes.
+// Searches for causes. Every candidate is fitted together with the base structure, from several start points.
+// Fits causes that can absorb part of the effect of a selected cause (Cause::confounded_with). Tests if the
+// data require each of these causes in addition to the selected cause.
 
 #include <cstddef>
 #include <functional>
@@ -14,21 +14,23 @@
 
 namespace softgrip::sysid {
 
-/// The records of a campaign, complete and thinned, and their scales.
+/// The records of a measurement campaign, thinned copies of the records, and the scales of the campaign.
 struct SearchData {
   std::vector<Record> records;
-  std::vector<Record> thinned;  ///< thinned records for all fits of a candidate except the final fit
-  /// Records with fewer samples than `thinned`, from which causes are preselected.
+  std::vector<Record> thinned;  ///< thinned records; they are used for all fits of a candidate except the
+                                ///< first and the final ones
+  /// Records with half as many samples as `thinned`. They are used for the first, coarse fits of all
+  /// candidates.
   std::vector<Record> glimpsed;
   Scales scales;
   unsigned threads = 0;  ///< number of threads; 0: one per core
-  FitPoint given;        ///< given model, at which the search starts in addition to the refitted model
+  FitPoint given;        ///< given model; the search starts at this model in addition to the refitted model
 };
 
-/// Prepares the records of a campaign for the search: computes thinned copies and the scales.
+/// Prepares a campaign for the search: computes the thinned copies of the records, and the scales.
 [[nodiscard]] SearchData make_search_data(std::vector<Record> records, const model::Model& given);
 
-/// A cause and its fit. If the fit is missing, `why_not` states the reason.
+/// A cause and its fit. If the cause was not fitted, `why_not` states the reason.
 struct Candidate {
   Cause cause;
   std::optional<StructureFit> fit;
@@ -37,28 +39,28 @@ struct Candidate {
 
 struct CandidateSearch {
   std::vector<Cause> only = {};  ///< causes that are tested; empty: all causes
-  /// Called with the smallest mean square of all candidates. Returns true if the other candidates need no
-  /// full fit.
+  /// Function that receives the smallest mean square of all candidates. It returns true if the other
+  /// candidates need no full fit.
   std::function<bool(double best_mm2)> is_hopeless = {};
-  /// Called from any thread with the number of tested causes.
+  /// Function that receives the number of tested causes and the number of all causes. Any thread may call it.
   std::function<void(std::size_t tried, std::size_t of)> progress = {};
 };
 
-/// Fits the structure `current` with each cause that it does not contain, in the order of all_causes().
+/// Fits the structure `current` with one additional cause, for each cause that `current` does not contain.
+/// The results have the order of all_causes().
 [[nodiscard]] std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit& current,
                                                     const CandidateSearch& search = {});
 
-/// A structure to which one cause was added. The added cause is confounded with another cause of the
-/// structure.
+/// A structure with one additional cause. This cause is confounded with another cause of the structure.
 struct Confounded {
   Cause cause;
   StructureFit fit;
-  BlockLosses losses;  ///< losses on held-out blocks
+  BlockLosses losses;  ///< losses of the structure on held-out blocks
 };
 
-/// Adds each cause that is confounded with a cause of the structure, one at a time, and fits the resulting
-/// structure. Each fit changes all parameters together. Causes that are already part of the structure are not
-/// added.
+/// Adds each cause that is confounded with a cause of the structure, and fits the extended structure. One
+/// cause is added at a time, and all parameters are fitted together. Causes that the structure already
+/// contains are not added.
 [[nodiscard]] std::vector<Confounded> fit_confounded(const SearchData& data, const StructureFit& structure,
                                                      const Division& division);
 

@@ -15,9 +15,9 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Number of candidates whose held-out losses are computed by refits.
+/// Number of candidates whose held-out losses are computed. Each of them is refitted for each fold.
 constexpr std::size_t finalists = 4;
-/// A mean square below this multiple of the squared noise counts as explained.
+/// Mean square of the residual below which it counts as explained, as a multiple of the squared noise.
 constexpr double near_the_noise = 2;
 
 class Selector {
@@ -51,8 +51,8 @@ class Selector {
  private:
   using Scored = ScoredCandidate;
 
-  /// Fits all candidates for an additional cause of `current` and computes the held-out losses of the best
-  /// ones. Returns the candidates; the best one comes first.
+  /// Fits all candidates for an additional cause of `current`, and computes the held-out losses of the best
+  /// candidates. Returns all candidates, the best one first.
   std::vector<Scored> score(const StructureFit& current) {
     CandidateSearch search;
     if (!result_.extended.causes.empty() && options_.to_beat_mm2)
@@ -62,7 +62,7 @@ class Selector {
         const std::string number = "cause number " + std::to_string(current.causes.size() + 1);
         options_.progress(tried < of
                               ? number + ": tried " + std::to_string(tried) + " of " + std::to_string(of)
-                              : number + ": fits of the most promising candidates");
+                              : number + ": full fits of the best candidates");
       };
     }
     std::vector<Candidate> candidates = fit_candidates(data_, current, search);
@@ -89,19 +89,20 @@ class Selector {
     return scored;
   }
 
-  /// Returns true if another explanation leaves a much smaller mean square than the best further cause
-  /// leaves. If the best further cause reduces the error nearly to the noise, returns false without this
-  /// comparison.
+  /// Returns true if the best further cause leaves a much larger mean square than another explanation of the
+  /// data. Returns false without this comparison if the best further cause reduces the error nearly to the
+  /// noise.
   bool is_far_behind(double best_mm2) {
     if (best_mm2 <= near_the_noise * square(noise_)) return false;
     if (!to_beat_mm2_) to_beat_mm2_ = options_.to_beat_mm2();
     return best_mm2 > limits::comparable_ratio * *to_beat_mm2_;
   }
 
-  /// Returns true if the reduction of the losses from `before` to `after` is significant and large enough. A
-  /// further cause with a small effect must remove most of the mean square that was unexplained without it. A
-  /// cause that only compensates for the inexact equation of another cause removes less.
-  /// @param without, with  structures to which `before` and `after` belong.
+  /// Returns true if the reduction of the losses from `before` to `after` is significant and large enough.
+  /// Even a further cause with a small effect must remove most of the mean square that is unexplained without
+  /// it. A cause that only compensates for the inexact equation of another cause removes less than that.
+  /// @param without  structure with the losses `before`.
+  /// @param with  structure with the losses `after`.
   [[nodiscard]] bool is_gain(const BlockLosses& before, const BlockLosses& after, const StructureFit& without,
                              const StructureFit& with) const {
     const Spread difference = mean_difference(before, after, options_.seed);
@@ -155,7 +156,8 @@ class Selector {
     without_.clear();
   }
 
-  /// Returns the refitted structure without one of its causes. The refit is computed once and stored.
+  /// Returns the structure after one of its causes is removed and the rest is refitted. The refit is made
+  /// once and then stored.
   const StructureFit& without(std::size_t index) {
     if (result_.extended.causes.size() == 1) return result_.base;
     std::optional<StructureFit>& fit = without_[index].fit;
@@ -171,8 +173,8 @@ class Selector {
     return *losses;
   }
 
-  /// Compares each earlier cause with all other causes after a further cause was added. Replaces an earlier
-  /// cause if another cause is better.
+  /// Compares each earlier cause with all other causes. This is necessary because a further cause was added
+  /// after the selection of the earlier one. If another cause is better, it replaces the earlier cause.
   void swap_others() {
     for (std::size_t i = 0; i + 1 < result_.extended.causes.size(); ++i) {
       const Cause old = result_.extended.causes[i];
@@ -188,7 +190,7 @@ class Selector {
       best.why_not = reason_of(veto);
       if (better && veto == Veto::none) {
         take(scored.front());
-        // The new cause is now the last cause. The stored results of the other causes are no longer valid,
+        // The new cause is the last one in the list. The stored results of all other causes are invalid now,
         // because they were computed with the replaced cause.
         fresh_[result_.extended.causes.size() - 1] = std::move(scored);
         return;
@@ -197,8 +199,8 @@ class Selector {
     }
   }
 
-  /// Removes the cause with the smallest effect if this effect is not significant, for example after another
-  /// cause was replaced. Returns true if a cause was removed.
+  /// Removes the cause with the smallest effect if this effect is not significant, for example because
+  /// another cause was replaced. Returns true if a cause was removed.
   bool drop_idle_one() {
     std::size_t least = 0;
     for (std::size_t i = 1; i < result_.extended.causes.size(); ++i) {
@@ -210,9 +212,9 @@ class Selector {
     return true;
   }
 
-  /// Adds a confounded cause if it significantly reduces the loss. A small reduction is sufficient. Without
-  /// the confounded cause, the parameter of the selected cause is wrong, but the error is only slightly
-  /// larger. Returns true if a cause was added.
+  /// Adds a confounded cause if it reduces the loss significantly. A small reduction is sufficient: if a
+  /// confounded cause is missing, the parameter of the selected cause is wrong, but the error increases only
+  /// slightly. Returns true if a cause was added.
   bool add_confounded() {
     result_.undecided = fit_confounded(data_, result_.extended, division_);
     for (Confounded& one : result_.undecided) {
@@ -245,18 +247,17 @@ class Selector {
   const SelectionOptions& options_;
   Division by_unit_;
   Selection result_;
-  /// mean square that options_.to_beat_mm2 returned; not set: the function was not called
+  /// result of options_.to_beat_mm2(); not set: the function was not called
   std::optional<double> to_beat_mm2_;
-  /// The structure after removal of one of its causes. Its fit and its held-out losses are set after they
-  /// were computed.
+  /// The structure without one of its causes. Fit and held-out losses are computed when they are needed.
   struct Without {
     std::optional<StructureFit> fit;
     std::optional<BlockLosses> losses;
   };
-  /// Results of the candidates that were tested as a replacement, by the index of the replaced cause.
-  /// Outdated results are removed.
+  /// Candidates that were tested in place of a cause. Key: index of the cause. Results that are no longer
+  /// valid are removed.
   std::map<std::size_t, std::vector<Scored>> fresh_;
-  /// For each index of a cause, the structure without this cause.
+  /// The structure without one of its causes. Key: index of the cause.
   std::map<std::size_t, Without> without_;
 };
 

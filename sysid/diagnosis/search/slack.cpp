@@ -15,8 +15,8 @@ struct Operator {
   double threshold_kpa, weight_mm_per_kpa;
 };
 
-/// Returns the play operators of the model in the order of their thresholds. The list is empty if the model
-/// contains no play operators.
+/// Returns the play operators of the model in the order of increasing thresholds. Returns an empty list if
+/// the model contains no play operators.
 std::vector<Operator> operators_of(const model::Model& model) {
   std::vector<Operator> operators;
   const model::BlockSpec* const plays = model::find_block<model::PrandtlIshlinskii>(model);

@@ -1,7 +1,7 @@
 #pragma once
-// Converts part of the play operators of a model into a backlash. Play operators without an immediate
-// response to a reversal behave like different play operators in series with a backlash. In a fit, operators
-// and backlash can therefore compensate for each other.
+// Converts part of the play operators of a model into a backlash. Consider play operators that do not respond
+// at once to a reversal. They are equivalent to other play operators in series with a backlash. In a fit, the
+// operators can therefore absorb a backlash.
 
 #include <optional>
 
@@ -9,14 +9,14 @@
 
 namespace softgrip::sysid {
 
-/// Returns the weighted share of play operators with threshold 0, which follow the pressure at once, from 0
-/// to 1. The share is 1 if the model has no play operators.
+/// Returns the share of the elastic play operators (threshold 0) in the sum of all weights, from 0 to 1.
+/// Elastic operators follow the pressure at once. Returns 1 if the model has no play operators.
 [[nodiscard]] double elastic_share(const model::Model& model);
 
-/// Returns a start point of a search for a backlash. The threshold of the first operator with a positive
-/// threshold is subtracted from all thresholds, and a backlash is added behind the operators. The width of
-/// the backlash is the motion of this operator over twice its threshold. Returns nullopt if no such operator
-/// exists or if the model contains a backlash.
+/// Returns a start point for a fit with a backlash. The smallest positive threshold is subtracted from all
+/// thresholds, and a backlash is added behind the operators. The width of the backlash is twice this
+/// threshold times the weight of its operator. Returns nullopt if no threshold is positive or if the model
+/// already contains a backlash.
 [[nodiscard]] std::optional<model::Model> with_slack_as_backlash(const model::Model& model);
 
 }  // namespace softgrip::sysid

@@ -17,19 +17,20 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Ratio of neighbouring trial values of the band. The tracker tolerates a band error that is larger than the
-/// distance between neighbouring trial values.
+/// Ratio of one trial value of the band to the next smaller one. The tracker tolerates a larger error of the
+/// band than the distance between two trial values.
 constexpr double next_band = 1.3;
-/// Smallest and largest trial value of the band, as shares of the largest pressure.
+/// Smallest and largest trial value of the band, as shares of the largest pressure in the records.
 constexpr double narrowest = 0.004, widest = 0.25;
-/// Limits of the iteration that estimates the dead band and the model behind the valve alternately. It ends
-/// if the relative changes of the band and of the remaining mean square are below band_stays and rest_stays.
+/// Limits of an iteration that estimates the dead band and the model behind the valve in turn. The iteration
+/// ends after `most_rounds` rounds. It ends earlier if the relative change of the band is below band_stays
+/// and that of the mean square is below rest_stays.
 constexpr int most_rounds = 20;
 constexpr double band_stays = 5e-4, rest_stays = 0.01;
-/// Number of rounds after which the jump distances must scatter less than random distances. Otherwise the
-/// band is not real.
+/// Number of rounds after which the jump distances must scatter less than random distances. If they do not,
+/// the valve has no dead band.
 constexpr int rounds_of_chance = 6;
-/// Ratio of two sums of squares above which their difference is not only due to rounding errors.
+/// Ratio of two sums of squares above which the difference cannot be a rounding error.
 constexpr double clearly_more = 1 + 1e-9;
 
 struct ValvePaths {
@@ -48,9 +49,8 @@ ValvePaths track_all(const std::vector<Record>& records, const FitPoint& point, 
   return all;
 }
 
-/// Returns the band whose paths leave the smallest error. If several bands leave equal errors, returns the
-/// first of these bands. The computation for a band ends as soon as its error exceeds the total error of
-/// another band.
+/// Returns the band with the smallest tracking error. If several bands have the same error, returns the first
+/// one. The computation for a band stops when its error exceeds the total error of another band.
 double best_band(const std::vector<Record>& records, const FitPoint& point, const std::vector<double>& bands,
                  double resolution_kpa, unsigned threads) {
   std::vector<double> left(bands.size(), std::numeric_limits<double>::infinity());
@@ -67,7 +67,7 @@ double best_band(const std::vector<Record>& records, const FitPoint& point, cons
   return bands[static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin())];
 }
 
-/// Returns trial values of the band whose jumps the readings can resolve.
+/// Returns trial values of the band. The readings can resolve the jumps for each of these bands.
 std::vector<double> bands_of(const Scales& scales, double resolution_kpa) {
   std::vector<double> bands;
   double band = std::max(narrowest * scales.largest_kpa, 4 * resolution_kpa);
@@ -91,8 +91,8 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Computes mean and scatter of the sorted jump distances. The smallest 5 % and the largest 5 % are excluded,
-/// because a jump that is detected one sample late has a wrong distance.
+/// Computes the mean and the scatter of the sorted jump distances. The smallest 5 % and the largest 5 % are
+/// excluded: if a jump is detected one sample too late, its distance is wrong.
 void measure_band(std::span<const double> distances, StickSlip& found) {
   found.jumps = distances.size();
   if (distances.size() < limits::fewest_events) return;
@@ -110,8 +110,8 @@ std::vector<Record> driven(const std::vector<Record>& records, const ValvePaths&
   return all;
 }
 
-/// Estimates the stick-slip motion iteratively from a start value of the band. Returns nullopt if there are
-/// too few jumps or if their distances scatter like random distances.
+/// Estimates the stick-slip motion by iteration, starting from a value of the band. Returns nullopt if there
+/// are too few jumps or if the jump distances scatter like random distances.
 std::optional<StickSlip> stick_slip_from(const std::vector<Record>& records, const StructureFit& behind,
                                          double band_kpa, double resolution_kpa, unsigned threads) {
   StickSlip found;
@@ -170,9 +170,9 @@ std::optional<StickSlip> find_stick_slip(const std::vector<Record>& records, con
   const std::vector<double> bands = bands_of(scales, resolution_kpa);
   if (bands.empty()) return std::nullopt;
   const double band_kpa = best_band(records, behind.point, bands, resolution_kpa, threads);
-  // If the start value is below the true band, a path can reach nearly every position with short jumps. As
-  // long as the model behind the valve is inaccurate, this path has a smaller error than the true path.
-  // Therefore the search also starts at twice the band.
+  // The start value may be below the true band. A path can then reach nearly every valve position by short
+  // jumps. As long as the model behind the valve is inaccurate, the error of this path is smaller than that
+  // of the true path. Therefore a second search starts at twice the band.
   for (const double start_kpa : {band_kpa, 2 * band_kpa}) {
     auto found = stick_slip_from(records, behind, start_kpa, resolution_kpa, threads);
     if (found && is_a_band(*found, resolution_kpa) && found->fit.mean_square_mm2 < behind.mean_square_mm2)

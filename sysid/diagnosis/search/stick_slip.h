@@ -1,12 +1,12 @@
 #pragma once
-// Detects a valve with stick-slip by tracking its jumps one by one.
+// Detects stick-slip of a valve by tracking each jump of the valve.
 //
-// The command alone predicts a stick-slip motion for at most several tens of jumps (jump_tracking.h). In a
-// longer record, a fit reproduces only the mean of all possible stick-slip motions, which is a play of the
-// same band. The jumps then remain in the residual. Therefore the jumps are tested separately, with valve
-// positions that are determined from the readings. The test checks two properties: the valve stays at rest
-// while the command is within a constant band around it, and it moves to the command when the command leaves
-// the band.
+// From the command alone, a stick-slip motion can be predicted for at most several tens of jumps
+// (jump_tracking.h). In a longer record, a fit can reproduce only the mean of all possible stick-slip
+// motions, which is a play with the same band. The jumps then remain in the residual. Therefore the jumps are
+// tested separately. The valve positions for this test are determined from the readings. The test checks two
+// properties of the valve. First, the valve stays at rest while the command is within a constant band.
+// Second, the valve moves to the command when the command leaves the band.
 
 #include <cstddef>
 #include <optional>
@@ -22,38 +22,39 @@ namespace softgrip::sysid {
 struct StickSlip {
   double band_kpa = 0;
   Interval band_ci95;
-  std::size_t jumps = 0;        ///< number of jumps whose distance the readings resolve
+  std::size_t jumps = 0;        ///< number of jumps for which the readings resolve the distance
   double scatter = 0;           ///< standard deviation of the jump distances, divided by their mean
-  std::vector<Record> records;  ///< records whose drive is the valve position
+  std::vector<Record> records;  ///< records with the valve position as drive
   StructureFit fit;             ///< model behind the valve, fitted to `records`
 };
 
-/// Two limits for the scatter of the jump distances of a real band. The first one applies to the scatter that
-/// the resolution of the readings does not explain, and the second one to the total scatter.
+/// Limits for the scatter of the jump distances of a real band. `most_scatter` applies to the part of the
+/// scatter that the resolution of the readings does not explain. `most_scatter_in_all` applies to the total
+/// scatter.
 inline constexpr double most_scatter = 0.1, most_scatter_in_all = 0.13;
-/// Scatter of jump distances that are uniformly distributed between the limits of the tracker.
+/// Scatter of random jump distances, which are uniformly distributed between the limits of the tracker.
 inline constexpr double scatter_of_chance = 0.19;
 
-/// The width of a dead band and its 95 % interval [kPa].
+/// Width of a dead band with its 95 % interval [kPa].
 struct Band {
   double value_kpa = 0;
   Interval ci95_kpa;
 };
 
 /// Returns the dead band of a valve from sorted jump distances. At least limits::fewest_events distances are
-/// required. Wrongly detected jumps are more often too short than too long, so the band is the mean of the
-/// middle half of the distances. The interval is that of a trimmed mean, from the Winsorised variance (Tukey
-/// and McLaughlin, Sankhya A 25, 1963).
+/// required. If a jump is detected wrongly, its distance is usually too short. Therefore the band is the mean
+/// of the middle half of the distances. The interval of this trimmed mean is computed from the Winsorised
+/// variance (Tukey and McLaughlin, Sankhya A 25, 1963).
 [[nodiscard]] Band band_of_jumps(std::span<const double> distances_kpa);
 
-/// Searches for a stick-slip motion of the valve in front of a fitted structure. Returns nullopt if there is
-/// no such motion, or if the structure contains a dead band.
+/// Searches for a stick-slip motion of the valve. Returns nullopt if there is no stick-slip motion.
+/// @param behind  fitted structure of the finger behind the valve, without a dead band.
 [[nodiscard]] std::optional<StickSlip> find_stick_slip(const std::vector<Record>& records,
                                                        const StructureFit& behind, double noise_mm,
                                                        unsigned threads);
 
-/// Repeats the search for the stick-slip motion after removal of one of the causes behind the valve. The
-/// search starts at the current fit.
+/// Removes one of the causes behind the valve and searches for the stick-slip motion a second time. This
+/// search starts at the result `found`.
 [[nodiscard]] std::optional<StickSlip> stick_slip_without(const std::vector<Record>& records,
                                                           const StickSlip& found, const Cause& cause,
                                                           double noise_mm, unsigned threads);

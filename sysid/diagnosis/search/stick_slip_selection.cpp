@@ -14,8 +14,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Returns the cause "dead band" with its smooth form only. This form is the mean of all possible stick-slip
-/// motions.
+/// Returns the cause "dead band" with only one form, the smooth form. The smooth form is the mean of all
+/// possible stick-slip motions.
 Cause dragged_along(Cause dead_band) {
   constexpr std::size_t play = model::block_type<model::ValveDeadband>();
   const auto form = std::find_if(dead_band.forms.begin(), dead_band.forms.end(),
@@ -24,8 +24,9 @@ Cause dragged_along(Cause dead_band) {
   return dead_band;
 }
 
-/// Returns a structure that contains the dead band in its smooth form. If the dead band was missing, the
-/// structure is refitted, because a model without a dead band has absorbed the mean lag of the valve.
+/// Returns the structure with the dead band in its smooth form. If the structure has no dead band, the block
+/// is added and the structure is refitted. The refit is necessary because a model without a dead band has
+/// absorbed the mean lag of the valve.
 std::optional<StructureFit> with_mean_of_stick_slip(const SearchData& data, const StructureFit& selected,
                                                     const Cause& dead_band) {
   if (position_of(selected.point.model, dead_band)) return selected;
@@ -33,8 +34,9 @@ std::optional<StructureFit> with_mean_of_stick_slip(const SearchData& data, cons
   return fits.empty() ? std::nullopt : std::move(fits.front().fit);
 }
 
-/// Adds the cause that best explains the error that the mean stick-slip motion leaves. This cause is a second
-/// effect. It was not selected before, because a single cause had to represent both effects.
+/// Adds one cause to a structure that contains the mean stick-slip motion. It is the cause that leaves the
+/// smallest error. Such a second effect may have been missed before, because a single cause had to represent
+/// both effects.
 std::optional<StructureFit> with_second_effect(const SearchData& data, const StructureFit& beside) {
   std::optional<StructureFit> best;
   for (Candidate& candidate : fit_candidates(data, beside)) {
@@ -44,8 +46,8 @@ std::optional<StructureFit> with_second_effect(const SearchData& data, const Str
   return best;
 }
 
-/// Removes a cause that was selected as a substitute for the stick-slip motion. If the selection has two
-/// causes, a cause is removed if a fit without it leaves no larger error.
+/// Removes a cause that only replaced the stick-slip motion. This is done only if the selection has at least
+/// two causes. A cause is removed if the error is not larger after a fit without the cause.
 StickSlip without_stand_in(const SearchData& data, StickSlip found, double noise_mm) {
   if (found.fit.causes.size() < 2) return found;
   const std::vector<Cause> causes = found.fit.causes;
@@ -56,15 +58,15 @@ StickSlip without_stand_in(const SearchData& data, StickSlip found, double noise
   return found;
 }
 
-/// Searches for a stick-slip motion in front of several structures. Keeps the result with the smallest
+/// Searches for stick-slip motions with several structures of the finger. Keeps the result with the smallest
 /// remaining error.
 class BestStickSlip {
  public:
   BestStickSlip(const SearchData& data, const Cause& dead_band, double noise_mm)
       : data_(data), dead_band_(dead_band), noise_mm_(noise_mm) {}
 
-  /// Searches for a stick-slip motion in front of `beside` and keeps it if it leaves the smallest error so
-  /// far.
+  /// Searches for a stick-slip motion with the structure `beside`. Keeps the result if its remaining error is
+  /// the smallest so far.
   /// @param beside  structure that contains the dead band in its smooth form.
   void look(const std::optional<StructureFit>& beside) {
     if (!beside) return;
@@ -73,7 +75,7 @@ class BestStickSlip {
     if (!found || (best_ && found->fit.mean_square_mm2 > best_->fit.mean_square_mm2)) return;
     best_ = std::move(found);
   }
-  /// Returns true if the remaining error is so small that at most a few jumps in the valve path can be wrong.
+  /// Returns true if the remaining error is small. Then at most a few jumps of the valve can be wrong.
   [[nodiscard]] bool meets_all() const {
     return best_ && unexplained_error_of(best_->fit.residual_mm, noise_mm_).excess_mm <
                         limits::tolerated_noise * noise_mm_;
@@ -87,10 +89,10 @@ class BestStickSlip {
   std::optional<StickSlip> best_;
 };
 
-/// Searches for stick-slip motions in front of the base structure and in front of the whole selection.
-/// Returns the motion that leaves the smaller error. A cause that was selected without stick-slip may be a
-/// second effect or a substitute for the stick-slip motion. If no stick-slip motion is found with either
-/// structure, the base structure with a second effect is tried.
+/// Searches for a stick-slip motion with the base structure, and with the structure that contains all
+/// selected causes. Returns the motion with the smaller remaining error. A selected cause may be a second
+/// effect, or it may only replace the stick-slip motion. If neither structure leads to a stick-slip motion, a
+/// base structure with a second effect is tried.
 std::optional<StickSlip> stick_slip_before(const SearchData& data, const Selection& plain,
                                            const Cause& dead_band, double noise_mm) {
   BestStickSlip stick_slip(data, dead_band, noise_mm);
@@ -102,14 +104,14 @@ std::optional<StickSlip> stick_slip_before(const SearchData& data, const Selecti
   return stick_slip.best();
 }
 
-/// Returns the fit of the base structure alone to records whose drive is the valve position.
+/// Returns the fit of the base structure, without any cause, to records whose drive is the valve position.
 StructureFit base_behind(const StickSlip& found) {
   StructureFit base = found.fit;
   for (const Cause& cause : found.fit.causes) base = without_cause(base, cause);
   return found.fit.causes.empty() ? base : fit_structure(found.records, {}, base.point);
 }
 
-/// Returns the point after the valve block was inserted into its model.
+/// Returns a copy of the point whose model contains the valve block in addition.
 template <template <class> class Valve>
 FitPoint with_valve(const FitPoint& behind, double band_kpa) {
   FitPoint point = behind;
@@ -117,8 +119,9 @@ FitPoint with_valve(const FitPoint& behind, double band_kpa) {
   return point;
 }
 
-/// Extends the model for a simulation from the command alone. If the simulated jumps of the stick-slip motion
-/// stay synchronous with the readings, this motion is used; otherwise its mean is used.
+/// Adds the dead band to the model for a simulation from the command alone. The jumping form is used if it
+/// leads to the smaller held-out error, that is, if the simulated jumps stay synchronous with the readings.
+/// Otherwise the smooth form is used.
 void extend(Selection& selection, const SearchData& data, const StructureFit& behind, const Cause& dead_band,
             double band_kpa, const Division& division) {
   std::vector<Cause> causes{dead_band};
@@ -149,8 +152,8 @@ std::optional<StickSlipSelection> select_behind_stick_slip(const SearchData& dat
   driven.threads = data.threads;
   StructureFit base = base_behind(*found);
   driven.scales.residual_lines = spectrum_peaks(driven.records, base.residual_mm);
-  // A few wrong jumps in a valve path leave an error. If this error is small, no second cause is searched,
-  // because the second cause would only represent the wrong jumps.
+  // A few wrong jumps of the valve leave an error. If the remaining error is small, no second cause is
+  // searched, because a second cause would only represent the wrong jumps.
   SelectionOptions behind = options;
   if (!leaves_too_much(unexplained_error_of(base.residual_mm, noise_mm), plain.base_unexplained, noise_mm))
     behind.most_causes = 0;

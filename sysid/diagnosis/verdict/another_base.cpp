@@ -15,10 +15,10 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Largest share of the mean square above the noise that may remain with the true cause, because the equation
-/// of its block is inexact. With softening, a share of 0.009 remains in the test cases of tests/blind. With a
-/// cause that only imitates a hysteresis loop of a different shape, a share of 0.1 remains in the textbook
-/// test cases.
+/// Largest share of the mean square above the noise that may remain if the true cause is in the model. This
+/// error remains because the equation of the cause is inexact. With softening, a share of 0.009 remains in
+/// the test cases of tests/blind. A cause that only imitates a hysteresis loop of a different shape leaves a
+/// share of 0.1 in the textbook test cases.
 constexpr double left_by_its_own_cause = 0.03;
 
 }  // namespace

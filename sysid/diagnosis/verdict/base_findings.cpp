@@ -21,13 +21,13 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Upper limit of the ridge regularisation when causes are added to a richer base structure. As long as a
-/// cause is missing, the choice of the ridge and of the simplest structure is unreliable.
+/// Largest ridge parameter when causes are added to a richer base structure. While a cause is missing, the
+/// choice of the ridge parameter and of the simplest structure is unreliable.
 constexpr double most_ridge = 1e-5;
 
-/// Returns true if the richer base structure predicts better than the given one. For this test, both
-/// structures are fitted to the first half of each log and predict its second half. Also returns true if the
-/// given model has an inverse response, because no finger has an inverse response.
+/// Returns true if the richer base structure predicts better than the given one. Both structures are fitted
+/// to the first half of each log and then predict the second half. Returns true too if the given model has an
+/// inverse response, because no finger has an inverse response.
 bool foretells_better(const std::vector<Record>& records, const StructureTrial& chosen, const FitPoint& given,
                       Drive drive) {
   if (beta_over_gain(given.model) > 1) return true;
@@ -45,11 +45,11 @@ double slowest_branch_s(const model::Model& model) {
   return slowest_s;
 }
 
-/// Returns the time constant [s] above which a creep branch counts as slow. The result is the smaller of two
-/// values: twice the slowest time constant of the given model, and twice that of the refitted model. It is
-/// limited to 10 % to 100 % of the longest record. The given model may have branches that are too fast, in
-/// order to compensate for a missing component. The refit may have moved a branch to the time constant of a
-/// missing slow branch.
+/// Returns the smallest time constant of slow creep [s]. The slowest time constants of the given and of the
+/// refitted model are compared, and the result is twice the smaller one. It is limited to the range from 10 %
+/// to 100 % of the longest record. The smaller value is used for two reasons. The branches of the given model
+/// may be too fast if they compensate for a missing component. The refit may have moved a branch to the time
+/// constant of a missing slow branch.
 double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
   double longest_s = 0;
   for (const Record& record : data.records) longest_s = std::max(longest_s, record.length_s());
@@ -57,8 +57,8 @@ double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
   return std::max(longest_s / 10, std::min(2 * slowest_s, longest_s));
 }
 
-/// A structure that predicts better than the given structure, and fits of this structure with one component
-/// removed at a time.
+/// A structure that predicts better than the given structure. The ablation contains its fits without one of
+/// its components.
 struct BetterStructure {
   StructureTrial chosen;
   std::vector<WithoutIngredient> ablation;
@@ -68,16 +68,16 @@ std::optional<BetterStructure> better_structure(const std::vector<Record>& recor
                                                 const StructureChoiceOptions& options) {
   const StructureChoice choice = choose_structure(records, options);
   const StructureTrial& chosen = choice.trials[choice.chosen];
-  // The published element (Bouc-Wen with two Kelvin-Voigt branches) with delay and lag is not adopted as a
-  // richer structure. It equals the given base structure with two causes, which the search for causes already
-  // covers.
+  // The published element (Bouc-Wen with two Kelvin-Voigt branches) with delay and lag is not accepted as a
+  // richer structure. It equals the given base structure with two causes, and the search for causes already
+  // tests these causes.
   if (chosen.structure.published || !foretells_better(records, chosen, given, options.drive))
     return std::nullopt;
   return BetterStructure{chosen, ablation_of(records, choice, options, named_ingredients())};
 }
 
-/// Returns true if one of the causes is confounded with the cause of `finding`. The base structure may then
-/// have absorbed the effect of this cause.
+/// Returns true if one of `causes` is confounded with the cause of `finding`. The base structure may then
+/// contain the effect of this cause.
 bool is_confounded(const NamedCause& finding, const std::vector<Cause>& causes) {
   return std::any_of(causes.begin(), causes.end(),
                      [&](const Cause& cause) { return cause.is_confounded_with(finding.cause); });
@@ -98,7 +98,7 @@ void take_back_confounded(BaseFindings& found, const SearchData& data, const Bas
   });
 }
 
-/// Recomputes the parameters of all named causes from the fit that contains all of them.
+/// Computes the parameters of all named causes again, from the fit that contains all causes.
 void renumber(BaseFindings& found, const SearchData& data) {
   const FitSpace space = structure_space(data.records, found.fit.point.model, found.fit.causes);
   const UncertainPoint at = uncertain_point(data.records, found.fit.point, space);
@@ -108,14 +108,14 @@ void renumber(BaseFindings& found, const SearchData& data) {
   }
 }
 
-/// Fits the structure to the original readings with free time constants. The choice of the structure used
-/// fixed trial values of the time constants, and a cause would absorb the error of these values.
+/// Fits the structure to the original readings with free time constants. During the choice of the structure,
+/// the time constants had fixed trial values. A cause would absorb the error of these trial values.
 StructureFit fit_off_grid(const StructureTrial& trial, const SearchData& data, Drive drive) {
   return fit_structure(data.records, {}, fit_again(trial, data.records, drive), finishing_effort);
 }
 
-/// Tests the nonlinear characteristic in the same way as the other components. The choice of the structure
-/// had omitted it, because the simpler structure without it was equally good.
+/// Tests if the nonlinear characteristic is needed, in the same way as for the other components. The choice
+/// of the structure had left it out, because the simpler structure was equally good.
 /// @param straight  base structure without the nonlinear characteristic.
 void name_the_bend(BaseFindings& found, StructureTrial straight, const BaseSearch& search) {
   const StructureFit fit = fit_off_grid(straight, search.data, search.question.drive);
@@ -123,8 +123,9 @@ void name_the_bend(BaseFindings& found, StructureTrial straight, const BaseSearc
   name_ingredients(found, {{Ingredient::characteristic, std::move(straight)}}, search);
 }
 
-/// Refits the base structure without causes, with the same free parameters as in the fit with a cause.
-/// Otherwise the error reduction by the additional free parameters would be attributed to the cause.
+/// Refits the base structure without causes. The free parameters are the same as in the fit with a cause.
+/// With fewer free parameters, the error reduction by the additional parameters would be attributed to the
+/// cause.
 void free_the_base(BaseFindings& found, const StructureTrial& as_beside_causes, const BaseSearch& search) {
   const auto& [data, plain, question] = search;
   const bool is_free = found.chosen.structure == as_beside_causes.structure &&
@@ -149,7 +150,7 @@ void free_the_base(BaseFindings& found, const StructureTrial& as_beside_causes, 
   renumber(found, data);
 }
 
-/// Removes a cause from the alternatives of each finding if this cause is itself one of the findings.
+/// Removes a cause from the alternatives of all findings if the cause is itself found.
 void take_back_alternatives(BaseFindings& found) {
   for (NamedCause& finding : found.named) {
     std::erase_if(finding.alternatives, [&](const Cause& alternative) {
@@ -159,9 +160,9 @@ void take_back_alternatives(BaseFindings& found) {
   }
 }
 
-/// Removes causes that are not needed. The base structure was refitted together with the causes, and it may
-/// now have a small error without them. A cause is kept only if a refit without it has a significantly larger
-/// loss.
+/// Removes causes that are not needed. The base structure was refitted together with the causes, so it may
+/// now have a small error without them. A cause is kept only if the loss is significantly larger after a
+/// refit without the cause.
 /// @param losses  held-out losses of `with`.
 void drop_what_is_not_missed(StructureFit& with, BlockLosses& losses, std::vector<ChosenCause>& chosen,
                              const SearchData& data, const BaseQuestion& question) {
@@ -176,8 +177,8 @@ void drop_what_is_not_missed(StructureFit& with, BlockLosses& losses, std::vecto
   });
 }
 
-/// Returns true if the causes on the richer base structure are fewer than those on the given base structure
-/// and all of them were found there too. Returns false if there is no cause on the richer base structure.
+/// Returns true if the causes on the richer base structure are a proper subset of the causes on the given
+/// base structure. The set must not be empty.
 bool has_some_of(const BaseFindings& found, const Selection& plain) {
   const std::vector<Cause>&some = found.fit.causes, &all = plain.extended.causes;
   const auto is_in_all = [&](const Cause& cause) {
@@ -186,8 +187,8 @@ bool has_some_of(const BaseFindings& found, const Selection& plain) {
   return !some.empty() && some.size() < all.size() && std::all_of(some.begin(), some.end(), is_in_all);
 }
 
-/// Selects causes from thinned records, because each fit of a base structure with many parameters takes a
-/// long time. Thinned records are sufficient to determine which causes are present.
+/// Selects causes with thinned records, because a fit of a base structure with many parameters takes long.
+/// Thinned records are sufficient to find out which causes are present.
 Selection select_among_thinned(const FitPoint& base, const SearchData& data, const BaseQuestion& question,
                                const SelectionOptions& options) {
   SearchData thinned = data;
@@ -213,7 +214,8 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
   options.published_yields_below = 1 - limits::equal_error_share;
   options.starts = limits::repeated_starts;
   // An effect that no structure contains may increase the errors of all structures. Therefore the search is
-  // repeated with readings from which the causes found so far, or a drift, are subtracted.
+  // repeated with modified readings: first without the effects of the causes that were found, and then
+  // without a drift.
   using Readings = std::vector<Record>;
   std::vector<std::function<Readings(const Readings&)>> views{std::identity{}};
   if (!plain.extended.causes.empty()) {
@@ -245,8 +247,9 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
 }
 
 bool has_lower_loss(const BaseFindings& found, const Selection& plain, double noise_mm, bool plain_explains) {
-  // If the selection leaves too much error, none of its causes is named. A base structure with an only
-  // slightly lower loss then gives more information, because its components are named.
+  // If the selection leaves too large an error, none of its causes is named. The components of a base
+  // structure can be named even in this case. Therefore a base structure with an only slightly lower loss
+  // gives more information.
   const bool says_more = !plain_explains && !plain.extended.causes.empty() && !found.named.empty();
   const bool needs_fewer = plain.left.excess_mm > noise_mm && has_some_of(found, plain);
   const double at_most = needs_fewer ? limits::comparable_ratio

@@ -34,19 +34,20 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A held-out fold counts as diverged if its RMSE exceeds this multiple of the RMSE of the fit.
+/// Ratio of the RMSE of a held-out fold to the RMSE of the fit above which the fold counts as diverged.
 constexpr double ran_off_above = 3;
 
-/// Smallest elastic share of play operators that do not act like a backlash. The elastic share is the part of
-/// the motion that follows a reversal of the pressure at once. It is 0.09 to 0.81 in 20 textbook fingers. It
-/// is 0.01 to 0.15 if a hidden backlash has an effect of 8 times the noise.
+/// Elastic share of play operators below which they act like a backlash. The elastic share is the part of the
+/// motion that follows a reversal of the pressure at once. It is between 0.09 and 0.81 in 20 textbook
+/// fingers. With a hidden backlash whose effect is 8 times the noise, it is between 0.01 and 0.15.
 constexpr double stands_still_below = 0.07;
 
-/// Assigns a component to the cause as which it is reported, and to the type of its block in the model.
+/// Cause as which a component of the structure is reported, and type of the block that contains the component
+/// in the model.
 struct FindingName {
   Ingredient ingredient;
   std::string_view id;
-  /// Id of a cause that gives the same readings for every command; empty: no such cause.
+  /// Id of a cause with the same readings for every command; empty: there is no such cause.
   std::string_view alternative;
   std::size_t (*block)(const BaseStructure& structure, Drive drive);
 };
@@ -72,7 +73,7 @@ constexpr std::array names{
                 [](const BaseStructure&, Drive) { return model::block_type<model::Characteristic>(); }}};
 
 /// Returns the held-out mean square of the refitted given model minus the noise variance [mm^2]. The result
-/// is limited, because the error of a diverged fold does not show how large the unexplained error is.
+/// has an upper limit: if a fold diverges, its error does not show how large the unexplained error is.
 double left_by_the_given_mm2(const BaseSearch& search) {
   const double noise_mm = search.question.noise_mm;
   const double held_out_mm2 = std::pow(rmse_mm(search.plain.base_losses), 2) - noise_mm * noise_mm;
@@ -88,7 +89,7 @@ const StructureTrial* trial_without(const std::vector<WithoutIngredient>& ablati
 
 class Labeller {
  public:
-  /// @param point  the chosen structure with its parameters after a fit to all readings.
+  /// @param point  parameters of the chosen structure after a fit to all readings.
   Labeller(const SearchData& data, const StructureTrial& chosen, const FitPoint& point,
            const BaseQuestion& question)
       : chosen_(chosen),
@@ -104,10 +105,11 @@ class Labeller {
     if (!finding.alternative.empty()) named.alternatives.push_back(*find_cause(finding.alternative));
     if (finding.ingredient == Ingredient::play_operators && stands_still_)
       named.alternatives.push_back(*find_cause(causes::Backlash::id));
-    // The data do not show whether the lag is in the valve or in the sensor.
+    // The data do not show if the lag is in the valve or in the sensor.
     if (finding.ingredient == Ingredient::lag)
       named.alternatives.push_back(*find_cause(causes::SensorLag::id));
-    // If the structure contains a lag, a second lag in series would have nearly the same effect as the delay.
+    // A second lag in series would have nearly the same effect as the delay if the structure already contains
+    // a lag.
     if (finding.ingredient == Ingredient::delay && chosen_.structure.lag)
       named.alternatives.push_back(*find_cause(causes::ValveLag::id));
     named.heldout_gain_percent =
@@ -121,16 +123,17 @@ class Labeller {
  private:
   const StructureTrial& chosen_;
   const BaseQuestion& question_;
-  /// True: after a reversal, the finger stands still until the pressure has changed by some kPa.
+  /// True: the finger does not move after a reversal of the pressure until the pressure has changed by some
+  /// kPa.
   bool stands_still_;
   FitSpace space_;
   UncertainPoint at_;
 };
 
-/// Returns the latency of the finger (delay or lag) as a finding. Delay and lag can largely replace each
-/// other. The data may therefore require neither of the two alone, although the finger responds late. The
-/// finding is the component whose removal increases the loss more, and it represents both. Returns nullopt if
-/// a delay or lag is already named.
+/// Returns the latency of the finger as a finding: the delay or the lag. Each of them can largely replace the
+/// other, so the data may require neither of them although the finger responds late. The finding is the
+/// component whose removal increases the loss more; it represents both. Returns nullopt if a delay or a lag
+/// is already named.
 std::optional<NamedCause> latency_of(const std::vector<WithoutIngredient>& ablation, const Labeller& labeller,
                                      const BaseFindings& found) {
   const StructureTrial* const neither = trial_without(ablation, Ingredient::latency);

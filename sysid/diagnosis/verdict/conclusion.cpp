@@ -77,8 +77,8 @@ void Conclusion::measure(const Selection& selection, const Division& division) {
   d_.unexplained_error = selection.left;
   d_.extended_rmse_mm = rmse_mm(selection.extended_losses);
   d_.gain = gain_percent(selection.base_losses, selection.extended_losses, options_.seed);
-  // The parameters of the refitted model are compared with the parameters of the given model. In both
-  // models, the initial states are fitted.
+  // The refitted model is compared with the given model. The initial states are fitted for both models, so
+  // the comparison shows only the effect of the parameters.
   const StructureFit given = fit_starts(data_.records, {}, data_.given);
   recalibration_gain_ = mean_difference(losses_of(given, division), selection.base_losses, options_.seed);
   d_.unexplained_percent =
@@ -101,12 +101,12 @@ void Conclusion::measure(const Selection& selection, const Division& division) {
 }
 
 model::Model Conclusion::named_model(model::Model model, const std::string& how) const {
-  // The daemon uses the command as input, so the blocks of the valve are inserted into the model.
+  // The input of the models for the daemon is the command. The blocks of the valve are therefore added.
   if (options_.record.drive == Drive::measured && d_.in_valve)
     model = with_valve(std::move(model), d_.in_valve->stage);
   model.name = given_.name + '_' + how.substr(0, how.find(' '));
-  model.source =
-      how + " by softgrip diagnose from " + with_commas(logs_, &Log::name) + "; before: " + given_.source;
+  model.source = how + " by softgrip diagnose from " + with_commas(logs_, &Log::name) +
+                 "; source of the given model: " + given_.source;
   return model;
 }
 
@@ -134,8 +134,8 @@ void Conclusion::name(const Selection& selection) {
   }
   for (NamedCause& named : chosen) {
     if (d_.stick_slip && named.cause.id == causes::ValveDeadband::id) {
-      // The reported band is that of the stick-slip motion. The band in the extended model may have been
-      // fitted to the mean of all possible stick-slip motions.
+      // The reported band is the band of the stick-slip motion. The band in the extended model may be
+      // different, because it may have been fitted to the mean of all possible stick-slip motions.
       named.parameters.front() = {"band_kpa", "kPa", d_.stick_slip->band_kpa, d_.stick_slip->band_ci95, true};
     }
     causes_.push_back(std::move(named));
@@ -148,8 +148,8 @@ bool Conclusion::left_by_outliers(const UnexplainedError& structure) const {
 }
 
 void Conclusion::conclude(const Selection& selection) {
-  // If the gauge readings selected one of two indistinguishable causes, the remaining error of this cause
-  // has no influence on the verdict.
+  // The gauge readings have selected one of two indistinguishable causes. In this case, the remaining error
+  // does not affect the verdict.
   const bool placed_by_gauge = d_.gauge && d_.gauge->replaced;
   const bool too_much_left = !placed_by_gauge && leaves_too_much(selection);
   const bool by_chance = d_.null_calibration && d_.null_calibration->reach_the_gain();

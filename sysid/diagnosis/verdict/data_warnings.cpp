@@ -23,7 +23,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Adds a warning about causes that cannot be tested because a log column is missing or constant.
+/// Adds a warning for each log column that is missing or constant although the test of a cause requires it.
 void warn_of_columns(const Scales& scales, std::vector<std::string>& warnings) {
   for (const Column column : {Column::temperature_c, Column::supply_kpa}) {
     std::string ids;
@@ -31,8 +31,8 @@ void warn_of_columns(const Scales& scales, std::vector<std::string>& warnings) {
       if (cause.needs == column) ids += (ids.empty() ? "" : " and ") + std::string(cause.id);
     }
     if (!scales.has(column) && !ids.empty()) {
-      warnings.push_back("no " + std::string(name_of(column)) + " column that varies: " + ids +
-                         " cannot be tested");
+      warnings.push_back("the logs contain no " + std::string(name_of(column)) + " column that varies, so " +
+                         ids + " cannot be tested");
     }
   }
 }
@@ -45,8 +45,8 @@ void reject_drift(Diagnosis& d) {
   d.causes.erase(first, d.causes.end());
   d.verdict = d.causes.empty() ? Verdict::unexplained : Verdict::partly_explained;
   d.warnings.emplace_back(
-      "A slow change of unknown origin: no log contains a rest without pressure, so a drift of the sensor "
-      "cannot be separated from a change of the finger");
+      "The origin of a slow change is unknown. No log contains a rest without pressure, so a drift of the "
+      "sensor cannot be separated from a change of the finger");
 }
 
 NamedCause sticking_valve() {
@@ -71,8 +71,8 @@ void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vecto
       std::any_of(logs.begin(), logs.end(), [](const Log& log) { return !log.pressure_kpa.empty(); });
   if (!measured) {
     warnings.emplace_back(
-        "the logs contain the commanded pressure but no measured pressure, so only their nonlinearity "
-        "separates the effects of the valve from the effects of the actuator");
+        "the logs contain the commanded pressure but no measured pressure, so effects of the valve and "
+        "effects of the actuator can be separated only if these effects are nonlinear");
   }
   for (const Excitation missing : missing_excitation(logs)) warnings.push_back(without(missing));
 }
@@ -126,7 +126,7 @@ bool average_dense(std::vector<Record>& records, std::vector<std::string>& warni
                        " samples per second are more than the bandwidth of a finger requires, so the "
                        "diagnosis uses means over " +
                        significant(1e3 * averaged.mean_interval_s(), 2) +
-                       " ms. The reported noise and errors are those of these means");
+                       " ms. The reported noise and errors are the noise and the errors of these means");
     record = std::move(averaged);
     any = true;
   }

@@ -1,10 +1,11 @@
 #pragma once
-// Adds warnings to a diagnosis, about limits of the data and about the refitted model.
-// Handles causes that a simulation of the logs cannot detect. Either the logs do not contain the condition in
+// Adds warnings to a diagnosis: about insufficient or implausible data, and about an unphysical refitted
+// model.
+// Handles causes that a simulation of the logs cannot detect. Either no log contains the condition under
 // which the cause has an effect, or the logs were recorded in a closed loop.
-// Averages logs that have far more samples than a diagnosis needs, because the computing time grows with the
-// number of readings. Several readings within the response time of a finger contain no more information than
-// their average.
+// Averages logs with far more samples than a diagnosis needs, because the computing time increases with the
+// number of readings. Within the response time of a finger, the mean of several readings contains as much
+// information as the readings.
 
 #include <string>
 #include <vector>
@@ -20,27 +21,30 @@ namespace softgrip::sysid {
 /// Adds a warning if the refitted model is unphysical.
 void warn_unphysical(const model::Model& model, std::vector<std::string>& warnings);
 
-/// Adds warnings about limits of the data that restrict the diagnosis.
+/// Adds warnings about properties of the logs that limit the diagnosis, for example missing columns.
 void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vector<std::string>& warnings);
 
-/// Adds a warning if the readings are larger or smaller than the predictions of the given model by a factor
-/// that corresponds to a wrong unit.
+/// Adds a warning if the readings differ from the predictions of the given model by a factor that a wrong
+/// unit would cause.
 /// @param residual_mm  reading minus prediction, one vector per record
 void warn_of_scale(const std::vector<Record>& records, const std::vector<std::vector<double>>& residual_mm,
                    std::vector<std::string>& warnings);
 
-/// Corrects the causes that a search has named. A drift of the sensor is visible only while the finger rests
-/// without pressure. If no log contains such a rest, the drift is moved from `causes` to `partial` and listed
-/// in `not_tested`. If every log was recorded in a closed loop, a warning is added. If the phase of each loop
-/// is that of a sticking valve (sysid/evidence/loop_phase.h), valve_deadband is named, and the causes of the
-/// search are moved to `partial`.
+/// Corrects the causes that a search has named, in three steps:
+/// - A drift of the sensor is visible only while the finger rests without pressure. If no log contains such a
+///   rest, the drift is moved from `causes` to `partial` and listed in `not_tested`.
+/// - If every log was recorded in a closed loop, a warning is added.
+/// - If, in addition, the phase of each loop is that of a sticking valve (sysid/evidence/loop_phase.h),
+///   valve_deadband is named. The causes of the search are then moved to `partial`.
 void correct_by_logs(Diagnosis& diagnosis, const std::vector<Log>& logs);
 
-/// Longest time over which neighbouring readings are averaged [s]: half a sample interval at 100 Hz.
+/// Longest time over which consecutive readings are averaged [s]. It is half of the sampling interval at 100
+/// Hz.
 inline constexpr double averaged_interval_s = 0.005;
 
-/// Averages the records if they have more readings than enough_readings (`sysid/logs/resampled_record.h`),
-/// and adds one sentence per averaged record to `warnings`. Returns true if any record was averaged.
+/// Averages the records if they have more readings than enough_readings (`sysid/logs/resampled_record.h`).
+/// Adds one sentence to `warnings` for each averaged record. Returns true if at least one record was
+/// averaged.
 bool average_dense(std::vector<Record>& records, std::vector<std::string>& warnings);
 
 }  // namespace softgrip::sysid

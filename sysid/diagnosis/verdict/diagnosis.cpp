@@ -25,8 +25,8 @@ namespace {
 using Failure = tl::unexpected<std::string>;
 
 constexpr std::size_t fewest_samples = 200;
-/// Refits the base structure. The given model may be far from the data, so fits also start at points that are
-/// scaled to the data.
+/// Refits the base structure. The parameters of the given model may be far from the true ones, so some fits
+/// start at points that are scaled to the data.
 tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, const DiagnosisOptions& options) {
   StructureFit best = fit_structure(data.records, {}, data.given);
   IdentifyOptions wide;
@@ -37,7 +37,7 @@ tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, cons
   auto found = identify(data.records, data.given.model, wide);
   if (found) {
     FitPoint point{found->fitted, rest_starts(found->fitted, data.records)};
-    // The initial states of the records are the states that the identification estimated.
+    // The initial states of the records are those that the identification has estimated.
     for (std::size_t k = 0; k < data.records.size(); ++k) point.starts[k] = found->scores[k].start;
     StructureFit other = fit_structure(data.records, {}, point);
     if (other.mean_square_mm2 < best.mean_square_mm2 * (1 - 1e-4)) best = std::move(other);
@@ -100,7 +100,7 @@ class Diagnostician {
         clock.ended("staircase");
       }
     } else {
-      another.drop();  // the selection with a second cause explains the data
+      another.drop();  // the selection with a second cause already explains the data
     }
     if (another.is_found()) {
       conclusion_.measure_recalibrated(selection);
@@ -129,7 +129,7 @@ class Diagnostician {
     return {};
   }
 
-  /// Removes valve causes that the diagnosis has already found in the displacement.
+  /// Removes those valve causes that the diagnosis has also found in the displacement.
   void take_out_named(ValveFindings& in_valve) {
     std::erase_if(in_valve.named, [&](const NamedCause& one) { return is_among(d_.causes, one.cause); });
   }
@@ -140,11 +140,12 @@ class Diagnostician {
     for (const Record& record : records) readings += record.readings;
     if (readings < fewest_samples) {
       return Failure("only " + std::to_string(readings) +
-                     " readings in total: too few to separate a cause from noise (" +
+                     " readings in total are too few to separate a cause from noise (" +
                      std::to_string(fewest_samples) + " are needed)");
     }
-    // The zero offset of the first log is arbitrary. If the zero offset changes from log to log, the sensor
-    // drifts, and drift is a possible cause.
+    // The zero offset of a log is fitted only if the offset of the first log or the initial state of the log
+    // is unknown. In all other cases, an offset that changes from log to log must stay in the data. It shows
+    // a drift of the sensor.
     const bool zero_free = records.front().offset_free && !records.front().start_unknown;
     for (Record& record : records) record.offset_free = zero_free || record.start_unknown;
     d_.sampling = hide_repeated(records);
@@ -168,9 +169,9 @@ class Diagnostician {
     d_.as_given_rmse_mm = std::sqrt(d_.as_given.mean_square_mm2);
   }
 
-  /// Hides outliers that occur during a motion. They can be found only from the residual of the refitted
-  /// model. A new fit without these outliers is more accurate and may reveal further outliers, so the search
-  /// is repeated.
+  /// Hides outliers that occur during a motion. Only the residual of the refitted model shows these outliers.
+  /// A new fit without them is more accurate and may reveal further outliers, so the search is repeated up to
+  /// three times.
   void hide_more_outliers(StructureFit& base) {
     constexpr int most_rounds = 3;
     for (int round = 0; round < most_rounds; ++round) {
@@ -181,9 +182,9 @@ class Diagnostician {
     }
   }
 
-  /// Handles logs that begin without pressure before the finger has settled. The given structure is fitted
-  /// with estimated initial states. If this fit explains the logs better than all causes found, the fit
-  /// replaces the recalibrated model. Returns true in this case.
+  /// Handles logs whose pressure is zero at the start although the finger is still moving. The given
+  /// structure is fitted with estimated initial states. If this fit explains the logs better than the causes
+  /// that were found, it replaces the refitted model, and the function returns true.
   bool open_starts(const Selection& selection, const Division& division) {
     const auto is_given = [](const Record& r) { return r.start != Start::automatic || r.start_unknown; };
     if (!selection.left.present || std::all_of(data_.records.begin(), data_.records.end(), is_given))
@@ -199,7 +200,7 @@ class Diagnostician {
     if (!is_missed(selection.extended_losses, held_out_losses(open, division, fit),
                    limits::negligible_share * square(d_.noise_mm), options_.seed))
       return false;
-    // Creep that never settles can compensate for any difference between the logs of two rigs.
+    // With estimated initial states, slow creep can imitate the differences between logs of two rigs.
     if (inconsistent_among(data_.records, selection.base, fit.mean_square_mm2)) return false;
     use(std::move(open));
     d_.recalibrated = std::move(fit);
@@ -210,7 +211,7 @@ class Diagnostician {
   }
 
   /// Shifts the drive of the records in time if the readings react before the command changes. Returns true
-  /// if the search must be repeated.
+  /// if the drive was shifted; the search for causes must then be repeated.
   bool shift_drive(const Selection& selection, const Division& division) {
     std::optional<LeadFit> shifted = fit_lead(data_, selection, d_.noise_mm);
     if (!shifted) return false;
@@ -225,9 +226,9 @@ class Diagnostician {
     return true;
   }
 
-  /// Searches for stick-slip of the valve. The jumps of a sticking valve cannot be predicted by a simulation
-  /// from the command alone. Returns true if stick-slip explains the remaining error. `selection` then
-  /// contains the causes that were found with the valve position as input.
+  /// Searches for stick-slip of the valve, because a simulation from the command alone cannot predict the
+  /// jumps of a sticking valve. If stick-slip explains the remaining error, returns true and replaces
+  /// `selection` by the causes that were found with the valve position as input.
   bool look_for_stick_slip(Selection& selection, const Division& division) {
     if (options_.record.drive != Drive::command) return false;
     if (options_.progress) options_.progress("search for stick-slip");
@@ -237,8 +238,8 @@ class Diagnostician {
     one_more.progress = options_.progress;
     auto found = select_behind_stick_slip(data_, selection, d_.noise_mm, division, one_more);
     if (!found || conclusion_.leaves_too_much(found->selection)) return false;
-    // A path of many small steps can fit any residual. Stick-slip is therefore accepted only if it explains
-    // at least 75 % of the remaining mean square.
+    // A path of many small steps can fit any residual. Stick-slip is therefore accepted only if it removes at
+    // least 75 % of the remaining mean square.
     if (square(found->selection.left.excess_mm) > left_by_what_was_missing * square(selection.left.excess_mm))
       return false;
     selection = std::move(found->selection);
@@ -246,8 +247,8 @@ class Diagnostician {
     return true;
   }
 
-  /// Returns true if the search for another base structure may begin at once. Gauge readings or null
-  /// campaigns, if there are any, must first test the selection.
+  /// Returns true if another base structure may be searched at once. If there are gauge readings or simulated
+  /// data without a cause, the selection must be tested with them first.
   [[nodiscard]] bool may_ask_at_once() const { return !options_.gauge && options_.null_campaigns == 0; }
 
   void look_for_base(AnotherBase& another, const Selection& selection) {

@@ -1,8 +1,8 @@
 #pragma once
-// Diagnoses a model: determines its error and the causes of this error, extends the model, and measures the
-// error reduction.
-// Computes the error budget of a diagnosis: the mean square errors of the given, the refitted and the
-// extended model on held-out readings, and the noise variance.
+// Diagnoses a model. The diagnosis determines the error of the model and its causes, extends the model, and
+// measures the error reduction by the extension.
+// Computes the error budget of a diagnosis. It consists of the noise variance and of the mean square errors
+// of the given, the refitted and the extended model on held-out readings.
 
 #include <algorithm>
 #include <chrono>
@@ -39,74 +39,80 @@ struct DiagnosisOptions {
   RecordOptions record;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  /// Number of simulated data sets without a cause. If the search names a cause, these data sets show how
-  /// often the search names one by chance; 0: no simulation.
+  /// Number of simulated data sets without a cause; 0: no simulation. If the search names a cause, the data
+  /// sets show how often the search names a cause by chance.
   std::size_t null_campaigns = 0;
-  /// Readings of the sensor at known positions. Not set: the operator has made no gauge check.
+  /// Readings of the sensor at known positions. Not set: no gauge check was made.
   std::optional<GaugeFile> gauge;
   std::function<void(const std::string&)> progress;
 };
 
-/// RMSE of the models that a diagnosis compares, for one run [mm]. If there is a single run, each half of the
-/// run has its own element.
+/// RMSE of the compared models for one run [mm]. If there is only one run, each half of it has its own
+/// element.
 struct RunError {
   std::string run;
   double given = 0;
-  double recalibrated = 0;  ///< RMSE of the refitted model, which was fitted to the other runs
-  /// RMSE of the extended model, which was fitted to the other runs; equal to `recalibrated` if there is no
-  /// extended model.
+  double recalibrated = 0;  ///< RMSE of the refitted model; this run was left out of the fit
+  /// RMSE of the extended model; this run was left out of the fit. Without an extended model, the value
+  /// equals `recalibrated`.
   double extended = 0;
 };
 
 struct Diagnosis {
-  /// Verdict from the displacement only; whole_verdict() also uses the measured pressure.
+  /// Verdict that only the displacement leads to. whole_verdict() includes the measured pressure.
   Verdict verdict = Verdict::unexplained;
-  /// Named causes; empty unless the verdict is cause_found, ambiguous or partly_explained.
+  /// Named causes. Only the verdicts cause_found, ambiguous and partly_explained have named causes. For all
+  /// other verdicts, the list is empty.
   std::vector<NamedCause> causes;
-  /// Causes that explain only part of the error, for the verdict unexplained.
+  /// Causes that explain only part of the error and are therefore not named.
   std::vector<NamedCause> partial;
   std::vector<CandidateScore> rejected;
   double noise_mm = 0;
-  Spread gain;  ///< held-out error reduction by the extended model, relative to the refitted model [%]
-  /// RMSE of the given model over all readings. The initial states are estimated from the first readings
-  /// (sysid/fitting/start_estimate.h).
+  Spread gain;  ///< held-out error reduction by the extended model [%], compared with the refitted model
+  /// RMSE of the given model over all readings. The initial state of each record is estimated from its first
+  /// readings (sysid/fitting/start_estimate.h).
   double as_given_rmse_mm = 0;
   double recalibrated_rmse_mm = 0;  ///< RMSE of the refitted model on held-out blocks
   double extended_rmse_mm = 0;      ///< RMSE of the extended model on held-out blocks
-  /// RMSE of the refitted and of the extended model on logs that were completely held out; not set if there
-  /// is a single log.
+  /// RMSE of the refitted and of the extended model on complete logs that were left out of the fit. Not set
+  /// if there is only one log.
   std::optional<double> recalibrated_other_logs_rmse_mm;
   std::optional<double> extended_other_logs_rmse_mm;
   std::vector<RunError> runs;
   double unexplained_percent = 0;
-  /// Result of the search on data without a cause; set if this test was requested and a cause was found.
+  /// Result of the search on simulated data without a cause. Set if the caller has requested this test and a
+  /// cause was found.
   std::optional<NullCalibration> null_calibration;
   OutlierEvidence outliers;
   SamplingEvidence sampling;
-  std::optional<ReadingLead> lead;  ///< lead of the readings; set if the drive of the records was shifted
-  std::optional<StickSlipEvidence> stick_slip;  ///< set if the named dead band shows stick-slip
-  std::optional<GaugeEvidence> gauge;  ///< result of the gauge check; set if there are gauge readings
-  /// Causes between the command and the measured pressure, except those in `causes`; set if the pressure was
+  std::optional<ReadingLead> lead;  ///< lead of the readings; set if the drive of the records was shifted by
+                                    ///< the lead
+  std::optional<StickSlipEvidence> stick_slip;  ///< result of the test for stick-slip; set if a valve with
+                                                ///< stick-slip was found
+  std::optional<GaugeEvidence> gauge;  ///< result of the gauge check; set if the caller has passed gauge
+                                       ///< readings
+  /// Causes between the command and the measured pressure that are not in `causes`. Set if the pressure was
   /// measured.
   std::optional<ValveFindings> in_valve;
-  /// Description of a richer base structure; empty: the given base structure is sufficient.
+  /// Description of a richer base structure. Empty: the base structure of the given model is sufficient.
   std::string base;
   UnexplainedError unexplained_recalibrated;
   UnexplainedError unexplained_error;
   StructureFit as_given;
   StructureFit recalibrated;
   StructureFit extended;
-  /// Model for the daemon; its name is GIVEN_extended, where GIVEN is the name of the given model.
+  /// Model for the daemon. If the given model has the name GIVEN, the name of this model is GIVEN_extended or
+  /// GIVEN_recalibrated.
   model::Model extended_model;
   model::Model recalibrated_model;
   std::vector<Record> records;
   std::vector<std::string> warnings;
-  /// Causes that were not tested, by id, because the logs never contain the condition in which the cause has
-  /// an effect. The value describes the recording that would test the cause.
+  /// Causes that were not tested, because no log contains the condition under which the cause has an effect.
+  /// Key: id of the cause. Value: description of a recording that would test the cause.
   std::map<std::string, std::string, std::less<>> not_tested;
-  std::optional<Evidence> evidence;  ///< conditions on which the errors depend; set by examine()
+  std::optional<Evidence> evidence;  ///< conditions on which the errors depend; examine() sets this member
   double wall_s = 0;
-  /// For each stage of the diagnosis, its name and its wall time.
+  /// Name and wall time of each stage of the diagnosis.
   std::vector<std::pair<std::string, double>> stages_s;
 };
 
@@ -115,14 +121,15 @@ struct Diagnosis {
   return !d.extended.causes.empty() || !d.base.empty();
 }
 
-/// Returns the verdict from the displacement and from the measured pressure.
+/// Returns the verdict to which the displacement and the measured pressure together lead.
 [[nodiscard]] Verdict whole_verdict(const Diagnosis& d);
 
-/// Measures the wall times of consecutive stages of a diagnosis.
+/// Measures the wall time of each stage of a diagnosis.
 class StageClock {
  public:
   explicit StageClock(Diagnosis& diagnosis) : diagnosis_(diagnosis) {}
-  /// Ends a stage. Its time is the time since the previous call of ended(), or since the construction.
+  /// Ends a stage and stores its wall time. The stage began at the previous call of ended() or, for the first
+  /// stage, at the construction of the object.
   void ended(std::string stage) {
     const auto now = std::chrono::steady_clock::now();
     const double took_s = std::chrono::duration<double>(now - began_).count();
@@ -136,12 +143,14 @@ class StageClock {
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
-/// Diagnoses the given model from the logs. Returns an error sentence if the logs cannot be diagnosed.
+/// Diagnoses the given model with the logs. Returns an error sentence if no diagnosis is possible with these
+/// logs.
 [[nodiscard]] tl::expected<Diagnosis, std::string> diagnose(const std::vector<Log>& logs,
                                                             const model::Model& given,
                                                             const DiagnosisOptions& options = {});
 
-/// Adds to a diagnosis the conditions on which the remaining error depends. The verdict does not change.
+/// Determines the conditions on which the remaining error depends, and adds them to the diagnosis. The
+/// verdict does not change.
 void examine(Diagnosis& diagnosis, const DiagnosisOptions& options);
 
 /// Returns the verdict as one sentence for a technician.
@@ -158,8 +167,8 @@ struct Budget {
   [[nodiscard]] double excess() const { return std::max(recalibrated - noise, 0.0); }
   /// Returns the mean square error of the extended model minus the noise variance.
   [[nodiscard]] double left() const { return std::max(extended - noise, 0.0); }
-  /// Returns the share of excess() that one cause explains, from 0 to 100 %. This share is the increase of
-  /// the mean square error when the cause is removed, divided by excess().
+  /// Returns the share of excess() that one cause explains [%]. The share is the increase of the mean square
+  /// error after removal of the cause, divided by excess().
   [[nodiscard]] double share_percent(const NamedCause& named) const {
     return excess() > 0 ? std::clamp(100 * named.gain_mm2.value / excess(), 0.0, 100.0) : 0.0;
   }

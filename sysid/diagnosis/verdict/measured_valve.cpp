@@ -58,7 +58,7 @@ BlockLosses MeasuredValve::held_out_losses(ValveParts parts, const ValveStage& w
                                            PressureSensorFit sensor) const {
   BlockLosses losses(blocks_end_.back(), 0);
   std::vector<double> counts(losses.size(), 0);
-  // Two folds are used. Each fold contains every second block.
+  // The blocks are divided into two folds. Each fold consists of every second block.
   parallel_for_idle(2, [&](std::size_t fold) {
     ValveFit fit = fit_of(parts, {whole}, sensor);
     fit.is_fitted = [&](std::size_t log, std::size_t sample) { return block(log, sample) % 2 != fold; };
@@ -137,8 +137,8 @@ Eigen::VectorXd MeasuredValve::derivative(const ValveStage& at, double ValveStag
   ValveStage above = at, below = at;
   above.*number += step;
   below.*number -= step;
-  // If both time constants are equal, the model has a single one for filling and venting, so both are
-  // changed.
+  // If both time constants are equal, filling and venting share one time constant. Both members are then
+  // changed together.
   if (number == &ValveStage::filling_s && at.filling_s == at.venting_s) {
     above.venting_s = above.filling_s;
     below.venting_s = below.filling_s;

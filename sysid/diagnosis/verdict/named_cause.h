@@ -1,5 +1,5 @@
 #pragma once
-// Describes a cause that a verdict names, and the evidence for this cause.
+// Describes a cause that is named in a verdict, with the evidence for the cause.
 
 #include <cstddef>
 #include <optional>
@@ -24,15 +24,15 @@ struct CauseParameter {
 
 struct NamedCause {
   Cause cause;
-  std::size_t block_type = 0;  ///< type of the block with which the cause was found
+  std::size_t block_type = 0;  ///< type of the block that represents the cause in the model
   std::vector<CauseParameter> parameters;
   Spread heldout_gain_percent;
   Spread gain_mm2;  ///< reduction of the held-out mean square by the cause
-  /// Reduction of the mean square error of the measured pressure [kPa^2]; not set: the cause was found
-  /// without this pressure.
+  /// Reduction of the mean square error of the measured pressure [kPa^2]. Not set: the cause was not found in
+  /// the measured pressure.
   std::optional<Spread> gain_kpa2;
-  double inclusion =
-      1;  ///< inclusion frequency: weight of the structures with this cause among all plausible structures
+  double inclusion = 1;  ///< inclusion frequency: share of the bootstrap samples in which structures with
+                         ///< this cause have the lower loss
   std::vector<Cause> alternatives;
   std::vector<CandidateScore> candidates;
 };

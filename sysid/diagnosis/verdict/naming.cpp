@@ -16,8 +16,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Widens the interval of each parameter of `named` so that it covers the interval of the same parameter in
-/// `with`. Returns true if an interval became wider.
+/// Widens the interval of each parameter of `named`. The interval then includes the interval of the same
+/// parameter in `with`. Returns true if at least one interval became wider.
 bool widen(NamedCause& named, const std::vector<CauseParameter>& with) {
   bool wider = false;
   for (CauseParameter& number : named.parameters) {
@@ -62,8 +62,8 @@ std::vector<CauseParameter> block_numbers(const UncertainPoint& at, std::size_t 
       const double deviation = std::sqrt(std::max(0.0, at.uncertainty.covariance(row, row)));
       if (deviation == 0) continue;
       const double half = at.uncertainty.quantile * deviation;
-      // A finite limit of an interval is clipped to the permitted range; for example, a delay is not
-      // negative. An infinite limit means that the value is unknown, so it stays infinite.
+      // A finite end of an interval is limited to the permitted range, because a delay, for example, is not
+      // negative. An infinite end means that the value is unknown, so it is not limited.
       const auto possible = [&](double value) {
         return std::isfinite(value) ? std::clamp(value, spec.lower, spec.upper) : value;
       };
@@ -100,7 +100,8 @@ std::vector<NamedCause> name_chosen(const std::vector<Record>& records, const St
 namespace {
 
 /// Returns a cause that was detected in the readings before any fit.
-/// @param excess_mm  error of the affected readings. @param readings  number of affected readings.
+/// @param excess_mm  root mean square error that the affected readings cause.
+/// @param readings  number of affected readings.
 NamedCause cause_in_readings(std::string_view id, std::vector<CauseParameter> parameters, double excess_mm,
                              std::size_t readings, double noise_mm) {
   NamedCause named;

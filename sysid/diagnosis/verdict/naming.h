@@ -1,8 +1,8 @@
 #pragma once
-// Describes a cause by its parameters and their intervals.
+// Describes a cause by its parameters and their confidence intervals.
 // Computes intervals of parameters over several plausible structures. The value of a parameter depends on the
-// other causes in the structure. If the data do not show whether a confounded cause is present, the interval
-// covers the values with and without this cause.
+// other causes in the structure. If the data do not show if a confounded cause is present, the interval
+// covers the values with and without the confounded cause.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,48 +17,49 @@
 
 namespace softgrip::sysid {
 
-/// A fitted point with the covariance of the fitted parameters.
+/// A fitted point and the covariance of its fitted parameters.
 struct UncertainPoint {
   const FitPoint& point;
   const FitSpace& space;
   std::vector<double> z;
   Uncertainty uncertainty;
 };
-/// Computes the covariance of the fitted parameters at `point`.
+/// Computes the covariance of the parameters that were fitted at `point`.
 /// @param space  free parameters of the fit to `records`. `point` and `space` must outlive the result.
 [[nodiscard]] UncertainPoint uncertain_point(const std::vector<Record>& records, const FitPoint& point,
                                              const FitSpace& space);
 
-/// Returns the parameters of the model's block with the type `block_type`, in the order of the block. A
-/// parameter has a 95 % interval if it was fitted and is not at a bound.
+/// Returns the parameters of the block with the type `block_type`. A parameter has a 95 % interval only if it
+/// was fitted and is not at a bound.
 [[nodiscard]] std::vector<CauseParameter> block_numbers(const UncertainPoint& at, std::size_t block_type);
 
-/// Returns the causes of a selection with their parameters in the extended model.
+/// Returns the causes of a selection. Their parameters have the values of the extended model.
 [[nodiscard]] std::vector<NamedCause> name_chosen(const std::vector<Record>& records,
                                                   const StructureFit& extended,
                                                   const std::vector<ChosenCause>& chosen);
 
-/// Returns the causes that were detected in the readings before any fit: outliers and slow or frozen
-/// sampling, if present.
+/// Returns the causes that were detected in the readings before any fit. These are outliers, and slow or
+/// frozen sampling.
 [[nodiscard]] std::vector<NamedCause> causes_in_readings(const OutlierEvidence& outliers,
                                                          const SamplingEvidence& sampling, double noise_mm,
                                                          model::OutputUnit unit);
 
-/// Returns the title of a cause with a lower-case first letter, for use in a sentence: "valve lag".
+/// Returns the title of a cause with a lower-case first letter, so that it can be used within a sentence:
+/// "valve lag".
 [[nodiscard]] std::string title_within(const Cause& cause);
-/// Returns the title of an alternative, such as "valve lag". If the same cause is already named, returns a
-/// title such as "a further valve lag".
+/// Returns the title of an alternative, for example "valve lag". If the same cause is already named, "a
+/// further" is added: "a further valve lag".
 [[nodiscard]] std::string alternative_title(const Cause& alternative, const std::vector<NamedCause>& named);
 
 /// Returns true if the list of named causes contains the cause.
 [[nodiscard]] bool is_among(const std::vector<NamedCause>& named, const Cause& cause);
 
-/// Returns true if any of the named causes has an alternative.
+/// Returns true if at least one of the named causes has an alternative.
 [[nodiscard]] bool any_alternatives(const std::vector<NamedCause>& causes);
 
-/// Widens the intervals of `named`, the chosen causes of `selection`. Each interval then also covers the
-/// values of the parameter in other plausible structures: the undecided structures that the held-out blocks
-/// do not exclude. Returns a sentence for each widened interval.
+/// Widens the intervals of `named`, which are the causes of `selection`. Each interval then also covers the
+/// values of the parameter in the undecided structures of the selection that the held-out losses do not rule
+/// out. Returns one sentence for each undecided structure that has widened an interval.
 [[nodiscard]] std::vector<std::string> mix_intervals(std::vector<NamedCause>& named,
                                                      const std::vector<Record>& records,
                                                      const Selection& selection, std::uint64_t seed);

@@ -11,8 +11,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Other trial values of the lead, as multiples of the lead in the fitted block. The block is inaccurate at
-/// corners of the motion, so its lead may be wrong.
+/// Further trial values of the lead, as multiples of the lead in the fitted block. They are needed because
+/// the block is inaccurate at corners of the motion, so its lead may be wrong.
 constexpr std::array other_leads{0.5, 1.5, 2.0, 3.0};
 constexpr int refinements = 5;
 
@@ -28,7 +28,7 @@ class LeadSearch {
     return shifted;
   }
 
-  /// Returns the best lead on a grid, refined by search steps of decreasing size.
+  /// Returns the best lead on a grid of trial values, refined by search steps of decreasing size.
   [[nodiscard]] LeadFit best(double about_s) const {
     LeadFit best = at(about_s);
     const auto try_at = [&](double lead_s) {
@@ -47,8 +47,8 @@ class LeadSearch {
   }
 
  private:
-  /// Returns the 95 % interval of the lead. It is computed from a parabola through the mean squares at three
-  /// leads.
+  /// Returns the 95 % interval of the lead, computed from the parabola through the mean squares at three
+  /// values of the lead.
   [[nodiscard]] Interval interval(const LeadFit& best, double step_s) const {
     const double lead_s = best.lead.lead_s, least_mm2 = best.fit.mean_square_mm2;
     const double beside_mm2 =

@@ -1,5 +1,5 @@
 #pragma once
-// Estimates the time by which the readings react before the command changes.
+// Estimates by how much time the readings react before the command changes.
 
 #include <optional>
 #include <vector>
@@ -11,8 +11,8 @@ namespace softgrip::sysid {
 
 struct ReadingLead {
   double lead_s = 0;
-  /// 95 % interval of the lead. It follows from the mean square error as a function of the lead, with all
-  /// parameters of the structure refitted for each lead.
+  /// 95 % interval of the lead. It is computed from the mean square error as a function of the lead. For each
+  /// value of the lead, all parameters of the structure are refitted.
   Interval ci95;
 };
 
@@ -22,15 +22,17 @@ struct LeadFit {
   std::vector<Record> records;  ///< records whose drive is shifted by the lead
 };
 
-/// Shifts the drive of the records to an earlier time by `lead_s` and returns the records. The first sample
-/// keeps its drive, because this drive defines the initial state of the record. A reading becomes NaN if its
-/// shifted drive would lie after the end of the record.
+/// Returns the records with their drive shifted to an earlier time by `lead_s`. The first sample keeps its
+/// drive, because this drive defines the initial state of the record. If the shifted drive of a sample would
+/// lie after the end of the record, the reading of the sample becomes NaN.
 [[nodiscard]] std::vector<Record> with_drive_ahead(std::vector<Record> records, double lead_s);
 
-/// Determines the lead precisely if a selection contains the cause clock_offset. The block of this cause
-/// extrapolates the motion and is inaccurate at corners. A shifted drive has no such error.
-/// @returns no value if the selection does not contain the cause, if zero lies within the 95 % interval of
-/// the lead, or if the shifted drive leaves more error than the causes of the selection.
+/// Determines the lead accurately if a selection contains the cause clock_offset. The block of this cause
+/// extrapolates the motion and is inaccurate at corners, but a shift of the drive is exact.
+/// Returns nullopt in three cases:
+/// - The selection does not contain the cause.
+/// - The 95 % interval of the lead contains zero.
+/// - The shifted drive leaves a larger error than the causes of the selection.
 [[nodiscard]] std::optional<LeadFit> fit_lead(const SearchData& data, const Selection& selection,
                                               double noise_mm);
 

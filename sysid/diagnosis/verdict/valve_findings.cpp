@@ -33,22 +33,22 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Smallest share of the remaining mean square that a second time constant must explain. A second time
-/// constant refines a lag and is not reported as a cause.
+/// Smallest share of the remaining mean square that a separate time constant for venting must explain. This
+/// second time constant refines the lag and is not reported as a cause, so its limit is lower than the limit
+/// of a cause.
 constexpr double least_detail = 0.02;
-/// Largest number of samples of all logs together. If there are more samples, the logs are thinned to every
-/// second, third, ... sample, because a valve model has few parameters.
+/// Largest number of samples of all logs together. Logs with more samples are thinned to every second, third,
+/// ... sample. A valve model has few parameters, so the remaining samples are sufficient.
 constexpr std::size_t most_samples = 30'000;
 
-/// A parameter as the report of a cause lists it: name, unit, and member of the fitted stage.
+/// A parameter as the report lists it: name, unit, and the member of ValveStage with its value.
 struct Number {
   std::string_view name;
   std::string_view unit;
   double ValveStage::*value;
 };
 
-/// Assigns a part of the valve model to the cause as which it is reported, and to the parameters of this
-/// cause.
+/// Cause as which a part of the valve model is reported, with the parameters of this cause.
 struct PartName {
   ValvePart part;
   std::string_view id;
@@ -114,14 +114,14 @@ ValveParts without(ValveParts parts, ValvePart part) {
   return parts;
 }
 
-/// A fit of a valve model with some of the possible parts, and the held-out losses of this fit.
+/// A fit of the valve model with some of the possible parts, and its held-out losses.
 struct Trial {
   ValveParts parts;
   ValveStage stage;
   BlockLosses losses_kpa2;
 };
 
-/// Evidence for a part of the valve model, from a fit with this part and a fit without it.
+/// Evidence for a part of the valve model. It compares a fit with the part and a fit without the part.
 struct PartEvidence {
   Spread gain_kpa2;
   Spread gain_percent;
@@ -159,7 +159,7 @@ class Search {
     parallel_for(valve_part_count, question.threads, [&](std::size_t i) {
       if (!ablation_[i]) return;
       Trial& trial = *ablation_[i];
-      // A part that reduces the error of the fit by only a negligible share is not tested on held-out blocks.
+      // If a part reduces the error of the fit by a negligible share, it is not tested on held-out blocks.
       const double fitted_share = 1 - std::pow(whole_.stage.rmse_kpa / trial.stage.rmse_kpa, 2);
       if (fitted_share > 0.5 * least_share_of(static_cast<ValvePart>(i))) {
         trial.losses_kpa2 = valve_.held_out_losses(trial.parts, trial.stage);
@@ -213,7 +213,7 @@ class Search {
     return evidence;
   }
 
-  /// Returns true if two lags in series fit the pressure almost as well as one lag and a dead time.
+  /// Returns true if a second lag in series fits the pressure almost as well as the dead time.
   [[nodiscard]] bool may_be_second_lag() const {
     const ValveParts parts = without(whole_.parts, ValvePart::delay).set(index_of(ValvePart::second_lag));
     ValveStage start = whole_.stage;
@@ -225,8 +225,8 @@ class Search {
   }
 
   void add_lost_pressure(ValveFindings& found, ValveParts kept) const {
-    // A falling supply or a pressure limit also reduces the pressure. Therefore the fit with supply and
-    // pressure limit comes before the search for a leak.
+    // A falling supply pressure or a pressure limit reduces the pressure too. The search for a leak therefore
+    // comes after the fit of these two parts.
     if (!(whole_.stage.gauge_gain < 1 - scales_agree_within)) return;
     const auto lost = find_lost_pressure(logs_, valve_, kept, found.stage);
     if (!lost) return;
@@ -245,7 +245,8 @@ class Search {
         "at " + significant(lost->highest_kpa, 3) + " kPa " + significant(lost->missing_kpa, 2) +
         " kPa of the command are missing in the measured pressure, for rising and falling commands. Hold "
         "full pressure and close the line after the valve. If the pressure of the finger falls, the finger "
-        "leaks. If this pressure does not fall, the scale of the valve or of the pressure sensor is wrong";
+        "leaks. If the pressure of the finger does not fall, the scale of the valve or of the pressure "
+        "sensor is wrong";
   }
 
   [[nodiscard]] bool moves_the_finger(const PartEvidence& of) const {
@@ -255,8 +256,8 @@ class Search {
     return gain_mm_per_kpa * std::sqrt(of.gain_kpa2.value) > question_.noise_mm;
   }
 
-  /// Returns the parameters of the part. Their intervals include the uncertainty of the other fitted
-  /// parameters.
+  /// Returns the parameters of the part with their confidence intervals. The intervals include the
+  /// uncertainty of all other fitted parameters.
   [[nodiscard]] std::vector<CauseParameter> parameters_of(const PartName& name, const ValveStage& stage,
                                                           ValveParts kept) const {
     std::vector<double ValveStage::*> numbers;

@@ -10,7 +10,7 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Returns a value as text with the unit of the readings: "0.31 mm".
+/// Returns a value with the unit of the readings as text, for example "0.31 mm".
 std::string reading(const Diagnosis& d, double value) {
   return significant(value, 2) + " " + std::string(model::name_of(d.extended_model.output_unit));
 }
@@ -24,7 +24,7 @@ std::string listed(const std::vector<NamedCause>& causes) {
   });
 }
 
-/// Returns the sentence for the case that the model is correct and readings are wrong.
+/// Returns the verdict for the case that the model is correct but readings are wrong.
 std::string readings_sentence(const Diagnosis& d) {
   std::string wrong;
   if (d.outliers.present)
@@ -43,25 +43,25 @@ std::string readings_sentence(const Diagnosis& d) {
   }
   if (d.lead)
     wrong += (wrong.empty() ? "" : ". ") + std::string("The readings are ") + significant(d.lead->lead_s, 3) +
-             " s ahead of their command, because the clocks differ";
+             " s ahead of their command, because the clocks of readings and commands differ";
   const std::string those =
-      d.outliers.present || d.sampling.present ? "without these readings " : "without that offset ";
+      d.outliers.present || d.sampling.present ? "without these readings " : "without this clock offset ";
   return wrong + "; " + those + "the recalibrated model's error is " + reading(d, d.extended_rmse_mm) + ".";
 }
 
-/// Returns the sentence about stick-slip. The readings determine the position of a sticking valve; the
-/// command does not.
+/// Returns the verdict for a valve with stick-slip. It states that the command alone does not determine the
+/// position of a sticking valve, but the readings do.
 std::string stick_slip_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
   return "The model lacks " + listed(d.causes) +
-         ": the valve sticks and jumps. The command alone does not determine the times of the jumps, so the "
+         ", because the valve sticks and jumps. The command alone does not determine the times of the jumps, "
+         "so the "
          "held-out error only falls from " +
          before + " to " + after + ". With the jump times from the readings, the held-out error falls to " +
          reading(d, d.stick_slip->heldout_rmse_mm) + ".";
 }
 
-/// Returns the end of the sentence about the named causes: ": with them the held-out error falls from 2 mm to
-/// 1 mm". If the error does not fall, the text states that the model without these causes needs an inverse
-/// response to fit equally well.
+/// Returns the text that follows the named causes: ": with them the held-out error falls from 2 mm to 1 mm".
+/// If the error does not fall, the text states that the model without the causes needs an inverse response.
 std::string with_them(const Diagnosis& d, const std::string& before, const std::string& after) {
   const std::string them = d.causes.size() > 1 ? "them" : "it";
   if (d.extended_rmse_mm < (1 - limits::negligible_share) * d.recalibrated_rmse_mm)
@@ -90,8 +90,8 @@ bool valve_lacks(const Diagnosis& d) {
   return d.in_valve && !d.in_valve->named.empty();
 }
 
-/// Returns the sentence about the valve: " Between the command and the measured pressure, the model lacks
-/// valve dead band (band_kpa 1.34)."
+/// Returns the sentence about the valve, for example " Between the command and the measured pressure, the
+/// model lacks valve dead band (band_kpa 1.34)."
 std::string sentence_of_valve(const Diagnosis& d) {
   std::string numbers;
   for (const NamedCause& named : d.in_valve->named) {
@@ -110,10 +110,10 @@ std::string sentence_of_logs(const Diagnosis& d) {
       return "The model explains " +
              (valve_lacks(d) ? model::in_unit("the displacement", d.extended_model.output_unit)
                              : "these logs") +
-             " to the noise (" + reading(d, d.noise_mm) + ")" +
-             (valve_lacks(d) ? "." : ": nothing to change.");
+             " down to the noise (" + reading(d, d.noise_mm) + ")" +
+             (valve_lacks(d) ? "." : ", so no change of the model is necessary.");
     case Verdict::recalibrate:
-      return "The structure of the model is right, but its parameters are wrong: by recalibration, the error "
+      return "The structure of the model is right, but its parameters are wrong. By recalibration, the error "
              "falls from " +
              significant(d.as_given_rmse_mm, 2) + " to " + before + ".";
     case Verdict::cause_found:

@@ -38,11 +38,11 @@ class EntranceTest : public ::testing::Test {
   /// Prevents the process from opening any new file descriptor.
   void take_all_descriptors() {
     rlimit none = usual_;
-    none.rlim_cur = 1;  // not 0, because poll() would then refuse to watch a descriptor
+    none.rlim_cur = 1;  // the limit is not 0, because poll() would then refuse to watch a descriptor
     ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
   }
   /// Limits the number of open descriptors to the present number. The present number includes the spare
-  /// descriptors of the entrance, which the entrance can close.
+  /// descriptors that the object entrance_ holds and can close.
   void leave_the_spare_descriptors() {
     rlimit limit = usual_;
     limit.rlim_cur = static_cast<rlim_t>(::dup(0));

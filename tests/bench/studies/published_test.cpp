@@ -99,8 +99,7 @@ TEST(PublishedStudy, TheExplicitInverseGrowsByBetaOverAlphaAndTheImplicitOneIsEx
     if (row.ratio < 1) {
       EXPECT_LT(row.implicit_error_kpa, 1e-8) << row.ratio;
       // The explicit inverse is a fixed-point iteration with the contraction factor `ratio`. If `ratio` is
-      // below 1, a target that moves by at most d per sample causes an error of at most d ratio / (1 -
-      // ratio).
+      // below 1 and the target moves by at most d per sample, the error is at most d ratio / (1 - ratio).
       EXPECT_LT(row.explicit_error_kpa, row.ratio / (1 - row.ratio) * row.true_jump_kpa) << row.ratio;
     } else if (row.ratio > 1) {
       EXPECT_GT(row.explicit_error_kpa, 20) << row.ratio;

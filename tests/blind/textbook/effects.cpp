@@ -68,8 +68,8 @@ Numbers draw_effect(const std::string& id, double s, const Setting& setting, std
   if (id == "outliers") return {{"share", between(0.002, 0.01)}, {"size_mm", span * s}};
   if (id == "leak") return {{"conductance", 2 * setting.world.valve.tube_conductance * s}};
   if (id == "blocked_line")
-    return {{"share", 0.95 * s}};  // library_ids() omits this cause: it explains a change of a finger, but no
-                                   // model error
+    return {{"share", 0.95 * s}};  // library_ids() omits this cause, because it explains a change of a
+                                   // finger, but no model error
   throw std::invalid_argument("unknown cause " + id);
 }
 

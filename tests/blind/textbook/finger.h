@@ -21,7 +21,8 @@ struct FingerNumbers {
   double creep_tilt = 0;         // exponent of the weight of a creep branch: a branch with time constant tau
                                  // has the weight tau^creep_tilt
   double envelope = 0.1;         // nonlinearity of the hysteresis loops (generalised play, Preisach density)
-  double longest_creep_s = 1e9;  // largest time constant of creep [s]; branches with a larger one are omitted
+  double longest_creep_s = 1e9;  // largest time constant of creep [s]; branches with a larger time constant
+                                 // are omitted
 };
 
 const std::vector<std::string>& makes();

@@ -33,8 +33,8 @@ namespace {
 
 constexpr double noise_mm = 0.04, step_mm = 0.01, pressure_noise_kpa = 0.05, supply_noise_kpa = 0.3,
                  temperature_noise_c = 0.05;
-// Smallest displacement change that a diagnosis can detect, for one mechanism of the finger or the valve. The
-// noise of 0.04 mm hides much smaller changes only, because a campaign has 15,000 samples.
+// Smallest displacement change that a diagnosis can detect, for one mechanism of the finger or the valve. A
+// campaign has 15,000 samples, so the noise of 0.04 mm hides only much smaller changes.
 constexpr double visible_mm = noise_mm / 4;
 
 struct Arguments {

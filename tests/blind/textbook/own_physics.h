@@ -13,7 +13,8 @@ namespace textbook {
 /// Maps the id of a cause to the displacement change by this cause [mm RMS]. The map contains the causes that
 /// change the displacement by more than `visible_mm`. To compute the change, the function removes the
 /// mechanism from the world or fits a competing model. The function does not use the results of a diagnosis.
-/// For each cause, it computes this displacement change:
+/// The list states the displacement change of each cause. "Beyond zero and gain" means: without the part that
+/// a change of zero and gain can explain.
 ///
 ///   slow_creep             creep slower than `slowest_twin_s`, beyond zero and gain
 ///   hysteresis_shape       the loops as a whole, beyond zero and gain (no make has a Bouc-Wen element)

@@ -60,7 +60,7 @@ void probe_span() {
 }
 
 // Unloads a finger from 55 kPa, once with and once without a minor loop 20 -> 40 -> 20 kPa. Prints the
-// displacements after the minor loop in both cases. They must be equal.
+// displacements after the minor loop in both cases. The displacements of the two cases must be equal.
 void probe_loops() {
   std::puts("make,place,displacement_mm");
   for (const char* make : {"play", "maxwell_slip", "preisach"}) {

@@ -1,7 +1,7 @@
 // textbook-rig simulates fingers of one textbook world behind the board of config/boards/softgrip-sim.yaml,
 // in real time.
 //
-//   textbook-rig --seed N --make NAME [--fingers 3]
+//   Usage: textbook-rig --seed N --make NAME [--fingers 3]
 //
 // Listens on a free port of the loopback interface and prints it: "listening on 127.0.0.1:PORT". All fingers
 // have the same parameters, and each has its own valve. So several controllers can run at the same time and

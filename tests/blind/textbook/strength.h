@@ -13,7 +13,7 @@ namespace textbook {
 /// has bounds.
 class Recalibration {
  public:
-  /// Creates a refit with two parameters, zero and gain.
+  /// Creates a refit with two free parameters: the zero and the gain of the displacement.
   explicit Recalibration(const std::vector<double>& displacement_mm);
   /// Adds a parameter to the refit. A change of the parameter by one unit changes the displacement by
   /// `change_mm`. The refit may change the parameter by at least `low` and at most `high` units.

@@ -111,8 +111,8 @@ model::Model perturbed(double share, std::uint64_t seed) {
   for (model::BlockSpec& block : model.blocks) {
     for (double& value : block.values) {
       value *= std::round(value) == value && value < 10 ? 1 : off(random);  // leave the exponent of the model
-                                                                            // unchanged: it is the only whole
-                                                                            // number below 10
+                                                                            // unchanged, because it is the
+                                                                            // only whole number below 10
     }
   }
   return model;

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double tick_s = 0.01;
 
-/// Passes the readings of a finger to the watch. `model` is the displacement that the model predicts, and the
-/// reading is `model` + `off`.
+/// Passes the readings of a finger to the watch. The model predicts the displacement `model`, and the reading
+/// is `model` + `off`.
 class Watched {
  public:
   using Value = std::function<double(double)>;

@@ -61,8 +61,8 @@ double simulated_run_length(double allowance, double threshold, int runs, std::m
 }
 
 TEST(ModelHealth, RunLengthFormulaAgreesWithTheTablesAndWithSimulation) {
-  // Source: Montgomery, Introduction to Statistical Quality Control. With the allowance 0.5, the thresholds 4
-  // and 5 give average run lengths of 168 and 465.
+  // Source: Montgomery, Introduction to Statistical Quality Control. With the allowance 0.5, CUSUM charts
+  // with the thresholds 4 and 5 have average run lengths of 168 and 465.
   EXPECT_NEAR(cusum_run_length(0.5, 4), 168, 0.02 * 168);
   EXPECT_NEAR(cusum_run_length(0.5, 5), 465, 0.02 * 465);
   const unsigned seed = 11;
@@ -190,8 +190,8 @@ TEST(ModelHealth, GapsAreNotCounted) {
   ModelHealth health(settings, tick_s);
   for (int i = 0; i < 10000; ++i) health.skip();
   EXPECT_EQ(health.state(), HealthState::unknown);
-  // An interval is evaluated only if more than a quarter of the readings in the interval are present. Here,
-  // exactly a quarter is present.
+  // An interval is evaluated only if more than a quarter of its readings are present. In this test, exactly a
+  // quarter is present.
   for (int i = 0; i < 10000; ++i) i % 4 == 0 ? health.observe(50) : health.skip();
   EXPECT_EQ(health.state(), HealthState::unknown);
 }

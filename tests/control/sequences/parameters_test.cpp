@@ -127,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"two_units",
               with("level_kpa: {unit: mm, default: 20, range: [10, 40], about: x}", go),
               {},
-              "states another unit, `kpa`"},
+              "ends with a different unit, `kpa`"},
         Wrong{"default_outside",
               with("level_kpa: {default: 50, range: [10, 40], about: x}", go),
               {},

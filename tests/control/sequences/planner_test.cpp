@@ -160,8 +160,8 @@ TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
       << "the tracking error 3.4 s after the step of the reference is below 0.5 % of the step";
 }
 
-// The reference falls to 0 mm faster than the creep recovers. No finger can follow this reference, so the
-// plan reaches the lower pressure limit.
+// The reference falls to 0 mm faster than the creep of the finger decays. No finger can follow this
+// reference, so the plan reaches the lower pressure limit.
 TEST(Planner, BesideItsLowerBoundItIsBetterThanTheSettledLine) {
   const model::Model twin = model_named("bench_twin");
   const Reference reference = sine_reference(0.5, 4, {15, 2, 8, 8});

@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(
                "squeeze_speed_kpa_per_s: 5, settle_s: 0.1, verify: {by: detection, window_s: 0.2}, "
                "timeout_s: 3, "
                "on_fail: vent}\n",
-               "detects a part only from"},
+               "detects a part only if the gripping pressure is at least"},
         Misfit{"blind_squeeze",
                "  - move: {channels: [right], pressure_kpa: 10, duration_s: 1, squeeze_max_kpa: 5}\n",
                "limit the step with pressure_max_kpa instead of squeeze_max_kpa"},
@@ -242,7 +242,7 @@ TEST(Prepare, AStoppedPlanningIsARefusalWithItsReason) {
   document::Problems problems;
   EXPECT_FALSE(
       prepared("  - move: {displacement_mm: 5, duration_s: 1}\n", settings, problems, stop.get_token()));
-  EXPECT_NE(problems.format().find("the planning of this step was stopped"), std::string::npos)
+  EXPECT_NE(problems.format().find("the planning of this step was stopped before its end"), std::string::npos)
       << problems.format();
 }
 

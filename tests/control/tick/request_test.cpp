@@ -178,8 +178,8 @@ TEST_F(Requests, AStopOfOneStartThatPassesItKeepsItFromBeginning) {
       return event.kind == Event::Kind::request_refused && event.request == id;
     });
   };
-  // A stop that refers to the start with id 7 arrives before this start, because requests can overtake each
-  // other. The controller must then refuse the start.
+  // A stop that refers to the start with id 7 arrives before this start. This is possible, because requests
+  // can overtake each other. When the start arrives, the controller must refuse it.
   rig.request({Request::Kind::stop, 9, nullptr, 7});
   rig.tick();
   rig.request({Request::Kind::start, 7, &pick});

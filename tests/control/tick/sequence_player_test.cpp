@@ -1,5 +1,5 @@
-// Tests three kinds of sequences. In the first, a step fails. In the second, a step ends at different times
-// for the two fingers. In the third, many short steps follow each other.
+// Tests three kinds of sequences: sequences in which a step fails, sequences in which a step ends at
+// different times for the two fingers, and sequences with many short steps.
 
 #include "control/tick/sequence_player.h"
 

@@ -38,7 +38,7 @@ TEST(Tune, KeepsTheMarginAndBeatsCautiousGains) {
 TEST(Tune, TellsTheMarginsOfTheWorstFinger) {
   TuneTask task = quick_task(FeedforwardKind::none);
   task.iterations = 4;
-  task.mismatch = 0;  // no mismatch: every simulated finger equals the model
+  task.mismatch = 0;  // no mismatch, so every simulated finger equals the model
   task.draws = 1;
   const Tuned tuned = tune(task);
   const double tick_s = 1 / task.rate_hz;
@@ -76,12 +76,12 @@ TEST(Tune, SaysWhatLimitsItAndWhatTheErrorIs) {
     const char* limit;
     const char* error;
   };
-  for (const Case& test :
-       {Case{"slow", FeedforwardKind::none, 0.01, 0.01, 1.5, "the stability margin",
-             "moves faster than this feedforward"},
-        Case{"noisy", FeedforwardKind::full_model, 1, 0.001, 50, "no stability margin", "the sensor's noise"},
-        Case{"off", FeedforwardKind::full_model, 0.001, 0.15, 50, "no stability margin",
-             "the model's mismatch"}}) {
+  for (const Case& test : {Case{"slow", FeedforwardKind::none, 0.01, 0.01, 1.5, "the stability margin",
+                                "moves faster than this feedforward"},
+                           Case{"noisy", FeedforwardKind::full_model, 1, 0.001, 50,
+                                "other than the stability margin", "the sensor's noise"},
+                           Case{"off", FeedforwardKind::full_model, 0.001, 0.15, 50,
+                                "other than the stability margin", "the model's mismatch"}}) {
     SCOPED_TRACE(test.name);
     TuneTask task = quick_task(test.kind);
     task.noise_mm = test.noise_mm;

@@ -118,8 +118,8 @@ enum class Step {
   count
 };
 
-/// Executes the steps of a path. Returns the property that the path violates, or an empty text if it violates
-/// no property.
+/// Executes the steps in `path` one by one. Returns the property that this sequence of steps violates, or an
+/// empty text if it violates no property.
 std::string follow(std::span<const Step> path) {
   VirtualClock clock;
   OneOutput board(clock);

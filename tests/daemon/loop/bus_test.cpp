@@ -80,7 +80,8 @@ TEST_F(BusTest, ASilentLoopMeansSafeOutputsUntilATickThatKnowsCommandsNoMoreThan
   EXPECT_EQ(last_written(), 3);
   EXPECT_EQ(fault(), FaultCode::cycles_lost);
   EXPECT_EQ(shared_.bus.value().outputs_kpa[0], 3);
-  command(14, 3, true);  // the loop continues its motion: it does not know that the outputs have changed
+  command(14, 3, true);  // the loop continues its motion, because it does not know that the outputs have
+                         // changed
   step();
   EXPECT_EQ(last_written(), 3);
   command(4, 3, false);  // the loop has ended its motion, but it does not know that the outputs have changed

@@ -354,7 +354,7 @@ class PanelOfDaemon : public ::testing::Test {
   }
   void end() {
     if (!thread_.joinable()) return;
-    ::kill(::getpid(), SIGTERM);  // all threads block the signal; the daemon waits for it
+    ::kill(::getpid(), SIGTERM);  // all threads block the signal, and the daemon waits for the signal
     thread_.join();
   }
   nlohmann::json status() { return client_->ask({{"command", "status"}})["result"]; }

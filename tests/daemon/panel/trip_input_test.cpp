@@ -13,7 +13,7 @@ namespace {
 constexpr Nanoseconds ms = 1'000'000;
 constexpr Nanoseconds debounce = 5 * ms;
 
-/// Returns an input that is not tripped: its contact was released from 0 to 10 ms.
+/// Returns an input that is not tripped, because its contact was released from 0 to 10 ms.
 TripInput cleared() {
   TripInput input(debounce);
   input.level(false, 0);

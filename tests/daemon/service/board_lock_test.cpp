@@ -159,7 +159,8 @@ TEST(BoardLock, AnotherUsersClaimDoesNotCountAndIsSaid) {
     const auto lock = BoardLock::take(rig);
     ASSERT_TRUE(lock) << lock.error();
     ASSERT_EQ(lock->remarks().size(), 1U);
-    EXPECT_NE(lock->remarks()[0].find("may not control the board"), std::string::npos) << lock->remarks()[0];
+    EXPECT_NE(lock->remarks()[0].find("has no permission to control the board"), std::string::npos)
+        << lock->remarks()[0];
     EXPECT_FALSE(BoardLock::take(rig)) << "the lock must still exclude a second program of softgrip";
     EXPECT_FALSE(BoardLock::take(rig, LockPurpose::vent));
   }

@@ -1,7 +1,7 @@
 // Fuzz target: takes arbitrary bytes as a line of a client. The parser must return a request, or a refusal
 // with a message.
 //
-//   cmake --preset fuzz && cmake --build --preset fuzz --target client_request_fuzz
+//   Commands: cmake --preset fuzz && cmake --build --preset fuzz --target client_request_fuzz
 //   build/fuzz/tests/daemon/client_request_fuzz -max_total_time=660 -max_len=1024
 //   -dict=tests/daemon/client_request.dict NEW_CORPUS tests/daemon/socket/client_request_corpus
 

@@ -123,8 +123,8 @@ TEST(Scaling, ThroughTheRegisterWithinHalfAStep) {
       block.raw_max = one.raw_max;
       block.bits = one.bits;
       const TwoPoints sensor{4, 85, 20, 15};  // the current is highest at the near end of the range
-      // Half a step of the converter, plus half a raw unit because a step is not always a whole number of raw
-      // units.
+      // The tolerance is half a step of the converter plus half a raw unit, because a step is not always a
+      // whole number of raw units.
       const double half_step_ma =
           16.0 / (std::exp2(one.bits) - 1) / 2 + 16.0 / (one.raw_max - one.raw_min) / 2;
       for (int i = 0; i < 500; ++i) {

@@ -55,7 +55,7 @@ class IioBoardTest : public testing::Test {
 
   void put(const std::string& file, const std::string& text) const {
     fs::create_directories((root_ / file).parent_path());
-    // Overwrite the file in place: the board keeps the file open, as it keeps a file of sysfs open.
+    // Overwrite the file in place, because the board keeps the file open, as it keeps a file of sysfs open.
     std::ofstream(root_ / file) << text << "\n";
   }
   [[nodiscard]] std::string get(const std::string& file) const {
@@ -151,7 +151,7 @@ TEST_F(IioBoardTest, WhatIsNotThereIsSaid) {
   EXPECT_NE(refusal().find("in_voltage7_raw: No such file"), std::string::npos) << refusal();
   settings_.inputs[0] = {"ads1115", "voltage0", 0};
   fs::remove(root_ / "iio:device1/out_voltage_scale");
-  EXPECT_NE(refusal().find("no scale"), std::string::npos) << refusal();
+  EXPECT_NE(refusal().find("no valid attribute `scale`"), std::string::npos) << refusal();
   settings_.root = (root_ / "absent").string();
   EXPECT_NE(refusal().find("no converter is there"), std::string::npos) << refusal();
 }
@@ -216,20 +216,20 @@ TEST_F(IioBoardTest, APowerdownThatCannotBeReadOrWrittenIsRefusedBeforeAnythingI
 
 TEST_F(IioBoardTest, APowerdownThatStaysEndsTheSessionAndTheNextIsRefused) {
   const fs::path powerdown = root_ / "iio:device1/out_voltage1_powerdown";
-  // The kernel accepts a write of any number to this file. However, the file then still contains a value
-  // above 0.
+  // The kernel accepts a write of any number to the file urandom_min_reseed_secs. However, the file then
+  // still contains a value above 0.
   const std::string keeps_its_number = "/proc/sys/kernel/random/urandom_min_reseed_secs";
   if (::access(keeps_its_number.c_str(), W_OK) != 0) GTEST_SKIP() << "needs root: " << keeps_its_number;
   fs::create_symlink(keeps_its_number, powerdown);
   IioBoard board(settings_);
   ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
   EXPECT_EQ(exchange(board, 0, 0), BusStatus::disconnected);
-  EXPECT_NE(std::string(board.detail()).find("out_voltage1_powerdown: this attribute stays 1"),
+  EXPECT_NE(std::string(board.detail()).find("out_voltage1_powerdown: this attribute is still 1"),
             std::string::npos)
       << board.detail();
   EXPECT_EQ(readings_[0].sequence, 0U);
   EXPECT_EQ(board.connect(5s), BusStatus::disconnected);
-  EXPECT_NE(std::string(board.detail()).find("stays 1 after 0 was written"), std::string::npos)
+  EXPECT_NE(std::string(board.detail()).find("is still 1 after 0 was written"), std::string::npos)
       << board.detail();
   fs::remove(powerdown);
   put("iio:device1/out_voltage1_powerdown", "0");
@@ -364,7 +364,7 @@ TEST_F(IioBusTest, AnotherConverterOfTheSameNameDoesNotTakeThePlaceOfOneThatIsGo
   unplug(1, "1-0060");
   plug(1, "1-0061");
   EXPECT_EQ(board.connect(5s), BusStatus::disconnected);
-  EXPECT_NE(std::string(board.detail()).find("1-0061: restart softgripd if this is correct"),
+  EXPECT_NE(std::string(board.detail()).find("1-0061: restart softgripd if this change is intended"),
             std::string::npos)
       << board.detail();
   EXPECT_EQ(exchange(board, 50, 25), BusStatus::disconnected);

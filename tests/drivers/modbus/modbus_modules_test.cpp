@@ -18,7 +18,7 @@ using test::RegisterServer;
 using test::Requests;
 using test::shipped;
 
-/// Tests a board whose outputs belong to one device and whose inputs belong to another device.
+/// Tests a board whose outputs belong to one Modbus module and whose inputs belong to another module.
 class TwoModules : public ModbusBoardTest {
  protected:
   TwoModules() {

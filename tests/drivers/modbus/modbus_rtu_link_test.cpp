@@ -185,8 +185,8 @@ TEST(ModbusRtuLink, WhatIsNotTheAnswer) {
       line.send(checked(reply));
     };
   };
-  expect_end(ask_once(changed(0, 2)), BusStatus::bad_reply, "another unit");
-  expect_end(ask_once(changed(1, 3)), BusStatus::bad_reply, "another function");
+  expect_end(ask_once(changed(0, 2)), BusStatus::bad_reply, "a wrong unit id");
+  expect_end(ask_once(changed(1, 3)), BusStatus::bad_reply, "a different function code");
   expect_end(ask_once(changed(2, 6)), BusStatus::bad_reply, "byte count");
   expect_end(ask_once([](ScriptedLine& line, const Bytes& request) {
                Bytes reply = good_reply(request);
@@ -196,11 +196,11 @@ TEST(ModbusRtuLink, WhatIsNotTheAnswer) {
              BusStatus::bad_reply, "checksum");
   expect_end(ask_once([](ScriptedLine& line, const Bytes& request) {
                Bytes reply = good_reply(request);
-               reply.resize(reply.size() + 5);  // add 5 bytes: the shortest response has 5 bytes, so these
-                                                // bytes could be a second response
+               reply.resize(reply.size() + 5);  // add 5 bytes, which could be a second response, because the
+                                                // shortest response has 5 bytes
                line.send(reply);
              }),
-             BusStatus::bad_reply, "bytes follow");
+             BusStatus::bad_reply, "additional bytes");
   expect_end(ask_once([](ScriptedLine& line, const Bytes& request) { line.send(request); }),
              BusStatus::bad_reply, "returns the sent bytes");
 }

@@ -37,10 +37,11 @@ class RegisterServer {
   void set_coil(std::uint16_t address, std::uint16_t value);
   [[nodiscard]] std::uint16_t holding(std::uint16_t address);
   [[nodiscard]] std::uint16_t coil(std::uint16_t address);
-  /// If `mirrored` is true, a read of input registers returns the holding registers. Many boards do the same.
+  /// If `mirrored` is true, a read of input registers returns the holding registers. Many boards behave in
+  /// this way.
   void mirror_inputs(bool mirrored);
-  /// Makes the server respond to requests with the function code `function` with the exception `code`. With
-  /// nullopt, all responses are normal.
+  /// Makes the server respond with the exception `code` to requests that have the function code `function`.
+  /// With nullopt, all responses are normal.
   void refuse(std::optional<std::uint8_t> function, std::uint8_t code = 2);
   /// If `ignored` is true, the server confirms writes but does not execute them.
   void ignore_writes(bool ignored);
@@ -72,8 +73,8 @@ class RegisterServer {
   bool mirrored_ = false;
   std::chrono::milliseconds delay_{0};
   std::function<void(RegisterServer&, const Request&)> hook_;
-  ScriptedServer server_;  // declared last: its thread uses all other members, so it must end before their
-                           // destruction
+  ScriptedServer server_;  // declared last, because its thread uses all other members and must end before
+                           // their destruction
 };
 
 }  // namespace softgrip::drivers::test

@@ -128,7 +128,7 @@ TEST(AsymmetricBoucWen, PeekKnowsOfTheSkew) {
 }
 
 // During the first loading, the parameter delta has the same effect as an increase of gamma + eta. During
-// unloading, the effects differ.
+// unloading, the two effects differ.
 TEST(AsymmetricBoucWen, FirstLoadingSeesTheSkewAsPartOfTheSum) {
   const std::vector<double> other{0.35, 0.2, 0.02, 0.04, 1};
   Chain<double> a(skewed({0.35, 0.2, 0.03, 0.05, 1}, -0.02));

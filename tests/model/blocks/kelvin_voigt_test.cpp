@@ -17,7 +17,7 @@ const std::vector<double> two_branches{325.9, 18.0, 246.1, 2.0, 1.2};
 TEST(KelvinVoigt, StepResponseIsTheTextbookOne) {
   Block block(two_branches, Preparation{});
   double from = 0;
-  move(block, from, 40, 0);  // a pressure step: the duration is 0
+  move(block, from, 40, 0);  // a pressure step, because the duration is 0
   EXPECT_DOUBLE_EQ(block.output(), 40 / 325.9);
   for (const double t : {0.001, 0.3, 2.0, 60.0}) {
     Block one = block;
@@ -89,7 +89,7 @@ TEST(KelvinVoigt, AnyBranchBetweenSpringAndDashpot) {
 
 TEST(KelvinVoigt, SeesTheParabolaThroughBeginEndAndMean) {
   // The input is u(s) = 10 s + 8 s (1 - s) for the time s from 0 to 1 s. The mean of the input is 10/2 + 8/6.
-  // The reference divides this input into 2000 linear segments.
+  // The reference solution divides this input into 2000 linear segments.
   Block curved(two_branches, Preparation{}), pieces(two_branches, Preparation{});
   const Segment<double> out = curved.step({1.0, 0.0, 10.0, 5.0 + 8.0 / 6.0}, {});
   double from = 0, integral = 0;

@@ -50,7 +50,7 @@ TEST(RateLimit, FollowsAtOnceInADirectionWithoutLimit) {
   EXPECT_NEAR(block.output(), 10, 1e-12);
 }
 
-// In steps of 10 us, the reference moves its output towards the command within the rate limits.
+// The reference solution moves its output towards the command in steps of 10 us, within the rate limits.
 TEST(RateLimit, AgreesWithASmallStepIntegrator) {
   std::mt19937_64 random(23);
   std::uniform_real_distribution<double> pressure(0, 60), duration(0.01, 0.4);

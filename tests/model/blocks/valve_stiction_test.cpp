@@ -76,7 +76,7 @@ TEST(ValveStiction, IsTheHoldAndJumpOfARegulatorThatLooksVeryOften) {
 TEST(ValveStiction, FollowsWhatIsTooFastToStick) {
   Block block = sticking(2.0);
   const auto out = pass(block, Segment<double>::straight(0.005, 0, 49));
-  ASSERT_EQ(out.size(), 3u);  // segments: until the valve breaks free, the jump, and the remaining motion
+  ASSERT_EQ(out.size(), 3u);  // three segments: the time until the valve breaks free, the jump, and the rest
   EXPECT_NEAR(out[0].duration_s, 0.005 * 2 / 49, 1e-15);
   EXPECT_EQ(block.output(), 49);
   const auto on = pass(block, Segment<double>::straight(0.0005, 49, 50));

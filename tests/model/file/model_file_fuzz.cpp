@@ -1,7 +1,7 @@
 // Fuzz target: passes arbitrary bytes to the reader of model files. The reader must refuse the bytes or
 // return a model. If a returned model is written and read again, the result must equal this model.
 //
-//   scripts/fuzz.sh model_file_fuzz 30
+//   Command: scripts/fuzz.sh model_file_fuzz 30
 
 #include <cstddef>
 #include <cstdint>

@@ -55,7 +55,7 @@ TEST(PlcSettings, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(said_of("name: recipe", "name: receipt").find("recipe"), std::string::npos);
   EXPECT_NE(said_of("name: heartbeat", "name: fingers").find("appears twice"), std::string::npos);
   EXPECT_NE(said_of("unit: 0.01 kPa", "unit: 0.01 bar")
-                .find("not a resolution (the physical value of one count of the register)"),
+                .find("not a resolution (the physical value that corresponds to 1 in the register)"),
             std::string::npos);
   EXPECT_NE(said_of("squeeze: squeeze_kpa", "squeeze: squeeze_mm").find("must end with `_kpa`"),
             std::string::npos);

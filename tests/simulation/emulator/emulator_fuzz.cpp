@@ -1,7 +1,7 @@
 // Fuzz target: sends arbitrary bytes to the emulator. Like a client, it divides the bytes into pieces of any
 // size.
 //
-//   cmake --preset fuzz && cmake --build --preset fuzz --target emulator_fuzz
+//   Commands: cmake --preset fuzz && cmake --build --preset fuzz --target emulator_fuzz
 //   build/fuzz/tests/tools/emulator_fuzz -max_total_time=660 -max_len=1024
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // faults within their bounds, or refuse the bytes with a message that states line and column. The emulator
 // must be able to schedule all accepted faults.
 //
-//   scripts/fuzz.sh faults_file_fuzz 30
+//   Command: scripts/fuzz.sh faults_file_fuzz 30
 
 #include <cmath>
 #include <cstddef>

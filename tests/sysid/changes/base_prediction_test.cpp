@@ -21,7 +21,7 @@ TEST(BasePrediction, OfAPressureThatFollowsAtOnceADelayOfHalfASampleIsTheMeanOfT
   const Base base = fit_base(records, Judged::pressure, Drive::command, {});
   Extension late;
   late.valve.push_back({model::block_type<model::TransportDelay>(), {0.01}});  // a delay of half the sample
-                                                                               // time
+                                                                               // time of 0.02 s
   Record between = records[0];
   for (std::size_t i = 1; i < between.size(); ++i)
     between.drive_kpa[i] = 0.5 * (records[0].drive_kpa[i] + records[0].drive_kpa[i - 1]);

@@ -16,8 +16,8 @@ Base base_of(const std::vector<Log>& healthy) {
   return fit_base(make_records(healthy, {}), Judged::displacement, Drive::command, {});
 }
 
-/// Subtracts the mean of each log from the residual of the baseline model in this log. Returns the RMS [mm]
-/// of the result over all logs.
+/// Returns the RMS [mm] of the residual that the baseline model leaves in all logs. The mean of each log is
+/// subtracted from its residual first.
 double left_of_mm(const Base& base, const std::vector<Log>& logs) {
   const std::vector<Record> records = make_records(logs, {});
   const std::vector<std::vector<double>> left = residuals_of(base, records);
@@ -32,8 +32,9 @@ double left_of_mm(const Base& base, const std::vector<Log>& logs) {
   return std::sqrt(sum / count);
 }
 
-/// A drift of the sensor zero does not depend on the command. A held-out block and its neighbouring blocks
-/// contain the same drift. The filter bank must not learn this drift from the neighbouring blocks.
+/// A drift of the sensor zero does not depend on the command. A held-out block and the blocks next to it
+/// contain the same drift. The filter bank must not fit this drift in the neighbouring blocks, because it
+/// would then predict the drift in the held-out block.
 TEST(Base, LeavesOfAnotherDayWhatItLeavesOfHealthyLogsHeldOut) {
   const test::Finger drifting{.drift_mm = 0.1};
   const Base base = base_of(test::logs_of(drifting, 1));
@@ -61,8 +62,8 @@ TEST(Base, WhatAValveDoesIsJudgedInShorterBinsThanAFinger) {
   EXPECT_DOUBLE_EQ(fit_base(behind_it, Judged::displacement, Drive::measured, {}).bin_s, 0.05);
 }
 
-/// Returns the logs with the readings of a finger that is connected to a pressure regulator. The response of
-/// this regulator is not a first-order lag.
+/// Returns copies of the logs whose readings come from a simulated finger behind a pressure regulator. The
+/// response of this regulator is not a first-order lag.
 std::vector<Log> behind_a_narrow_port(std::vector<Log> logs) {
   const Regulator narrow{
       .play_kpa = 0.3, .dead_kpa = 0.9, .full_kpa = 20, .port_per_s = 0.5, .tube_per_s = 2};

@@ -34,8 +34,8 @@ TEST(Bins, AThinnedRecordThatEndsSoonerGoesOnWithItsLastValue) {
 
 constexpr double innovation = 0.5;
 
-/// Returns two runs of a first-order autoregressive process. Its mean is `zero`, and the standard deviation
-/// of its innovations is `innovation`.
+/// Returns two realisations of a first-order autoregressive process. The mean of the process is `zero`, and
+/// the standard deviation of its innovations is `innovation`.
 Binned autoregression(double weight, double zero, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, innovation);

@@ -27,8 +27,8 @@ double width(const std::optional<Interval>& interval) {
   return interval ? interval->upper - interval->lower : 0;
 }
 
-// Compares the width of the intervals with the scatter of the estimates. Each estimate has another input
-// signal and other noise.
+// Compares the width of the intervals with the scatter of the estimates. Each estimate comes from a different
+// input signal with different noise.
 TEST_F(ChangeIntervals, AreAsWideAsTheNumberScattersAndHoldIt) {
   constexpr double delay_s = 0.06;
   constexpr int draws = 30;
@@ -69,8 +69,9 @@ TEST_F(ChangeIntervals, AreWiderWhereHealthyUnitsDifferInTheSameNumber) {
   // of the difference between one run and the mean of two runs is 1.5 times this mean square.
   const double expected = 2 * 1.96 * std::sqrt(0.00025 * 1.5);
   EXPECT_NEAR(between, std::hypot(alone, expected), 1e-3 * between);
-  // A fit to a healthy run gives no information about the differences between runs if it does not reduce the
-  // error. In this case, the interval must be that of the later readings alone.
+  // In this healthy run, the delay does not reduce the error. The run then gives no information about the
+  // variation of the delay between runs. The interval must therefore have the width that the later readings
+  // alone lead to.
   EXPECT_DOUBLE_EQ(width(intervals_of(later, {delay}, {unit(0.04, -0.1)})[0].numbers.at(0)), alone);
 }
 
@@ -95,8 +96,8 @@ TEST_F(ChangeIntervals, AreWiderBesideAnEffectThatLooksAlike) {
 TEST_F(ChangeIntervals, OfANumberThatNothingShowsThereIsNone) {
   const LaterReadings later = readings({}, 5);
   FittedEffect stop = fitted(later, "pressure_saturation");
-  stop.numbers.at(0) = stop.effect.numbers[0].upper;  // the limit is set far above the commanded pressures,
-                                                      // so it has no effect
+  stop.numbers.at(0) = stop.effect.numbers[0].upper;  // the pressure limit is far above the commanded
+                                                      // pressures, so it has no effect
   const EffectIntervals intervals = intervals_of(later, {stop}, {}).front();
   EXPECT_FALSE(intervals.numbers.at(0));
   EXPECT_FALSE(intervals.size);

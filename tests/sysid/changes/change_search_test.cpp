@@ -39,7 +39,7 @@ TEST_F(ChangeSearch, ALineThatFillsAndEmptiesAlikeIsALagOfTheValve) {
   std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
   std::erase_if(effects, [](const Effect& e) { return e.id != "valve_lag" && e.id != "blocked_line"; });
   std::reverse(effects.begin(), effects.end());
-  // Error reductions that the fit of each cause can have in healthy runs.
+  // Error reductions that each of the two causes reaches in healthy runs.
   const Tolerance tolerance({{{"valve_lag", 0.05}, {"blocked_line", 0.05}}}, 2);
   std::vector<ScoredEffect> ranked = ranked_effects(later, effects, {}, tolerance, 1);
   ASSERT_EQ(ranked.size(), 2U);
@@ -52,8 +52,8 @@ TEST_F(ChangeSearch, OfThoseThatTakeAsMuchTheOneWithFewestNumbersIsFirst) {
   const LaterReadings later = readings({.delay_s = 0.02});
   std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
   std::erase_if(effects, [](const Effect& e) { return e.id != "transport_delay"; });
-  // The effect `dearer` is a delay with an additional parameter that has no effect. This effect also has a
-  // slightly larger gain.
+  // The effect `dearer` is a delay with an additional parameter that has no effect on the prediction. The
+  // error reduction by `dearer` is slightly larger than the reduction by the delay.
   Effect dearer = effects.front();
   dearer.id = "dearer";
   dearer.numbers.push_back({"idle", "", 1, 0, 1});
@@ -72,7 +72,7 @@ TEST_F(ChangeSearch, OfThoseThatTakeAsMuchTheOneWithFewestNumbersIsFirst) {
   EXPECT_EQ(ranked[0].fit.fitted.effect.id, "transport_delay");
 }
 
-/// Returns an effect with the given error reduction and the given number of fitted parameters.
+/// Returns an effect with the given error reduction and the given numbers of parameters.
 ScoredEffect scored(const char* id, double gain, std::size_t numbers, std::size_t nuisance = 0) {
   ScoredEffect scored;
   scored.gain = gain;

@@ -32,8 +32,8 @@ TEST(Change, AnotherInputAndAnotherZeroAreNoChange) {
   EXPECT_NEAR(d.readings.back().zero_mm, 0.4, 0.03);
 }
 
-/// A payload changes the gain and the zero offset at the same time. If a change affects the gain but not the
-/// zero offset, payload must not be an alternative.
+/// A payload changes the gain and the zero offset at the same time. If a change affects only the gain,
+/// payload must not be an alternative.
 TEST(Change, AnotherGainBesideAnotherZeroMayBeAWeight) {
   const auto may_be_a_weight = [](const Finger& later) {
     const ChangeDiagnosis d = changed(later);
@@ -47,8 +47,8 @@ TEST(Change, AnotherGainBesideAnotherZeroMayBeAWeight) {
   EXPECT_FALSE(may_be_a_weight({.gain = 0.2 * 0.95}));
 }
 
-/// In the later logs, replaces the reading of sample i by the reading of sample `sample(i)`. Returns the
-/// diagnosis of the changed logs.
+/// Replaces the reading of sample i in the later logs by the reading of sample `sample(i)`, and returns the
+/// diagnosis of these logs.
 ChangeDiagnosis read_at(std::size_t (*sample)(std::size_t)) {
   std::vector<Log> later = logs_of({}, 5);
   for (Log& log : later) {
@@ -68,8 +68,8 @@ TEST(Change, AReadingThatIsUpdatedTooRarelyIsSampling) {
   EXPECT_NEAR(d.causes[0].size.value, 0.2, 1e-3);
 }
 
-/// In every period of 5 s, adds an alternating error for 3 s, and single errors that are twice as large for 2
-/// s. The single errors look like outliers only if the noise is underestimated.
+/// Adds errors in every period of 5 s. The error alternates during the first 3 s. During the last 2 s, there
+/// are single errors of twice the size. If the noise is underestimated, the single errors look like outliers.
 std::vector<Log> humming(std::vector<Log> logs) {
   constexpr std::size_t per_s = 50;
   for (Log& log : logs) {
@@ -125,7 +125,7 @@ TEST(Change, AnotherGainIsAgeingInPercent) {
   EXPECT_EQ(d.causes[0].id, "ageing");
   EXPECT_EQ(d.causes[0].size.unit, "%");
   EXPECT_NEAR(d.causes[0].size.value, 3, 0.4);
-  // The result lists the compared causes. For each rejected cause, it states the reason of the rejection.
+  // The result lists all tested causes. It states the reason for each rejected cause.
   const JudgedChange& judged = d.readings.back();
   EXPECT_EQ(judged.healthy_runs, logs_of({}, 1).size());
   EXPECT_GT(judged.healthy_mm, 0);
@@ -156,7 +156,7 @@ TEST(Change, AGainThatFollowsTheTemperatureNeedNotBeWhatItWasOnTheHealthyDay) {
   ASSERT_FALSE(d->causes.empty()) << change_sentence(*d);
   EXPECT_EQ(d->causes[0].id, "thermal_gain");
   EXPECT_EQ(d->causes.size(), 1U);
-  // the change per degree refers to the gain at 24 degC, the mean temperature of the healthy logs
+  // The change per degree refers to the gain at 24 degC, the mean temperature of the healthy logs.
   EXPECT_NEAR(d->causes[0].size.value, 100 * 0.01 / (1 + 0.01 * (24 - 15)), 0.1);
 }
 
@@ -172,7 +172,7 @@ TEST(Change, AStopIsAContactAndItsSizeIsWhatIsMissingAtFullPressure) {
   const ChangeCause& cause = d.causes[0];
   const bool named = cause.id == "contact" || cause.id == "sensor_saturation";
   EXPECT_TRUE(named) << cause.id;
-  // The expected size is the mean displacement shortfall at pressures of at least 90 % of the highest
+  // The expected size is the mean displacement shortfall where the pressure is at least 90 % of the highest
   // pressure.
   const std::vector<Log> stopped = logs_of({.stop_mm = 7}, 5), free = logs_of({}, 5);
   double highest_kpa = 0, missing_mm = 0, count = 0;
@@ -220,8 +220,8 @@ TEST(Change, ASensorThatEndsJustBelowTheLargestReadingIsFound) {
   for (const Log& log : logs_of({}, 5))
     largest_mm =
         std::max(largest_mm, *std::max_element(log.displacement_mm.begin(), log.displacement_mm.end()));
-  // The limit of the sensor is close to the largest reading. The search computes its first start value from
-  // the error, and this value is above all readings.
+  // The limit of the sensor is 0.25 mm below the largest reading. The first start value of the search is
+  // computed from the error. It is larger than all readings.
   const double end_mm = largest_mm - 0.25;
   const ChangeDiagnosis d = changed({.stop_mm = end_mm});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
@@ -239,10 +239,10 @@ TEST(Change, ALeakIsSeenInThePressureAndNotInTheFinger) {
   EXPECT_EQ(d.causes.size(), 1U);
 }
 
-/// Replaces the pressure of the logs by a simulated pressure downstream of a regulator. The simulation does
-/// not use the project's equations of a regulator. Outside a dead zone, the control error and its integral
-/// open a port to a chamber. The chamber empties through a narrow tube into the finger, and the finger
-/// empties through a leak.
+/// Replaces the pressure in the logs by the pressure at the output of a simulated regulator. This simulation
+/// does not use the regulator equations of the project. If the sum of the control error and its integral
+/// leaves a dead zone, a port to a chamber opens. Air flows from the chamber through a narrow tube into the
+/// finger, and from the finger through a leak.
 std::vector<Log> behind_a_regulator(std::vector<Log> logs, double tube_per_s, double leak_per_s) {
   std::mt19937 random(static_cast<unsigned>(1000 * leak_per_s + tube_per_s));
   std::normal_distribution<double> noise(0, 0.03);
@@ -270,7 +270,7 @@ std::vector<Log> behind_a_regulator(std::vector<Log> logs, double tube_per_s, do
 }
 
 ChangeDiagnosis changed_behind_a_regulator(double tube_per_s, double leak_per_s) {
-  // Each log must last one minute, because the diagnosis does not find a small leak in shorter logs.
+  // Each log must last at least one minute, because the diagnosis does not find a small leak in shorter logs.
   const auto d = diagnose_change(behind_a_regulator(logs_of({}, 1, true, 3000), 40, 0),
                                  behind_a_regulator(logs_of({}, 5, true, 3000), tube_per_s, leak_per_s));
   EXPECT_TRUE(d) << d.error();
@@ -283,8 +283,9 @@ TEST(Change, ALeakThatARegulatorMakesUpForIsSeenWhereItsPortsOpen) {
   EXPECT_EQ(d.causes[0].id, "leak");
   EXPECT_EQ(d.causes[0].fitted.effect.form, "leak_past_a_regulator");
   EXPECT_EQ(d.causes.size(), 1U) << change_sentence(d);
-  // The pressure reaches 58 kPa, and the leak loses 20 % of the pressure per second. The simulation and the
-  // diagnosis use different flow equations for the leak, so their results can differ by up to a factor of 2.
+  // The pressure reaches 58 kPa, and the finger loses 20 % of its pressure per second through the leak. The
+  // simulation and the diagnosis use different flow equations for the leak, so the two loss rates can differ
+  // by a factor of 2.
   EXPECT_GT(d.causes[0].size.value, 0.5 * 0.2 * 58);
   EXPECT_LT(d.causes[0].size.value, 2 * 0.2 * 58);
 }
@@ -295,7 +296,7 @@ TEST(Change, ATubeThatThrottlesMoreBehindARegulatorIsABlockedLine) {
   EXPECT_EQ(d.causes[0].id, "blocked_line");
 }
 
-/// Returns logs whose pressure is simulated with the regulator model of the program.
+/// Returns logs whose pressure comes from the regulator model of the project.
 std::vector<Log> regulated_logs(unsigned first_seed, const Regulator& regulator) {
   std::mt19937 random(first_seed);
   std::normal_distribution<double> noise(0, 0.03);
@@ -394,9 +395,9 @@ TEST(Change, TooLittleIsRefused) {
   EXPECT_FALSE(diagnose_change({}, logs_of({}, 5)));
 }
 
-/// A lag of 0.01 s causes an error that is larger than in the healthy runs but below the limit for a new run.
-/// If the later run starts like the healthy runs, the diagnosis finds the lag. If the later run starts under
-/// pressure, it does not find the lag.
+/// Because of a lag of 0.01 s, the error is larger than in the healthy runs, but smaller than the limit for a
+/// further run. If the later run starts like the healthy runs, the diagnosis finds the lag. If the later run
+/// starts under pressure, the diagnosis does not find the lag.
 TEST(Change, AnotherStartNeedsALargerError) {
   const std::vector<Log> healthy{log_of({}, 1), log_of({}, 2), log_of({}, 3)};
   const Log at_rest = log_of({.valve_lag_s = 0.01}, 5);
@@ -415,7 +416,7 @@ TEST(Change, AnotherStartNeedsALargerError) {
   EXPECT_EQ(alike.verdict, ChangeVerdict::cause_found) << change_sentence(alike);
   EXPECT_EQ(other.verdict, ChangeVerdict::unchanged) << change_sentence(other);
   EXPECT_TRUE(std::any_of(other.warnings.begin(), other.warnings.end(), [](const std::string& warning) {
-    return warning.find("No healthy log begins like") == 0;
+    return warning.find("No healthy log begins in the same state (pressurised or vented) as") == 0;
   }));
 }
 

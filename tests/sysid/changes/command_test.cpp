@@ -1,4 +1,4 @@
-// Runs the commands softgrip baseline and softgrip diagnose --healthy as a user runs them.
+// Runs `softgrip baseline` and `softgrip diagnose` with the arguments that a user would give.
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -70,8 +70,8 @@ TEST(Downstream, IsWhatTheWholeChainShowsBitForBit) {
   }
 }
 
-// is_downstream() returns true if a block can be applied directly to the samples of a prediction. The result
-// for such a block must equal the result of the complete model.
+// is_downstream() returns true if a block can be applied to the samples of a prediction, so that the model is
+// not simulated again. For such a block, the result must equal the simulation of the model with the block.
 TEST(Downstream, HoldsForEveryBlockThatSaysSo) {
   const Record record = waving();
   const std::vector<double> plain = walked(base(), record);

@@ -19,8 +19,8 @@ DriveChoice choice_of(const std::vector<Log>& healthy) {
                       make_records(healthy, {.drive = Drive::command}), 1);
 }
 
-/// Replaces the pressure by a pressure that depends on the rate of the command. A gauge in the supply pipe of
-/// an actuator shows such a pressure if a flow drives the actuator.
+/// Replaces the measured pressure by a pressure that depends on the rate of the command. A gauge in the
+/// supply pipe of an actuator shows this kind of pressure if a flow drives the actuator.
 std::vector<Log> with_gauge_in_the_pipe(std::vector<Log> logs) {
   std::mt19937 random(11);
   std::normal_distribution<double> noise(0, 0.2);

@@ -43,7 +43,7 @@ TEST(Extension, ALeakLosesPressureWhileTheValveRestsAndIsMadeUpForByMotion) {
   r.drive_kpa.assign(r.size(), 40.0);
   for (std::size_t i = 1000; i < r.size(); ++i) r.drive_kpa[i] = i % 2 == 0 ? 40.0 : 20.0;
   const std::vector<double> p = pressure_behind({}, {0.5, 1e6, 1.0}, r, std::vector<double>(r.size(), 40.0));
-  EXPECT_NEAR(40 - p[500], 0.5 * 10, 0.1);  // 10 s of pressure loss at 0.5 kPa/s
+  EXPECT_NEAR(40 - p[500], 0.5 * 10, 0.1);  // pressure loss of 0.5 kPa/s during 10 s
   EXPECT_LT(40 - p[1100], 0.05);
   EXPECT_EQ(pressure_behind({}, {}, r, r.drive_kpa), r.drive_kpa);
 }
@@ -64,8 +64,8 @@ TEST(Extension, ACrescentGoesUpOneWayAndDownAnother) {
   for (std::size_t i = 0; i < r.size(); ++i)  // the pressure rises to 60 kPa and falls to 0
     r.drive_kpa[i] = 60 * (1 - std::abs(2 * static_cast<double>(i) / samples - 1));
   const std::vector<double> added = added_by({0.2, 3}, r, 60);
-  const std::size_t half = r.size() / 4;  // first sample at which the pressure has reached half of its
-                                          // maximum
+  const std::size_t half = r.size() / 4;  // first sample whose pressure is at least half of the largest
+                                          // pressure
   EXPECT_NEAR(added[half], -0.2 * 0.5 * (0.5 - 0.125), 1e-3);
   EXPECT_NEAR(added[r.size() - half], 0.2 * 0.5 * (0.5 - 0.125), 1e-3);
   EXPECT_NEAR(added[0], 0, 1e-3);
@@ -77,10 +77,10 @@ TEST(Extension, ABlockedLineFillsMoreSlowlyThanItEmpties) {
   std::vector<double> step(r.size(), 0.0);
   for (std::size_t i = 100; i < 500; ++i) step[i] = 10;
   const std::vector<double> p = pressure_behind({1.0, 0.2}, {}, r, step);
-  EXPECT_NEAR(p[100 + 50 - 1], 10 * (1 - std::exp(-1)), 0.1);  // 1 s after the rising step: the time constant
-                                                               // of filling
-  EXPECT_NEAR(p[500 + 10 - 1], 10 * std::exp(-1), 0.2);        // 0.2 s after the falling step: the time
-                                                               // constant of emptying
+  EXPECT_NEAR(p[100 + 50 - 1], 10 * (1 - std::exp(-1)), 0.1);  // 1 s after the rising step, which is the time
+                                                               // constant of filling
+  EXPECT_NEAR(p[500 + 10 - 1], 10 * std::exp(-1), 0.2);        // 0.2 s after the falling step, which is the
+                                                               // time constant of venting
 }
 
 TEST(FilterBank, ALagIsExactForWhatIsStraightBetweenSamples) {
@@ -107,7 +107,8 @@ TEST(FilterBank, ColumnsKnowTheSupplyWhereItIsRecorded) {
 TEST(FilterBank, OfACommandHoldsWhatAFingerAndWhatAValveMayDo) {
   const Record r = record();
   const auto columns = [&](FilterKind kind) { return filter_columns(r, r.drive_kpa, kind, 60).cols(); };
-  // Among the filter banks, only the one for a valve has columns without a delay.
+  // Columns without a delay exist only in the filter bank for a valve. It has 9 time constants, one of which
+  // is 0.
   const auto at_once = columns(FilterKind::valve) / 9;
   EXPECT_EQ(columns(FilterKind::valve_and_finger),
             columns(FilterKind::valve) - at_once + columns(FilterKind::finger));

@@ -27,8 +27,8 @@ Record waving() {
   return record;
 }
 
-/// Returns a residual with two parts. The first part is `share` times the command after a first-order lag of
-/// 0.5 s. The second part does not depend on the command.
+/// Returns a residual that is the sum of two parts. The first part is `share` times the command after a
+/// first-order lag of 0.5 s. The second part does not depend on the command.
 Binned left_of(const Record& record, double share) {
   const std::vector<double> drive = binned(record, lagged(record, record.drive_kpa, 0.5), bin_s);
   Binned left{{}};
@@ -65,7 +65,8 @@ TEST(FilterFit, OfWhatDoesNotFollowTheDriveIsNone) {
   }
 }
 
-/// A left-out unit must be judged by the residual of the model that was fitted without this unit.
+/// The error of a left-out cross-validation unit must be computed from the residual of the model that was
+/// fitted without this unit.
 TEST(FilterFit, EachUnitIsJudgedByTheModelThatWasFittedWithoutIt) {
   const std::vector<Record> records{waving()};
   const Units units(records);

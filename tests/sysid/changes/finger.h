@@ -1,6 +1,7 @@
 #pragma once
-// A simulated finger for tests of changes. Its equations are not those of the models. The finger has an
-// elastic part, a part with play and a part that creeps. Its valve has no dynamics.
+// A simulated finger for the tests of change detection. Its equations differ from the equations of the models
+// in the project. The finger has an elastic part, a part with play and a part that creeps. Its valve has no
+// dynamics by default.
 
 #include <algorithm>
 #include <cmath>
@@ -17,14 +18,16 @@ struct Finger {
   double gain = 0.2;     ///< gain of the finger, mm/kPa
   double stop_mm = 1e9;  ///< largest displacement [mm]
   double zero_mm = 0;
-  double lost_kpa_per_s = 0;  ///< rate of the pressure loss under a constant command [kPa/s], up to a loss of
-                              ///< 1.5 kPa
+  double lost_kpa_per_s = 0;  ///< rate at which pressure is lost while the command is constant [kPa/s]; the
+                              ///< loss ends at 1.5 kPa
   double delay_s = 0;
   double valve_lag_s = 0;
   double per_c = 0;  ///< relative change of the gain per degree above 15 degC
   bool with_temperature = false;
-  double bend_per_mm = 0;  ///< stiffening with the displacement; the displacement of 12 mm does not change
-  double crescent_mm = 0;  ///< width of a loop [mm] that rises along a parabola and falls along a line
+  double bend_per_mm = 0;  ///< coefficient of stiffening with the displacement [1/mm]; a displacement of 12
+                           ///< mm stays unchanged
+  double crescent_mm = 0;  ///< width of a hysteresis loop [mm]; loading follows a parabola and unloading
+                           ///< follows a line
   double drift_mm = 0;     ///< amplitude of a drift of the zero offset [mm] with a period of about 15 s
 };
 
@@ -48,9 +51,10 @@ inline std::vector<double> command_kpa(unsigned seed, std::size_t samples, doubl
   return out;
 }
 
-/// Returns the pressure behind a first-order lag at the end of one sample. The pressure before the lag is
-/// linear between two samples, like the command of a record. @param lagged_kpa, from_kpa  pressures behind
-/// and before the lag at the previous sample. @param to_kpa  pressure before the lag at this sample.
+/// Returns the output pressure of a first-order lag at the end of one sample. The input pressure is linear
+/// between two samples, like the command of a record.
+/// @param lagged_kpa, from_kpa  output and input pressure of the lag at the previous sample.
+/// @param to_kpa  input pressure of the lag at this sample.
 inline double lagged_kpa(double lagged_kpa, double from_kpa, double to_kpa, double step_s, double lag_s) {
   if (lag_s <= 0) return to_kpa;
   const double behind_kpa = lag_s * (to_kpa - from_kpa) / step_s;

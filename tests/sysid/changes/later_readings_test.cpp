@@ -12,7 +12,7 @@
 namespace softgrip::sysid::later_readings_test {
 namespace {
 
-/// Returns the last part of each log. This part begins when the pressure first exceeds half of its maximum.
+/// Returns the end of each log, from the first sample whose pressure exceeds half of the largest pressure.
 std::vector<Log> under_pressure(std::vector<Log> logs) {
   for (Log& log : logs) {
     const std::vector<double>& command = log.pressure_command_kpa;
@@ -43,7 +43,7 @@ TEST(LaterReadings, ATransientIsNoChangeIfNoHealthyRecordBeginsAlike) {
   EXPECT_EQ(moved.other_starts(), (std::vector<std::string>{at_rest[0].name, at_rest[1].name}));
   EXPECT_LT(moved.plain_rms({}), 1.5 * plain.plain_rms({}));
   EXPECT_LT(moved.white({}).norm(), 1.5 * plain.white({}).norm());
-  // If the gain has changed, the removal of transients must not remove the effect of this change.
+  // The transients are fitted and removed. If the gain has changed, the effect of this change must remain.
   EXPECT_GT(readings(test::logs_of({.gain = 0.85 * 0.2}, 5)).plain_rms({}), 3 * plain.plain_rms({}));
 
   const std::vector<Log> alike = under_pressure(at_rest);

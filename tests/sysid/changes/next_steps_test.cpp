@@ -15,8 +15,9 @@ TEST(NextSteps, EveryCauseHasTwoThingsToDoAndPlainWords) {
   std::vector<std::string_view> ids;
   for (const CauseWithoutBlock& cause : causes_without_block) ids.push_back(cause.id);
   for (const Cause& cause : all_causes()) {
-    // A diagnosis of a change never reports hysteresis_shape or pressure_scale. hysteresis_shape is a cause
-    // of a model error, but not of a change. pressure_scale is listed only as an alternative to a leak.
+    // The two causes in this condition are never reported as the cause of a change. hysteresis_shape explains
+    // an error of the model, not a change of the finger. pressure_scale is listed only as an alternative to a
+    // leak.
     if (cause.id != "hysteresis_shape" && cause.id != "pressure_scale") ids.push_back(cause.id);
   }
   for (const std::string_view id : ids) {
@@ -33,7 +34,7 @@ TEST(NextSteps, ASizeThatIsANumberIsOneOfTheCausesBlock) {
   std::size_t numbers = 0;
   for (const Cause& cause : all_causes()) {
     const SizedBy size = sized_by(cause.id);
-    // a leak has a separate search, which also computes its size
+    // the size of a leak has no block parameter, because a separate search finds the leak
     if (size.of != SizedBy::Of::number || cause.id == leak.id) continue;
     ++numbers;
     EXPECT_FALSE(size.unit.empty()) << cause.id;

@@ -1,6 +1,6 @@
 #pragma once
-// A baseline model of the pressure for tests. The model consists of a filter bank only, so its fit takes
-// little time.
+// A baseline model of the pressure for tests. The model is a filter bank without further parts, so its fit
+// takes little time.
 
 #include <gtest/gtest.h>
 

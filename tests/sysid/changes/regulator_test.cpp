@@ -15,7 +15,7 @@ namespace {
 using test::record_of;
 using test::rms;
 
-/// Returns a record in which the command steps up after 0.5 s.
+/// Returns a record whose command steps up after 0.5 s.
 Record step_record() {
   std::vector<double> command(600, 50.0);
   std::fill(command.begin(), command.begin() + 50, 0.0);
@@ -37,8 +37,8 @@ TEST(Regulator, APortThatIsOpenFillsByWhatStandsBeforeIt) {
   const Regulator narrow{.port_per_s = 0.3, .tube_per_s = 30, .spool_lag_s = 0, .chamber_share = 0};
   record.supply_kpa.assign(record.size(), 500.0);
   const std::vector<double> p = regulated(narrow, record, record.drive_kpa);
-  // The flow is choked almost until the end of the rise. The pressure therefore rises at a constant rate: 0.3
-  // per second times the absolute supply pressure of 601 kPa.
+  // The flow is choked during almost the whole rise. The pressure therefore rises at a constant rate: 0.3 per
+  // second times the absolute supply pressure of 601 kPa.
   EXPECT_NEAR(p[60] - p[55], 0.05 * 0.3 * 601.3, 0.5);
   record.supply_kpa.assign(record.size(), 300.0);
   EXPECT_NEAR(regulated(narrow, record, record.drive_kpa)[60], 401.3 / 601.3 * p[60], 0.5);
@@ -55,8 +55,8 @@ TEST(Regulator, WhilePortsAreShutALeakEmptiesTheFinger) {
   EXPECT_NEAR(regulated(shut, record, record.drive_kpa).back(), 50, 1e-9);
 }
 
-/// The simulation divides a sample into 50 steps, for samples of 0.1 s and of 1 s. A simulation with ten
-/// times as many steps must give the same result.
+/// The simulation divides a sampling interval of 0.1 s or 1 s into 50 steps. A simulation with ten times as
+/// many steps must give nearly the same pressure.
 TEST(Regulator, SlowSamplesNeedNoFinerSteps) {
   const Record slow = record_of(test::command_kpa(3, 120, 1), 1);
   constexpr std::size_t parts = 10;
@@ -77,8 +77,8 @@ TEST(Regulator, AnswersForALeakWhereItsPortsOpen) {
   const std::vector<double> tight = regulated(regulator, record, record.drive_kpa);
   regulator.leak_per_s = 0.1;
   const std::vector<double> leaking = regulated(regulator, record, record.drive_kpa);
-  EXPECT_NEAR(leaking.back(), tight.back(), 0.3);  // the leak loses 13 kPa/s, but the integral of the
-                                                   // controller compensates it
+  EXPECT_NEAR(leaking.back(), tight.back(), 0.3);  // the leak causes a loss of 13 kPa/s, but the integral
+                                                   // term of the controller compensates the loss
   EXPECT_LT(leaking[70], tight[70] - 0.2);
 }
 
@@ -113,8 +113,8 @@ TEST(Regulator, AChamberBeforeTheTubeIsFilledFirst) {
   EXPECT_NEAR(soon(0) / soon(1), 2, 0.1);
 }
 
-/// Returns the pressure of the reference solution. The valve of tests/blind/textbook implements the same
-/// standard and is integrated in small explicit steps.
+/// Returns the pressure of the reference solution. It uses the valve of tests/blind/textbook, which follows
+/// the same standard (ISO 6358-1) and is integrated in small explicit steps.
 std::vector<double> textbook_pressure(const textbook::ValveNumbers& numbers, const Record& record) {
   constexpr double step_s = 0.00025;
   textbook::Valve valve(numbers);
@@ -151,8 +151,8 @@ TEST(Regulator, AnswersAsAnotherProgramsValveByTheSameStandard) {
       const double far_kpa = rms(record.drive_kpa, p);
       EXPECT_GT(far_kpa, 0.3);
       EXPECT_LT(rms(regulated(regulator, record, record.drive_kpa), p), 0.08 * far_kpa) << leak;
-      // If the regulator is simulated with steps as small as those of the reference solution, the difference
-      // must be small.
+      // The regulator is simulated with steps as small as the steps of the reference solution. The difference
+      // between the two pressures must then be small.
       constexpr std::size_t parts = 40;
       const Record fine = finer_record(record, parts);
       const std::vector<double> at_all = regulated(regulator, fine, fine.drive_kpa);

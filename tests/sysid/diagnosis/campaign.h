@@ -1,5 +1,6 @@
 #pragma once
-// Creates records with known commands for tests, and residuals with known properties for these records.
+// Creates records with known commands for tests. Creates residuals with known properties that match these
+// records.
 
 #include <cmath>
 #include <limits>
@@ -11,8 +12,8 @@
 
 namespace softgrip::sysid {
 
-/// Returns the records of `logs` logs. Each log is one minute long and sampled at 50 Hz. The commands are
-/// triangles with several amplitudes and rates, with holds and rests.
+/// Returns `logs` records. Each record lasts one minute and is sampled at 50 Hz. The commands consist of
+/// triangles with several amplitudes and rates, of holds and of rests.
 inline std::vector<Record> known_campaign(std::size_t logs) {
   std::vector<Record> records;
   double largest = 0;
@@ -29,7 +30,7 @@ inline std::vector<Record> known_campaign(std::size_t logs) {
       const double peak = 20.0 + 5.0 * static_cast<double>((cycle + k) % 5);
       const double rise_s = cycle % 2 == 0 ? 1.0 : 2.5;
       const double phase = t - 10 * static_cast<double>(cycle);
-      // Each cycle consists of a rise, a hold of 2 s, a fall and a rest.
+      // Each cycle of the command consists of a rise, a hold of 2 s, a fall and a rest.
       double p = 0;
       if (phase < rise_s) {
         p = peak * phase / rise_s;
@@ -60,8 +61,8 @@ inline ByRecord readings_of(const std::vector<Record>& records) {
   return readings;
 }
 
-/// Returns noise with a given standard deviation. `correlation` is the correlation between successive
-/// samples.
+/// Returns noise with a given standard deviation for each record. `correlation` is the correlation between
+/// one sample and the next.
 inline ByRecord noise_for(const std::vector<Record>& records, double deviation, double correlation,
                           std::uint64_t seed) {
   std::mt19937_64 random(seed);

@@ -7,8 +7,8 @@
 namespace softgrip::sysid::comparison_test {
 namespace {
 
-/// Returns the losses of two models for blocks of ten rows each. The loss difference per row has the mean
-/// `mean`. Its standard deviation between blocks is `spread`.
+/// Returns the losses of two models in blocks of ten rows. The loss difference per row has the mean `mean`
+/// and the standard deviation `spread` between blocks.
 PairedLosses losses(double mean, double spread, std::size_t blocks, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(mean, spread);

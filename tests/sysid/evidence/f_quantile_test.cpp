@@ -6,8 +6,8 @@ namespace softgrip::sysid::f_quantile_test {
 namespace {
 
 TEST(FQuantile, AgreesWithTheTablesOfAbramowitzAndStegun) {
-  // Source of the values: Abramowitz and Stegun, table 26.9. The last value is an upper 1 % quantile; all
-  // other values are upper 5 % quantiles.
+  // The expected values are from Abramowitz and Stegun, table 26.9. The last value is an upper 1 % quantile,
+  // and the other values are upper 5 % quantiles.
   EXPECT_NEAR(f_quantile(0.95, 1, 1), 161.4, 0.1);
   EXPECT_NEAR(f_quantile(0.95, 3, 3), 9.28, 0.005);
   EXPECT_NEAR(f_quantile(0.95, 3, 9), 3.86, 0.005);

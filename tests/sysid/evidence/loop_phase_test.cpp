@@ -14,8 +14,9 @@ struct Signals {
   std::vector<double> command, reading;
 };
 
-/// Returns the signals of a PI controller that keeps the flow through a valve at 0. @param band  change of
-/// the command at which the valve breaks free and jumps. @param wave  amplitude of a disturbance of the flow.
+/// Returns the signals of a control loop with a PI controller that keeps the flow through a valve at 0.
+/// @param band  change of the command at which the valve breaks free and jumps.
+/// @param wave  amplitude of a disturbance of the flow.
 Signals loop(double band, double wave, double proportional, double integral, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 0.01);
@@ -34,7 +35,8 @@ Signals loop(double band, double wave, double proportional, double integral, uns
   return signals;
 }
 
-/// Returns the signals of a finger that follows a planned command with a lag.
+/// Returns the command and the reading of a finger without feedback. The command was planned before the run,
+/// and the finger follows it with a lag.
 Signals planned(double lag_share, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 0.01);
@@ -74,8 +76,9 @@ TEST(LoopPhase, APlannedCommandIsNoLoopHoweverLateTheFingerIs) {
   }
 }
 
-/// The reading follows a random command, so the cross-correlation of the two signals is one-sided. Its odd
-/// part is as large as for a valve with stiction. Nevertheless, no control loop may be reported.
+/// The command is random, and the reading follows it with a lag. The cross-correlation is therefore
+/// one-sided, and its odd part is as large as for a valve with stiction. Nevertheless, the signals must not
+/// count as a closed loop.
 TEST(LoopPhase, ARandomCommandIsNoLoop) {
   std::mt19937 random(9);
   std::normal_distribution<double> normal(0, 1);

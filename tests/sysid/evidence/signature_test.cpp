@@ -7,7 +7,8 @@
 namespace softgrip::sysid::signature_test {
 namespace {
 
-/// Returns the operating points of a grip: a rest, a rise, a hold at 50 kPa, a fall and a rest.
+/// Returns the operating points of a grip that consists of a rest, a rise, a hold at 50 kPa, a fall and a
+/// rest.
 std::vector<OperatingPoint> grip() {
   return {{0, 0, 0}, {1, 0, 0}, {20, 30, 4}, {40, 30, 8}, {50, 0, 10}, {50, 0, 10}, {20, 30, 5}, {0, 0, 1}};
 }

@@ -23,13 +23,13 @@ TEST(Tolerance, OfOneRunIsThreeTimesInRootMeanSquareAndFallsWithMoreRuns) {
 }
 
 TEST(Tolerance, AnotherRunOfTheSameKindExceedsItInOneOfTwenty) {
-  // Simulates 4,000 sets of runs with seed 1. The runs differ in three directions. The standard deviation is
-  // the same in all three.
+  // Simulates 4,000 sets of runs with seed 1. A run is a point with three coordinates. All coordinates have
+  // the same standard deviation.
   std::mt19937 random(1);
   std::normal_distribution<double> normal(0, 1);
   using Run = std::array<double, 3>;
   const auto run = [&] { return Run{normal(random), normal(random), normal(random)}; };
-  // Predicts one run as the mean of the other runs. Returns the squared error of this prediction.
+  // Predicts one run as the mean of the other runs, and returns the squared error of the prediction.
   const auto improvement = [](const Run& predicted, const std::vector<Run>& runs, std::size_t left_out) {
     const auto others = static_cast<double>(runs.size() - (left_out < runs.size() ? 1 : 0));
     double sum = 0;

@@ -7,7 +7,7 @@
 namespace softgrip::sysid::veto_test {
 namespace {
 
-/// Returns a candidate cause, with its size and its errors, that meets every condition for being named.
+/// Returns the evidence for a cause that meets all conditions for being reported.
 Claim sound() {
   return {.size = Interval{1, 2}, .largest_size = 10, .error_without = 1, .error_with = 0.5};
 }

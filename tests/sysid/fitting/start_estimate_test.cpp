@@ -55,8 +55,8 @@ double error_mm(const model::Model& finger, const Record& record, const StartSta
   return rms(residual(record, predict(finger, record, start)));
 }
 
-/// Returns the indices of samples at which a record can be cut. Ten of them have equal distances. At the
-/// others, the pressure returns to 0, and at least 3 s of the record follow.
+/// Returns the indices of the samples at which a record can be cut. Ten of these samples are at equal
+/// distances. At each of the other samples, the pressure returns to 0, and at least 3 s of the record follow.
 std::vector<std::size_t> moments_to_cut(const Record& record) {
   constexpr std::size_t cuts = 10;
   std::vector<std::size_t> moments;

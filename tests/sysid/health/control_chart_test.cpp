@@ -233,7 +233,7 @@ TEST(ControlChart, TakesSomebodyElsesAlarm) {
   EXPECT_FALSE(chart.alarm());
   chart.take_alarm(42);
   EXPECT_EQ(chart.alarm()->since, 42U);
-  chart.take_alarm(43);  // no effect: the alarm began before point 43
+  chart.take_alarm(43);  // no effect, because the alarm began before point 43
   EXPECT_EQ(chart.alarm()->since, 42U);
   chart.take_alarm(40);
   ASSERT_TRUE(chart.alarm());

@@ -71,7 +71,7 @@ struct Rig {
 };
 
 /// Returns a rig whose left finger changes on day `from`. From this day on, the gain indicator of the left
-/// finger differs by `by` [mm].
+/// finger is changed by `by` [mm].
 Rig softening(unsigned seed, double by, int from) {
   Rig rig;
   rig.seed = seed;

@@ -84,7 +84,7 @@ TEST(RunningReference, ASlopeThatMayBeChanceIsNone) {
     for (int i = 0; i < 30; ++i) reference.learn(30 + 0.05 * normal(random), 20 + 2 * normal(random));
     found += reference.slope() ? 1 : 0;
   }
-  EXPECT_LE(found, 12);  // at the stated rate, 2.7 of 1000 references are expected
+  EXPECT_LE(found, 12);  // at the stated rate, 2.7 of 1000 references are expected to have a slope
 }
 
 TEST(RunningReference, TemperaturesThatHardlyDifferTellNoSlope) {

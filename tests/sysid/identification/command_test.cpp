@@ -106,7 +106,8 @@ TEST_F(Command, ValidateFailsPerLogOnScreenInJsonAndByItsCode) {
   const auto json = nlohmann::json::parse(read("out/validate.json"));
   EXPECT_EQ(json["acceptable"]["tp1"], percent["tp1"].get<double>() <= between);
   EXPECT_NE(json["acceptable"]["tp1"], json["acceptable"]["hold"]);
-  EXPECT_NE(read("out.txt").find("1 of them above the permitted"), std::string::npos) << read("out.txt");
+  EXPECT_NE(read("out.txt").find("1 of these logs with an error above the permitted"), std::string::npos)
+      << read("out.txt");
   EXPECT_NE(read("out.txt").find("FAILED: above"), std::string::npos) << read("out.txt");
   for (const char* text : {"out.txt", "out/validate.json", "out/report.html"})
     EXPECT_EQ(read(text).find("nan"), std::string::npos)
@@ -206,7 +207,7 @@ TEST_F(Command, APredictionThatDivergesIsNotAcceptable) {
       << read("out.txt");
 }
 
-/// The reading 9999 is wrong: it exceeds any displacement in mm. The unit of the column is correct.
+/// The reading 9999 is wrong, because it exceeds any displacement in mm. The unit of the column is correct.
 TEST_F(Command, ALargeCodeIsNoUnit) {
   Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
   log.displacement_mm[30] = log.displacement_mm[50] = 9999;
@@ -217,8 +218,8 @@ TEST_F(Command, ALargeCodeIsNoUnit) {
   EXPECT_NE(read("err.txt").find("--missing 9999"), std::string::npos) << read("err.txt");
 }
 
-/// A pneumatic muscle in MPa moves far per unit of pressure. The log is accepted, and a warning names the
-/// unit.
+/// The log is from a pneumatic muscle with pressures in MPa, so the displacement per unit of pressure is very
+/// large. The log is accepted, and a warning names the unit.
 TEST_F(Command, AUnitIsNamedAndWhereANumberIsOutOfItsRangeTheLogIsRefused) {
   const auto identified = [&](double factor, const char* out) {
     Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);

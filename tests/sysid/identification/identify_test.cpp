@@ -91,8 +91,8 @@ TEST(Identify, WithoutLatencyTheTwinLooksNotInvertible) {
                           [](const std::string& w) { return w.find("latency") != std::string::npos; }));
 }
 
-/// A program with another integration method and another time step has simulated the logs. The program shares
-/// no code with the models.
+/// The logs were simulated by a program that shares no code with the models. Its integration method and its
+/// time step differ from those of the models.
 TEST(Identify, FindsWhatAnIndependentIntegratorSimulated) {
   const IntegratedFinger finger;
   const std::vector<Log> logs{integrated(finger, SignalName::tp1, 50, 0.05, 21),

@@ -14,9 +14,10 @@ TEST(RowAccount, IsBalancedOnlyWhereEveryRowHasAFate) {
   EXPECT_FALSE(account.balanced());
   account.leave_out(LeftOut::no_time);
   EXPECT_TRUE(account.balanced());
-  EXPECT_EQ(account.sentence(),
-            "10 rows: 6 used, 1 merged with another row of the same time, 3 left out (1 without a time, 2 in "
-            "shorter segments before or after a gap)");
+  EXPECT_EQ(
+      account.sentence(),
+      "10 rows: 6 used, 1 merged with another row that has the same time, 3 left out (1 without a time, 2 in "
+      "shorter segments before or after a gap)");
 }
 
 TEST(RowAccount, RowsThatTheUserLeavesOutAreNotLost) {

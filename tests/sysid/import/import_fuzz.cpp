@@ -2,7 +2,7 @@
 // MCAP files. A reader must refuse the bytes or return a table. It must be possible to write the proposed
 // column mapping of a returned table as options and as a mapping file. A converted table must be a valid log.
 //
-//   scripts/fuzz.sh import_fuzz 30
+//   Command: scripts/fuzz.sh import_fuzz 30
 
 #include <cstddef>
 #include <cstdint>

@@ -135,8 +135,9 @@ TEST(McapTable, NamesWhatItDoesNotRead) {
   EXPECT_EQ(column(table, "log_time"), (std::vector<double>{0, 0.5}));
   ASSERT_EQ(table.columns[0].bad.size(), 1U);
   EXPECT_EQ(table.columns[0].bad[0].cell, "of message 1");
-  EXPECT_EQ(table.notes, (std::vector<std::string>{"topic 'imu' is skipped: 1 messages in 'cdr', not in JSON",
-                                                   "'raw' is skipped: an array"}));
+  EXPECT_EQ(table.notes,
+            (std::vector<std::string>{"topic 'imu' is skipped: 1 messages are in 'cdr', not in JSON",
+                                      "'raw' is skipped, because this value is an array"}));
 }
 
 TEST(McapTable, ReadsTheCompleteMessagesOfAFileThatIsCutOff) {

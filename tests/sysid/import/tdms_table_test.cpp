@@ -123,8 +123,8 @@ TEST(TdmsTable, KeepsTheCompleteSegmentsOfAFileThatIsCutOff) {
                                 (bytes < 28 ? "first bytes" : "metadata") + ": its " + std::to_string(bytes) +
                                 " bytes are left out");
   }
-  // The file ends after the first of the 2 values of the first channel. Both rows of this segment are
-  // therefore lost.
+  // The segment has 2 rows. The file ends after the first value of the first channel, so no row of this
+  // segment is complete.
   const ForeignTable blocks = cut_at(28 + metadata.size() + 12);
   EXPECT_EQ(blocks.columns[1].values, (std::vector<double>{-7, 8}));
   EXPECT_EQ(notes(blocks), "incomplete rows or blocks of values are left out: 12 bytes");

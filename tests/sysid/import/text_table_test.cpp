@@ -43,7 +43,7 @@ TEST(TextTable, DecimalCommasAreFoundBetweenSemicolonsBlanksAndInQuotes) {
 
 TEST(TextTable, PointsAndCommasInOneFileAreRefused) {
   EXPECT_NE(refusal("a;b\n0,5;1\n1.5;2\n2,5;3\n").find("t.csv:3:1"), std::string::npos);
-  EXPECT_NE(refusal("a,b\n0,5,1,5\n1,5,2,5\n").find("2 names above 4 columns"), std::string::npos);
+  EXPECT_NE(refusal("a,b\n0,5,1,5\n1,5,2,5\n").find("2 column names above 4 columns"), std::string::npos);
 }
 
 TEST(TextTable, UnitsStandBelowTheNames) {
@@ -91,7 +91,7 @@ TEST(TextTable, MidnightIsPassed) {
 
 TEST(TextTable, TheLastLineMayBeCutOffOthersMayNot) {
   EXPECT_EQ(table_of("t,x\n0,1\n1,2\n2").notes.size(), 1U);
-  EXPECT_NE(refusal("t,x\n0,1\n1\n2,3\n3,4\n").find("t.csv:3:1: 1 cells where the rows above have 2"),
+  EXPECT_NE(refusal("t,x\n0,1\n1\n2,3\n3,4\n").find("t.csv:3:1: 1 cells, but the rows above have 2"),
             std::string::npos);
 }
 

@@ -1,7 +1,7 @@
 // Fuzz target: passes arbitrary bytes to the log reader. The reader must refuse the bytes, or return a log
 // that can be written to a file and read back.
 //
-//   scripts/fuzz.sh log_fuzz 30
+//   Command: scripts/fuzz.sh log_fuzz 30
 
 #include <cmath>
 #include <cstddef>

@@ -18,8 +18,8 @@ namespace {
 
 using document::Problems;
 
-/// Returns a valid log with 100 samples of one slow triangle. Its hysteresis is so large that the log looks
-/// like that of a real finger.
+/// Returns a valid log with 100 samples of one slow triangle. The hysteresis in the log is so large that the
+/// log looks like a log of a real finger.
 Log good_log() {
   Log log;
   for (int i = 0; i < 100; ++i) {
@@ -84,7 +84,7 @@ std::vector<Bad> bad_logs() {
       {"Semicolons", with_line(1, "time_s;pressure_command_kpa;displacement_mm"), 1, 7, "separated by ';'",
        "','"},
       {"Tabs", with_line(1, "time_s\tpressure_command_kpa\tdisplacement_mm"), 1, 7, "tabs", "','"},
-      {"DecimalComma", with_line(3, "0,01,1,0,0,251"), 3, 1, "6 cells where the header has 3",
+      {"DecimalComma", with_line(3, "0,01,1,0,0,251"), 3, 1, "6 cells, but the header has 3",
        "decimal comma"},
       {"RowTooShort", with_line(7, "0.05,5"), 7, 1, "2 cells", ""},
       {"NotANumber", with_line(5, "0.03,three,0.75"), 5, 6, "'three' in column 'pressure_command_kpa'", ""},
@@ -106,7 +106,7 @@ std::vector<Bad> bad_logs() {
       {"Hole", with_log([](Log& log) {
          for (std::size_t i = 30; i < 100; ++i) log.time_s[i] += 2;
        }),
-       32, 1, "a hole of 2.01 s", "two logs"},
+       32, 1, "a gap of 2.01 s", "two logs"},
       {"Short", format_log(slice(good_log(), 0, 12)), 13, 1, "12 samples", "at least 50"},
       {"Pascal", with_log([](Log& log) {
          for (double& p : log.pressure_command_kpa) p *= 1000;

@@ -127,7 +127,8 @@ TEST(PlausibilityWarnings, OneLogInAnotherUnitStandsOutAmongTheOthers) {
   logs[0].name = "a", logs[1].name = "b", logs[2].name = "c";
   for (double& y : logs[1].displacement_mm) y /= 25.4;
   const std::string warnings = all_of(plausibility_warnings_among(logs));
-  EXPECT_NE(warnings.find("b: the finger moves 0.0394 times as far per kPa as in the other logs: inch"),
+  EXPECT_NE(warnings.find(
+                "b: the finger moves 0.0394 times as far per kPa as in the other logs. Possible cause: inch"),
             std::string::npos)
       << warnings;
   EXPECT_EQ(warnings.find("a: "), std::string::npos);
@@ -138,7 +139,8 @@ TEST(PlausibilityWarnings, ALogThatIsGivenTwice) {
   logs[0].name = "a", logs[1].name = "b";
   logs[0].displacement_mm[3] = logs[1].displacement_mm[3] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(all_of(plausibility_warnings_among(logs)),
-            "b: the same samples as a, and repeated samples make the confidence intervals too narrow\n");
+            "b: the log contains the same samples as a. Repeated samples make the confidence intervals too "
+            "narrow\n");
   logs[1].displacement_mm[4] += 0.001;
   EXPECT_EQ(all_of(plausibility_warnings_among(logs)), "");
 }

@@ -17,7 +17,7 @@ TEST(UnitFactors, OfPressureAreKnownBothWays) {
 
 TEST(UnitFactors, SayWhichColumnWasProbablyMistaken) {
   EXPECT_NE(mistaken_unit(6.7, model::OutputUnit::mm)
-                .find("psi in a pressure column taken for kPa (a factor of 6.895)"),
+                .find("psi in a pressure column read as kPa (a factor of 6.895)"),
             std::string::npos);
   EXPECT_NE(mistaken_unit(103, model::OutputUnit::mm).find("bar"), std::string::npos);
   EXPECT_NE(mistaken_unit(0.0385, model::OutputUnit::mm).find("inch in the displacement column"),

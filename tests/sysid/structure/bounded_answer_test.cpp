@@ -10,7 +10,7 @@
 namespace softgrip::sysid::bounded_answer_test {
 namespace {
 
-/// Returns a record of one pressure cycle from 0 to 60 kPa and back to 0. The readings are the prediction of
+/// Returns a record of one pressure cycle from 0 to 60 kPa and back to 0. The readings are computed with
 /// `model`.
 Record stroke(const model::Model& model) {
   Log log;

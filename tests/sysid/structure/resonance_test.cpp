@@ -22,7 +22,7 @@ model::Model ringing_finger(double period_s) {
   return model::with_block(finger(0.06), {model::block_type<model::Inertia>(), {period_s, 0.2}});
 }
 
-/// Returns a record of steps between 0 and 60 kPa, each 4 s long. The readings are the prediction of the
+/// Returns a record of steps between 0 and 60 kPa; each step lasts 4 s. The readings are computed with the
 /// model.
 Record steps(const model::Model& model) {
   Log log;
@@ -53,7 +53,8 @@ TEST(Resonance, PeriodsOverADecadeAreFoundWithTheDelayBesideThem) {
   }
 }
 
-/// A fit without the resonance represents its slow rise by a dead time that the rig does not have.
+/// The rig has a resonance and almost no dead time. The first fit has no resonance, so it represents the slow
+/// rise of the displacement by a dead time of 0.14 s.
 TEST(Resonance, IsFoundBehindADeadTimeThatOnlyReplacedIt) {
   const auto lagging = [](double delay_s, double lag_s) {
     return model::with_block(finger(delay_s),

@@ -35,8 +35,9 @@ namespace {
 
 using model::SignalName;
 
-/// Returns a finger with play operators, a nonlinear gain, and creep over three decades of time constants.
-/// Its valve vents slowly. Its thresholds and time constants are not on the grid of values that the fit uses.
+/// Returns a finger with play operators, a nonlinear gain, and creep with three time constants from 0.3 s to
+/// 27 s. The valve vents more slowly than it fills. The thresholds and time constants of the finger are not
+/// on the grid of values that the fit uses.
 model::Model play_finger() {
   model::Model m;
   m.name = "play_finger";
@@ -50,7 +51,7 @@ model::Model play_finger() {
   return model::with_block(std::move(m), {model::block_type<model::Characteristic>(), {0.6, 25}});
 }
 
-/// Returns play_finger(), but with generalised play operators.
+/// Returns play_finger() with generalised play operators in place of the ordinary ones.
 model::Model bent_play_finger() {
   model::Model m = play_finger();
   std::vector<double>& values = m.blocks[*model::position_of<model::PrandtlIshlinskii>(m)].values;
@@ -65,8 +66,8 @@ Log scaled(Log log, double mm) {
   return log;
 }
 
-/// Predicts a log without noise that starts at rest. Returns the RMS [mm] of the prediction error after the
-/// first part of the log. `share` is the length of this part divided by the length of the log.
+/// Predicts a log without noise that starts at rest, and returns the RMS of the prediction error [mm]. The
+/// first part of the log is left out; `share` is its length divided by the length of the log.
 double continuation_rmse_mm(const model::Model& truth, const model::Model& found, SignalName signal,
                             double share) {
   const Log log = simulated(truth, signal, 100, 0, 1);
@@ -97,8 +98,8 @@ TEST(StructureColumns, AreWhatTheBlocksOfTheModelDo) {
   }
 }
 
-// The pressure rises and falls at different limited rates. Exchanged or omitted parameters would therefore
-// change the prediction.
+// The pressure rises and falls at different limited rates. If one rate is missing or both are exchanged, the
+// prediction must therefore change.
 TEST(StructureColumns, AreWhatARateLimitOfTheModelDoes) {
   const model::Model limited =
       model::with_block(play_finger(), {model::block_type<model::RateLimit>(), {0.03, 0.06}});
@@ -111,8 +112,8 @@ TEST(StructureColumns, AreWhatARateLimitOfTheModelDoes) {
   EXPECT_NEAR(rms(left), std::sqrt(fit.mean_square_mm2), 2e-5);
 }
 
-// The times of delay, lags and creep of a slow process exceed every time of a soft finger. The search finds
-// them, because its starting points and limits are in units of time_unit_s().
+// The dead time, lags and creep times of this process are 100 times those of a soft finger. The search finds
+// them, because its start points and limits are stated in units of time_unit_s().
 TEST(StructureFit, FitsAProcessThatIsAHundredTimesSlowerEquallyWell) {
   constexpr double slower = 100;
   Log log = simulated(play_finger(), SignalName::tp1, 100, 0.03, 4);
@@ -158,7 +159,7 @@ TEST(PublishedElement, RefittedWithoutABlockItStaysWhereItWas) {
 }
 
 TEST(StructureProjection, WeightsAreNeverNegative) {
-  // The reading falls while the output of a play operator rises. The best weight of each operator is
+  // The readings fall when the outputs of the play operators rise. The best weight of each operator is
   // therefore 0.
   std::vector<Record> records = make_records({simulated(play_finger(), SignalName::tp1, 50, 0.03, 3)}, {});
   for (double& y : records[0].reading_mm) y = -y;
@@ -190,8 +191,8 @@ TEST(WithoutWandering, TakesADriftAwayAndLeavesWhatTheFingerDoes) {
     return moved;
   };
   const std::vector<double> of_steady = moved_mm(steady), of_drifting = moved_mm(drifting);
-  // The correction must remove the drift of the readings. Slow creep resembles a drift, so the correction may
-  // remove a small part of the creep as well.
+  // The correction must remove the drift of the readings. It may also remove a small part of the slow creep,
+  // because slow creep resembles a drift.
   EXPECT_LT(rms(of_steady), 0.3 * drift_mm);
   std::vector<double> missed(of_drifting.size());
   for (std::size_t i = 0; i < missed.size(); ++i) {
@@ -270,8 +271,8 @@ TEST(IdentifyStructure, FindsAFingerOfPlays) {
   }
 }
 
-/// The fit must find generalised play operators. Neither a nonlinear gain after the operators nor
-/// pressure-dependent creep can replace them.
+/// The fit must find the generalised play operators. A nonlinear gain after the operators cannot replace
+/// them, and pressure-dependent creep cannot replace them.
 TEST(IdentifyStructure, FindsTheBentEnvelopesOfGeneralisedPlays) {
   const std::vector<Log> logs{simulated(bent_play_finger(), SignalName::tp1, 100, 0.03, 5),
                               simulated(bent_play_finger(), SignalName::sp2, 100, 0.03, 6)};
@@ -300,13 +301,13 @@ TEST(IdentifyStructure, FindsThatAFingerWasLoadedBefore) {
   EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
   const auto block = model::position_of<model::PrandtlIshlinskii>(found->model);
   ASSERT_TRUE(block);
-  // A pressure above twice the largest threshold moves all operators. All larger earlier pressures therefore
-  // have the same effect.
+  // A pressure above twice the largest threshold moves all play operators. An even larger pressure before the
+  // logs has the same effect, so it cannot be estimated.
   EXPECT_GT(found->model.blocks[*block].values.front(), 30);
 }
 
-/// The log has no measured pressure, but the overlap of the regulator is visible in the displacement. The fit
-/// must not describe this overlap as a lag.
+/// The log contains no measured pressure, but the overlap of the regulator is visible in the displacement.
+/// The fit must find a regulator and not describe the overlap by a lag.
 TEST(IdentifyStructure, FindsTheRegulatorBehindTheCommand) {
   model::Model regulated =
       model::without_block(play_finger(), model::block_type<model::AsymmetricValveLag>());
@@ -327,8 +328,8 @@ TEST(IdentifyStructure, FindsTheRegulatorBehindTheCommand) {
   }
 }
 
-/// This finger has one lag more than play_finger(). The test FindsAFingerOfPlays checks that the fit finds no
-/// second lag for play_finger().
+/// This finger has two lags, and play_finger() has one. The test FindsAFingerOfPlays checks that the fit
+/// finds no second lag for play_finger().
 TEST(IdentifyStructure, FindsASecondLag) {
   const model::Model slower =
       model::with_block(play_finger(), {model::block_type<model::ValveLag>(), {0.12}});
@@ -343,7 +344,8 @@ TEST(IdentifyStructure, FindsASecondLag) {
   EXPECT_NEAR(found->model.blocks[*position].values[0], 0.12, 0.06);
 }
 
-/// The command changes by 12 kPa within 0.2 s. The pressure needs 0.36 s to rise and 0.72 s to fall.
+/// The command changes by 12 kPa within 0.2 s. Because of the rate limit, the pressure needs 0.36 s to rise
+/// and 0.72 s to fall.
 TEST(IdentifyStructure, FindsARateLimit) {
   const model::Model limited =
       model::with_block(play_finger(), {model::block_type<model::RateLimit>(), {0.03, 0.06}});
@@ -378,8 +380,8 @@ TEST(IdentifyStructure, FindsAResonance) {
   EXPECT_GT(without->heldout_rmse_mm, 2 * found->rmse_mm);
 }
 
-/// The fit uses the first 20 s of the log. At the start of the log, the pressure is at an idle value, from
-/// which one cycle begins.
+/// The fit uses the first 20 s of the log, which contain one pressure cycle. The cycle begins and ends at an
+/// idle pressure of 7 kPa.
 TEST(IdentifyStructure, OneStrokeFromAnIdlePressureIsNoUnsettledCreep) {
   constexpr double idle_kpa = 7;
   const model::Model finger = play_finger();
@@ -406,7 +408,7 @@ TEST(IdentifyStructure, OneStrokeFromAnIdlePressureIsNoUnsettledCreep) {
 
 TEST(SimplestStart, WhatTheCallerStatesAndWhatRestDoesNotExplainStays) {
   const Log whole = simulated(play_finger(), SignalName::tp1, 100, 0.03, 15);
-  Log late;  // the log from 3 s on: it starts during a rise, after other cycles
+  Log late;  // the log without its first 3 s; it starts during a rise of the pressure, after other cycles
   late.name = "late";
   for (std::size_t i = 300; i < whole.size(); ++i) {
     late.time_s.push_back(whole.time_s[i] - whole.time_s[300]);
@@ -438,8 +440,8 @@ TEST(IdentifyStructure, TheAnswerDoesNotDependOnTheUnit) {
 }
 
 TEST(IdentifyStructure, NeverEndsAboveItsOwnRelaxation) {
-  // If the nonlinear parameters are set to their true values, the weights follow from a linear problem. A fit
-  // of the same structure must reach the minimum of this problem, apart from the regularisation term.
+  // If the nonlinear parameters have their true values, the weights result from a linear problem. A fit of
+  // the same structure must reach the minimum of this problem, except for the effect of the ridge penalty.
   const std::vector<Log> logs{simulated(play_finger(), SignalName::tp1, 100, 0.03, 8)};
   const std::vector<Record> records = make_records(logs, {});
   const StructureGrid grid = grid_for(records);
@@ -454,8 +456,8 @@ TEST(IdentifyStructure, NeverEndsAboveItsOwnRelaxation) {
 }
 
 TEST(IdentifyStructure, HasTwoStagesWhereThePressureWasMeasured) {
-  // The blocks of the valve must predict the measured pressure. All other blocks must predict the
-  // displacement.
+  // The valve blocks of the identified model must predict the measured pressure. The other blocks must
+  // predict the displacement.
   const model::Model whole = play_finger();
   Log log = simulated(whole, SignalName::tp1, 100, 0.03, 9);
   const model::Model valve =

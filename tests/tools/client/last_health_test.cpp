@@ -55,7 +55,7 @@ TEST_F(LastHealth, SaysWhenNothingHas) {
   const auto lines = health_lines(aged(7200, "steady"));
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_TRUE(lines[0].good);
-  EXPECT_EQ(lines[0].text, "no change at 2 fingers, checked 2 h ago");
+  EXPECT_EQ(lines[0].text, "no change detected at 2 fingers, checked 2 h ago");
 }
 
 TEST_F(LastHealth, SaysWhatTheRigShares) {

@@ -24,8 +24,8 @@
 namespace softgrip::tools::calibrate::calibrate_test {
 namespace {
 
-/// Returns four visits, two at each of two positions. Apart from small deviations, the visits lie on the line
-/// y = 3 - 2 x.
+/// Returns four visits (measurements at a position), two at each of two positions. Apart from small
+/// deviations, the visits lie on the line y = 3 - 2 x.
 std::vector<Visit> visits() {
   std::vector<Visit> list;
   for (const double off : {0.001, -0.001}) {
@@ -257,7 +257,7 @@ TEST_F(CalibrateTest, NothingRisesWithoutASensorThatTheMotionNeeds) {
                                    }};
   KnowingOperator person([] { return "1"; });
   for (const bool monitor : {false, true}) {
-    // Without the monitor, test the first two procedures only, because the others do not need the pressure
+    // Without the monitor, test only the first two procedures, because only these two need the pressure
     // monitor.
     for (std::size_t i = 0; i < (monitor ? 2 : all.size()); ++i) {
       SCOPED_TRACE(std::to_string(i) + (monitor ? " without the monitor" : " without the sensor"));

@@ -192,12 +192,12 @@ TEST_F(DoctorTest, AWatchdogThatReadersFeedIsWarnedOfAndOtherClientsAreFound) {
   expect("watchdog", Verdict::warn, "even a client that only reads resets the watchdog");
   EXPECT_EQ(finding("clients").name, "no clients");
   again(true, 1);
-  expect("clients", Verdict::ok, "the board counts 1");
+  expect("clients", Verdict::ok, "number of clients at the board: 1");
   again(true, 2);
-  expect("clients", Verdict::warn, "the board counts 2 clients");
+  expect("clients", Verdict::warn, "the board has 2 clients");
   again(false, 2);
   expect("watchdog", Verdict::ok, "vents if communication stops");
-  expect("clients", Verdict::ok, "the board counts 2");
+  expect("clients", Verdict::ok, "number of clients at the board: 2");
 }
 
 TEST_F(DoctorTest, WithoutAWatchdogAPartThatMayBeHeldIsNotDropped) {
@@ -214,7 +214,7 @@ TEST_F(DoctorTest, ASensorThatSeesNothing) {
 }
 
 /// A finger without valid displacement readings could exceed its limits unnoticed. The command must therefore
-/// not move this finger. It may move the others.
+/// not move this finger. The command may move all other fingers.
 TEST_F(DoctorTest, ASensorThatSeesNothingIsOneFailureAndItsFingerIsNotMoved) {
   Event blind;
   blind.kind = Event::Kind::sensor_fault;
@@ -239,7 +239,7 @@ TEST_F(DoctorTest, ASensorThatIsLostOnTheWayEndsTheMotion) {
   blind.kind = Event::Kind::sensor_fault;
   blind.channel = 0;
   blind.sensor.kind = SensorFault::Kind::out_of_range;
-  blind.at_s = 1.5;  // during the rise of the pressure, which lasts from 1 s to 2 s
+  blind.at_s = 1.5;  // the fault begins during the rise of the pressure, from 1 s to 2 s
   at_once(blind);
   board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
   NotingBoard board(*board_);

@@ -129,8 +129,8 @@ class MotionSessionTest : public ::testing::Test {
  protected:
   MotionSessionTest() {
     rig_.loop.exchange_deadline_s = seconds(deadline);
-    // 80 failed cycles last longer than the watchdog time. In these tests, the duration of a gap therefore
-    // ends the session before the limit of failed cycles does.
+    // 80 failed cycles last longer than the watchdog time. In these tests, the session therefore ends because
+    // of the duration of the gap, before 80 cycles have failed.
     rig_.settings.faults.bus_down_cycles = 80;
   }
   [[nodiscard]] StopRequest stop() {
@@ -210,7 +210,8 @@ TEST_F(MotionSessionTest, APauseAsLongAsTheWatchdogEndsTheMotionAndNothingRisesB
       const auto moved = move(session);
       ASSERT_FALSE(moved);
       EXPECT_EQ(moved.error().kind, Kind::bus);
-      EXPECT_NE(moved.error().text.find("the board's own watchdog acts after 0.500 s"), std::string::npos)
+      EXPECT_NE(moved.error().text.find("the board's own watchdog vents the outputs after 0.500 s"),
+                std::string::npos)
           << moved.error().text;
       EXPECT_TRUE(board.vented);
       EXPECT_EQ(board.highest_after_vent_kpa, 0);
@@ -254,7 +255,8 @@ TEST_F(MotionSessionTest, APauseInTheMiddleOfAnExchangeIsFoundOutAfterItAndEndsT
   };
   const auto moved = session.ramp(0, pressure_kpa, speed_kpa_per_s);
   ASSERT_FALSE(moved);
-  EXPECT_NE(moved.error().text.find("no good exchange for 1.20"), std::string::npos) << moved.error().text;
+  EXPECT_NE(moved.error().text.find("no successful exchange with the board for 1.20"), std::string::npos)
+      << moved.error().text;
   EXPECT_TRUE(session.leave());
   EXPECT_EQ(board_.outputs_kpa[0], 0);
   EXPECT_LE(board_.highest_after_vent_kpa, before_kpa + step_kpa())

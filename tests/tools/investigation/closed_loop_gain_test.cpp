@@ -57,9 +57,9 @@ TEST(ClosedLoopGain, AModelWithoutAnInverseIsPlannedForInstead) {
   EXPECT_NE(json["closed_loop"]["notes"].dump().find("is planned before the run"), std::string::npos);
 }
 
-/// The model contains friction that relaxes within a few ticks. This friction has no inverse, and the time
-/// steps of a planned feedforward are too long to compensate it. The other blocks predict most of the motion,
-/// so the feedforward must use the model without the friction.
+/// The model contains friction that relaxes within a few ticks. This friction has no inverse. The time steps
+/// of a planned feedforward are too long to compensate this friction. The other blocks predict most of the
+/// motion, so the feedforward must use the model without the friction.
 TEST(ClosedLoopGain, WhatOfAModelCanBeUndoneIsItsFeedforward) {
   model::Model finger = model::with_block({}, {model::block_type<model::PrandtlIshlinskii>(),
                                                {0, 0, 0, 0, 0, 0.06, 4, 0.084, 7.3, 0.105, 11.2, 0.108}});

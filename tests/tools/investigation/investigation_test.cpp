@@ -308,7 +308,7 @@ TEST_F(GaugeStepTest, AGaugeThatDecidesNothingIsNotAskedTwice) {
   ASSERT_TRUE(result);
   EXPECT_EQ(result->end, InvestigationEnd::nothing_left);
   EXPECT_EQ(checks_, 1);
-  EXPECT_NE(result->why.find("the gauge check was not conclusive"), std::string::npos) << result->why;
+  EXPECT_NE(result->why.find("The gauge check was not conclusive"), std::string::npos) << result->why;
 }
 
 TEST(SimulatedGauge, ReadsTheSensorOfTheTruthAndNotItsFinger) {

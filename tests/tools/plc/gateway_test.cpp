@@ -256,8 +256,8 @@ TEST_F(GatewayTest, KeepsTheReactionUntilADaemonHasConfirmedIt) {
   refuse({{"code", "busy"}});
   pass(0.1);
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
-  refuse({{"code", "refused"}, {"refusal", {{"code", "R07"}}}});  // "nothing to stop" confirms the stop as
-                                                                  // well
+  refuse({{"code", "refused"}, {"refusal", {{"code", "R07"}}}});  // the refusal "nothing to stop" also
+                                                                  // confirms the stop
   pass(1);
   EXPECT_TRUE(sent().empty());
   EXPECT_FALSE(gateway_.watch().owes());

@@ -50,7 +50,7 @@ Settings settings_of_the_search() {
   document::Problems problems;
   Settings settings = *load_settings(SOFTGRIP_SOURCE_DIR "/config/plc.yaml", problems);
   settings.max_masters = plcs;
-  settings.idle_s = 1e6;  // so long that the gateway never closes a connection for being idle
+  settings.idle_s = 1e6;  // this time is so long that the gateway never closes an idle connection
   settings.registers.most_fingers = 1;
   return settings;
 }
@@ -100,8 +100,8 @@ struct Command {
   std::uint16_t code = 0;
   std::uint16_t counter = 0;
   bool executed = false;
-  // True in three cases: a busy daemon has refused the command, a later command has replaced it, or the
-  // gateway that executed it has died.
+  // True in three cases: a busy daemon has refused the command, a later command has replaced this command, or
+  // the gateway that executed the command has died.
   bool over = false;
   bool reported_refused = false;
 };
@@ -380,7 +380,7 @@ class Key {
 };
 
 /// Returns a text that contains all parts of the state on which the later actions depend. The text contains
-/// times relative to the present time, in steps. It contains the rank of each id instead of the id.
+/// times relative to the present time, in steps. The text contains the rank of each id in place of the id.
 std::string World::key() const {
   Key key;
   const Handshake& handshake = gateway->handshake();

@@ -32,7 +32,7 @@ TEST(MasterWatch, TheReactionIsOwedUntilItIsConfirmedAndOncePerSilence) {
   EXPECT_TRUE(watch.look(1301));
   EXPECT_TRUE(watch.owes());
   watch.confirm();
-  EXPECT_FALSE(watch.look(1400));  // no new silence: the silence that was detected at 1301 continues
+  EXPECT_FALSE(watch.look(1400));  // no new silence, because the silence that was detected at 1301 continues
   EXPECT_FALSE(watch.owes());
   EXPECT_TRUE(watch.silent(1400));
 }

@@ -168,9 +168,9 @@ TEST_F(Places, AHeartbeatIsAChangeOnOneConnection) {
   const auto beats = [&](Masters::Id id, std::uint16_t value) {
     return masters_.take_heartbeat(*masters_.find(id), value);
   };
-  EXPECT_FALSE(beats(first, 0));  // no change: the register contains 0 from the start
+  EXPECT_FALSE(beats(first, 0));  // no change, because the register contains 0 from the start
   EXPECT_TRUE(beats(first, 5));
-  EXPECT_FALSE(beats(second, 5));  // no change: the two connections belong to the same master
+  EXPECT_FALSE(beats(second, 5));  // no change, because the two connections belong to the same master
   EXPECT_TRUE(beats(second, 6));
   EXPECT_FALSE(beats(first, 5));
   EXPECT_FALSE(beats(second, 6));

@@ -1,7 +1,7 @@
 // Fuzz target of the readers of recordings and of the daemon's lines. Reads the bytes as run.json of a
 // recording, and as a status line and an event line of the daemon. No bytes may cause a crash.
 //
-//   scripts/fuzz.sh recording_fuzz 30
+//   Command: scripts/fuzz.sh recording_fuzz 30
 
 #include <unistd.h>
 

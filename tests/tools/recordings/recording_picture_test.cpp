@@ -92,7 +92,7 @@ TEST_F(RecordingPicture, WhatTheObjectTakesIsNoTrackingError) {
   EXPECT_EQ(tracking.gripping_samples, 3U);
   EXPECT_NEAR(tracking.gripping_largest_mm, 4, 1e-12);
   EXPECT_EQ(to_text(tracking),
-            "free motion: RMSE 0.354 mm, largest 0.4 mm; gripping: up to 4 mm short of the reference");
+            "free motion: RMSE 0.354 mm, largest 0.4 mm; gripping: up to 4 mm below the reference");
   const std::string picture = sysid::svg_file_of(figure_of(*recording));
   EXPECT_NE(picture.find("in free motion RMSE 0.354 mm, largest 0.4 mm"), std::string::npos);
   EXPECT_NE(picture.find(">gripping<"), std::string::npos);

@@ -33,16 +33,16 @@ Gate::Gate(const Settings& settings, Tokens tokens)
 tl::expected<Role, Refusal> Gate::admit(const Credentials& credentials, bool changes, Nanoseconds now) {
   if (!is_own_host(credentials.host, settings_.hosts)) {
     return tl::unexpected{Refusal{421,
-                                  "the Host header does not name this computer; add its name to `hosts` "
-                                  "under `listen` in the configuration file"}};
+                                  "the Host header contains an unknown name; if this name is correct, add it "
+                                  "to `hosts` under `listen` in the configuration file"}};
   }
   const bool elsewhere = !credentials.origin.empty() && !is_own_origin(credentials.origin, credentials.host);
   const bool linked = credentials.fetch_site == "cross-site" || credentials.fetch_site == "same-site";
   if (elsewhere || (changes && linked))
-    return tl::unexpected{Refusal{403, "the request was sent by a page of another server"}};
+    return tl::unexpected{Refusal{403, "the request was sent by a web page of a different server"}};
   const bool says_where = !credentials.origin.empty() || !bearer_of(credentials.authorization).empty();
   if (changes && !says_where)
-    return tl::unexpected{Refusal{403, "the request has neither an Origin header nor a token"}};
+    return tl::unexpected{Refusal{403, "the request has no Origin header and no token"}};
   return role_of(credentials, now);
 }
 

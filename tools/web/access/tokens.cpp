@@ -78,7 +78,7 @@ tl::expected<Tokens, std::string> Tokens::load(const std::string& path) {
   if (::stat(path.c_str(), &about) != 0)
     return tl::unexpected{fmt::format("cannot read {}: {}", path, std::strerror(errno))};
   if ((about.st_mode & 07U) != 0)
-    return tl::unexpected{fmt::format("{} is readable by all users: run `chmod o= {}`", path, path)};
+    return tl::unexpected{fmt::format("all users can read {}: run `chmod o= {}`", path, path)};
   const auto text = read_file(path, longest_file);
   if (!text) return tl::unexpected{text.error()};
   auto tokens = parse(*text);

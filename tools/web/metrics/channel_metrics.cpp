@@ -26,16 +26,16 @@ constexpr Quantity quantities[] = {
     {"softgrip_displacement_meters", "displacement_mm", mm_per_m, "Measured displacement."},
     {"softgrip_reference_meters", "reference_mm", mm_per_m, "Commanded displacement."},
     {"softgrip_pressure_pascals", "pressure_kpa", kpa_per_pa,
-     "Measured pressure, if the rig has a pressure sensor."},
+     "Measured pressure, if the channel has a pressure sensor."},
     {"softgrip_temperature_celsius", "temperature_c", 1,
-     "Measured temperature, if the rig has a temperature sensor."},
+     "Measured temperature, if the channel has a temperature sensor."},
     {"softgrip_pressure_command_pascals", "command_kpa", kpa_per_pa, "Pressure command to the valve."},
     {"softgrip_squeeze_pascals", "squeeze_kpa", kpa_per_pa,
      "Gripping pressure: command minus free-motion pressure."},
     {"softgrip_model_residual_meters", "residual_mm", mm_per_m,
      "Measured displacement minus the free-motion displacement of the model in use."},
     {"softgrip_model_residual_rms_meters", "health_rms_mm", mm_per_m,
-     "Root mean square of the residual, which determines the model health."},
+     "Root mean square of the model residual, from which the health state is determined."},
 };
 
 void tell_each(const Json& channels, MetricText& metrics, const auto& value_of) {

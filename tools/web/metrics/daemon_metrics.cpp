@@ -32,7 +32,8 @@ void tell_one(MetricText& metrics, std::string_view name, MetricText::Type type,
 }
 
 void tell_state(const Json& status, MetricText& metrics) {
-  metrics.family("softgrip_build_info", gauge, "Always 1: version of softgripd and name of the rig.");
+  metrics.family("softgrip_build_info", gauge,
+                 "Always 1; the labels state the version of softgripd and the name of the rig.");
   metrics.sample({{"version", status.value("version", "")}, {"rig", status.value("rig", "")}}, 1);
   tell_one(metrics, "softgrip_simulated", gauge,
            "1 if the daemon uses a simulated board instead of a real board.",
@@ -81,30 +82,32 @@ void tell_durations(MetricText& metrics, const std::string& name, std::string_vi
 }
 
 void tell_loop(const Json& loop, MetricText& metrics) {
-  tell_one(metrics, "softgrip_loop_ticks_total", counter, "Ticks of the control loop.",
+  tell_one(metrics, "softgrip_loop_ticks_total", counter, "Number of ticks (cycles) of the control loop.",
            json_number(loop, "ticks"));
-  metrics.family("softgrip_loop_overruns_total", counter, "Missed cycles of the control loop, by cause.");
+  metrics.family("softgrip_loop_overruns_total", counter,
+                 "Number of missed cycles of the control loop, by cause.");
   metrics.sample({{"cause", "woken_late"}}, json_number(loop, "slips_woken_late"));
   metrics.sample({{"cause", "took_long"}}, json_number(loop, "slips_took_long"));
-  tell_durations(metrics, "softgrip_loop_wake_up_seconds",
-                 "Wake-up latency: from the scheduled time to the beginning of the tick.",
-                 json_member(loop, "wake_up"));
-  tell_durations(metrics, "softgrip_loop_compute_seconds", "Duration of a tick.",
+  tell_durations(
+      metrics, "softgrip_loop_wake_up_seconds",
+      "Wake-up latency of the control loop: time from the scheduled to the actual beginning of a tick.",
+      json_member(loop, "wake_up"));
+  tell_durations(metrics, "softgrip_loop_compute_seconds", "Computing time of the control loop in one tick.",
                  json_member(loop, "compute"));
   tell_durations(metrics, "softgrip_loop_reading_age_seconds",
-                 "Age of the oldest reading when the tick uses this reading.",
+                 "Age of the oldest reading at the time at which the control loop uses this reading.",
                  json_member(loop, "reading_age"));
 }
 
 void tell_bus(const Json& bus, MetricText& metrics) {
   tell_one(metrics, "softgrip_bus_exchanges_total", counter,
-           "Exchanges with the board, successful and failed.", json_number(bus, "exchanges"));
+           "Number of exchanges with the board, both successful and failed.", json_number(bus, "exchanges"));
   tell_one(metrics, "softgrip_bus_errors_total", counter,
            "Number of failed exchanges with the board and failed attempts to connect.",
            json_number(bus, "failures"));
-  tell_one(metrics, "softgrip_bus_sessions_total", counter, "Sessions that were opened with the board.",
-           json_number(bus, "sessions"));
-  tell_one(metrics, "softgrip_bus_overruns_total", counter, "Missed cycles of the bus.",
+  tell_one(metrics, "softgrip_bus_sessions_total", counter,
+           "Number of sessions with the board that were opened.", json_number(bus, "sessions"));
+  tell_one(metrics, "softgrip_bus_overruns_total", counter, "Number of missed cycles of the bus thread.",
            json_number(bus, "slips"));
   tell_durations(metrics, "softgrip_bus_exchange_seconds", "Duration of successful exchanges.",
                  json_member(bus, "exchange"));
@@ -116,7 +119,7 @@ void tell_recorder(const Json& recording, MetricText& metrics) {
   tell_one(metrics, "softgrip_recorder_failed", gauge, "1 if the last recording could not be written.",
            json_member(recording, "error").is_string() ? 1 : 0);
   tell_one(metrics, "softgrip_recorder_dropped_rows_total", counter,
-           "Rows that were not recorded because the disk was too slow.",
+           "Number of rows that were not recorded because the disk was too slow.",
            json_number(recording, "dropped_rows"));
 }
 
@@ -132,7 +135,8 @@ void tell_daemon(const Json& status, const Json& statistics, MetricText& metrics
            flag_value(json_member(status, "bus"), "connected"));
   tell_recorder(json_member(status, "recording"), metrics);
   if (const Json& real_time = json_member(status, "real_time"); real_time.is_object())
-    tell_one(metrics, "softgrip_real_time_degraded", gauge, "1 if a real-time setting was not granted.",
+    tell_one(metrics, "softgrip_real_time_degraded", gauge,
+             "1 if the operating system did not grant a requested real-time setting.",
              flag_value(real_time, "degraded"));
   if (!statistics.is_object()) return;
   tell_loop(json_member(statistics, "loop"), metrics);

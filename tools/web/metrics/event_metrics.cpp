@@ -59,14 +59,15 @@ class Counts {
 
 void tell_grips(const Json& events, const Json& channels, MetricText& metrics) {
   const Counts grips(events, "grip_result");
-  metrics.family("softgrip_grip_results_total", counter, "Results of grips, by finger.");
+  metrics.family("softgrip_grip_results_total", counter, "Number of grip results, by finger and result.");
   for (const Json& channel : channels) {
     const std::string name = json_text(channel, "name");
     for (const char* result : results)
       metrics.sample({{"channel", name}, {"result", label_of(result)}}, grips.of(result, name));
   }
   const Counts rigs(events, "overall_result");
-  metrics.family("softgrip_results_total", counter, "Results of all fingers of a sequence together.");
+  metrics.family("softgrip_results_total", counter,
+                 "Number of overall results of all fingers of a sequence, by result.");
   for (const char* result : results) metrics.sample({{"result", label_of(result)}}, rigs.of(result, {}));
 }
 
@@ -82,18 +83,19 @@ void tell_events(const Json& events, const Json& channels, MetricText& metrics) 
   if (!events.is_array()) return;
   tell_grips(events, channels, metrics);
   const auto started = Counts(events, "sequence_started").by_code();
-  metrics.family("softgrip_sequences_started_total", counter, "Sequences that were started.");
+  metrics.family("softgrip_sequences_started_total", counter, "Number of sequences that were started.");
   metrics.sample(started.empty() ? 0 : started.begin()->second);
-  metrics.family("softgrip_sequences_ended_total", counter, "Sequences that ended, by outcome.");
+  metrics.family("softgrip_sequences_ended_total", counter, "Number of sequences that ended, by outcome.");
   for (const char* end : {"done", "failed", "stopped", "faulted"})
     metrics.sample({{"end", end}}, Counts(events, "sequence_finished").of(end, {}));
-  tell_by_code(events, metrics, "fault_latched", "softgrip_faults_total", "code", "Latched faults, by code.");
+  tell_by_code(events, metrics, "fault_latched", "softgrip_faults_total", "code",
+               "Number of faults that were latched, by code.");
   tell_by_code(events, metrics, "request_refused", "softgrip_requests_refused_total", "code",
-               "Refused requests, by reason.");
+               "Number of refused requests, by reason.");
   tell_by_code(events, metrics, "bus_failed", "softgrip_bus_failures_total", "cause",
-               "Losses of communication with the board, by cause.");
+               "Number of losses of communication with the board, by cause.");
   tell_by_code(events, metrics, "reading_invalid", "softgrip_readings_invalid_total", "validity",
-               "Readings that became invalid, by reason.");
+               "Number of times that a reading became invalid, by reason.");
 }
 
 }  // namespace softgrip::web

@@ -61,7 +61,7 @@ function showPill(element, text, tone) {
 }
 
 function sentenceOfAlarm(status) {
-  if (!status) return "softgripd does not respond. The values below are out of date.";
+  if (!status) return "softgripd does not respond. The values on this page are out of date.";
   if (status.fault) {
     const finger = status.fault.channel ? ` of ${status.fault.channel}` : "";
     return `${status.fault.code} ${status.fault.name}${finger}: ${status.fault.meaning} ${status.fault.next}`;
@@ -81,7 +81,7 @@ function showHead(status) {
   if (sequence) {
     doing = sequence.ended ? `${sequence.name}: ${sequence.ended}`
       : `${sequence.name}: step ${sequence.step + 1} of ${sequence.steps}, ${sequence.step_name}`;
-    if (status.owner) doing += `, by ${status.owner}`;
+    if (status.owner) doing += `, started by ${status.owner}`;
   }
   setText($("doing"), doing);
   const alarm = sentenceOfAlarm(status);
@@ -138,21 +138,21 @@ function showHealth(status, statistics) {
   const {bus, loop, recording} = status;
   const rows = [
     ["Board", bus.connected ? "connected" : bus.failure || "does not respond", bus.connected ? "good" : "bad"],
-    ["Loop", `${status.rate_hz} Hz, ${loop.slips} of ${loop.ticks} cycles missed`, loop.slips ? "doubt" : ""],
-    ["Wake-up latency", `p99 ${loop.wake_up_p99_us.toFixed(0)} µs, maximum ${loop.wake_up_max_us.toFixed(0)} µs`],
+    ["Control loop", `${status.rate_hz} Hz, ${loop.slips} of ${loop.ticks} cycles missed`, loop.slips ? "doubt" : ""],
+    ["Wake-up latency of the loop", `p99 ${loop.wake_up_p99_us.toFixed(0)} µs, maximum ${loop.wake_up_max_us.toFixed(0)} µs`],
   ];
   if (statistics) {
     const {exchanges, failures, exchange} = statistics.bus;
-    rows.push(["Exchanges", `${failures} of ${exchanges} failed`, failures ? "doubt" : ""]);
-    rows.push(["Exchange", `p99 ${(exchange.p99_us / 1000).toFixed(2)} ms`]);
+    rows.push(["Exchanges with the board", `${failures} of ${exchanges} failed`, failures ? "doubt" : ""]);
+    rows.push(["Duration of an exchange", `p99 ${(exchange.p99_us / 1000).toFixed(2)} ms`]);
   }
   if (status.real_time) {
-    rows.push(["Real time", status.real_time.degraded ? "degraded" : "all settings verified",
+    rows.push(["Real time", status.real_time.degraded ? "degraded" : "all requested settings verified",
       status.real_time.degraded ? "doubt" : "good"]);
   }
   const written = recording.active ? `${recording.rows} rows` : "not active";
   rows.push(["Recording", recording.error || written, recording.error ? "bad" : ""]);
-  rows.push(["Rows lost", String(recording.dropped_rows), recording.dropped_rows ? "doubt" : ""]);
+  rows.push(["Lost rows of the recording", String(recording.dropped_rows), recording.dropped_rows ? "doubt" : ""]);
   showRows($("health"), rows);
 }
 
@@ -259,7 +259,7 @@ function colour(options) {
 function drawCurves() {
   if (typeof Chart === "undefined") {
     document.querySelectorAll(".canvas").forEach((place) => {
-      place.textContent = "No curves: the package libjs-chart.js is not installed.";
+      place.textContent = "The curves are not shown, because the package libjs-chart.js is not installed.";
     });
     return;
   }
@@ -361,7 +361,7 @@ function showRole() {
   $("main").hidden = session.role === "none";
   $("login").hidden = session.role !== "none";
   const who = $("who");
-  who.replaceChildren(session.role === "none" ? "" : operates() ? "may operate" : "read-only");
+  who.replaceChildren(session.role === "none" ? "" : operates() ? "may move the gripper" : "read-only");
   if (session.tokens && session.role !== "none") {
     const change = make("button", session.byToken ? "Log out" : "Log in");
     change.type = "button";
@@ -417,7 +417,7 @@ $("login-form").addEventListener("submit", async (event) => {
     say("");
     begin();
   } catch (error) {
-    say(`log in: ${error.message}`, "bad");
+    say(`login failed: ${error.message}`, "bad");
   }
 });
 begin();

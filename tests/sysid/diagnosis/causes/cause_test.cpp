@@ -25,7 +25,7 @@ Scales typical_scales() {
   return s;
 }
 
-/// Returns bench_twin. The given block replaces its valve.
+/// Returns bench_twin with the given block in place of its valve.
 model::Model with(const model::BlockSpec& block) {
   const model::Model twin = model::testing::preset("bench_twin");
   return model::with_block(
@@ -49,7 +49,7 @@ class Causes : public ::testing::TestWithParam<Cause> {
   const Cause& cause = GetParam();
   const Scales scales = typical_scales();
 
-  /// Calls check(form, start) for every model form of the cause and for every start value of this form.
+  /// Calls check(form, start) for every form of the cause and for every start point of the form.
   template <class Check>
   void each_start(Check check) {
     for (const CauseForm& form : cause.forms) {
@@ -94,8 +94,8 @@ TEST_P(Causes, StartWithinWhatAFitMayDo) {
   });
 }
 
-// A model form with more than three free parameters can fit almost any curve. The catalogue must therefore
-// mark such a form as free.
+// A form with more than three free parameters can fit almost any curve. The cause must therefore declare it
+// as a free form.
 TEST_P(Causes, MoveFewNumbers) {
   each_start([&](const CauseForm& form, const model::BlockSpec& start) {
     std::size_t fitted = 0;
@@ -132,8 +132,8 @@ TEST_P(Causes, SayWhichColumnTheyNeed) {
   EXPECT_EQ(unanswerable(cause, driven).empty(), cause.station != model::Station::valve);
 }
 
-// The catalogue marks two causes as indistinguishable, or as distinguishable by a gauge check only. In both
-// cases, one of the two causes must be a cause of the sensor, and the other one must not.
+// Two causes may be declared as indistinguishable, or as distinguishable by a gauge check only. In both
+// cases, one cause must be a cause of the sensor, and the other one must not.
 TEST_P(Causes, HaveCounterpartsAtTheOtherEnd) {
   const auto at_sensor = [](const Cause& c) { return c.station == model::Station::sensor; };
   for (const Cause& other : sensor_counterparts(cause))
@@ -170,8 +170,8 @@ TEST(Registry, CoversTheCatalogue) {
   }));
 }
 
-// With some parameter values, a block would describe another cause. The bounds of a fit must exclude these
-// values.
+// For some parameter values, the block of a cause would describe a different cause. The bounds of the fit
+// must exclude these values.
 TEST(Ranges, KeepCausesWhatTheyAreCalled) {
   const Scales scales = typical_scales();
   const auto range = [&](std::string_view id, std::string_view parameter) {
@@ -186,8 +186,8 @@ TEST(Ranges, KeepCausesWhatTheyAreCalled) {
   EXPECT_LE(range("rate_dependent_hysteresis", "width_kpa").upper, scales.largest_kpa);
   EXPECT_LE(range("inertia", "damping_ratio").upper, std::sqrt(0.5));
   EXPECT_GE(range("contact", "position_mm").lower, 0.01 * scales.span_mm);
-  // The slowest creep branch of bench_twin has a time constant of 16.5 s. The time constant of slow creep
-  // must be larger.
+  // The slowest creep branch of bench_twin has a time constant of 16.5 s. The time constant of the cause
+  // "slow creep" must be larger.
   EXPECT_GE(range("slow_creep", "time_constant_s").lower, 16.0);
   EXPECT_GE(range("periodic_disturbance", "frequency_hz").lower, 0.2 - 1e-12);
 }

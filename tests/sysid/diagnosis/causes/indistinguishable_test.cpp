@@ -1,5 +1,5 @@
-// Tests two causes that no command can distinguish. They must be listed together, even if the model form of
-// one of them fits the data better.
+// Tests two causes that no command can separate. A diagnosis must list both causes, even if the block of one
+// cause fits the data better.
 
 #include "sysid/diagnosis/causes/indistinguishable.h"
 
@@ -43,8 +43,8 @@ TEST(Indistinguishable, AreNoneWhereMemoryStandsBetweenThem) {
     EXPECT_TRUE(indistinguishable_from(cause("stiffening"), with(loaded("bench_twin"), id))) << id;
 }
 
-/// A finger that stiffens more sharply than the stiffening model of the catalogue. The model of a nonlinear
-/// sensor therefore fits the data of this finger better.
+/// A finger that stiffens more sharply than the stiffening block of the catalogue. For this reason, the block
+/// of a nonlinear sensor fits the data of this finger better.
 class BentRig : public ::testing::Test {
  protected:
   static Selection select() {
@@ -66,7 +66,7 @@ class BentRig : public ::testing::Test {
     return select_causes(data, std::move(base), 0.03, divide(data.records, 8), one);
   }
 
-  /// Returns the result of select(). The first call computes this result, and all tests share it.
+  /// Returns the result of select(), which is computed during the first call and shared by all tests.
   static const Selection& selected() {
     static const Selection selection = select();
     return selection;
@@ -83,8 +83,8 @@ TEST_F(BentRig, IsNotGivenOneNameOfTheTwo) {
       std::count_if(chosen.alternatives.begin(), chosen.alternatives.end(),
                     [&](const Cause& alternative) { return alternative == indistinguishable; });
   EXPECT_EQ(listed, 1);
-  // The model with the first cause fits the data better than the model with the second cause. Without the
-  // rule for indistinguishable causes, the first cause alone would be named.
+  // The block of the chosen cause fits the data better than the block of the other cause. Without the rule
+  // for indistinguishable causes, only the chosen cause would be listed.
   const auto score = std::find_if(chosen.candidates.begin(), chosen.candidates.end(),
                                   [&](const CandidateScore& s) { return s.cause == indistinguishable; });
   ASSERT_NE(score, chosen.candidates.end());

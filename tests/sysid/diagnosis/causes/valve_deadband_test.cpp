@@ -8,8 +8,8 @@
 namespace softgrip::sysid::valve_deadband_test {
 namespace {
 
-// The valve has stiction: it sticks and jumps. The width of the stick band varies. For every width, a fit
-// from at least one start value must find the jumps.
+// The valve sticks and jumps. For every width of its dead band, one start value must be so close to this
+// width that a fit from there finds the jumps.
 TEST(ValveDeadband, NoStaircaseIsMissed) {
   Scales scales;
   scales.largest_kpa = 40;

@@ -29,8 +29,8 @@ const ConditionEvidence& of(const ResidualEvidence& evidence, const std::string&
 }
 
 struct FalseAlarms {
-  std::map<std::string, int> below_5_percent;  ///< per condition: number of cases with an unadjusted p-value
-                                               ///< below 5 %
+  std::map<std::string, int> below_5_percent;  ///< for each condition, number of cases in which the
+                                               ///< unadjusted p-value is below 5 %
   double mean_p = 0;
   int any_clear = 0;
   int line = 0;
@@ -61,8 +61,8 @@ FalseAlarms count_alarms(double correlation) {
   return alarms;
 }
 
-/// Returns an upper limit for the number of false alarms if each case has the false-alarm probability `rate`.
-/// The limit is the mean plus three standard deviations of the binomial distribution.
+/// Returns an upper limit for the number of false alarms if a false alarm has the probability `rate` in each
+/// case. The limit is the mean plus three standard deviations of the binomial distribution.
 int at_most(double rate) {
   return static_cast<int>(worlds * rate + 3 * std::sqrt(worlds * rate * (1 - rate)));
 }
@@ -77,8 +77,8 @@ TEST(Evidence, WhiteErrorsGiveUniformPValues) {
 }
 
 TEST(Evidence, CorrelatedErrorsRaiseNoMoreFalseAlarms) {
-  // A correlation of 0.974 between samples at 50 Hz corresponds to a correlation of 0.987 at 100 Hz: both
-  // have the same correlation time.
+  // A correlation of 0.974 between samples at 50 Hz and a correlation of 0.987 between samples at 100 Hz have
+  // the same correlation time.
   const FalseAlarms alarms = count_alarms(0.974);
   for (const auto& [id, count] : alarms.below_5_percent) EXPECT_LE(count, at_most(0.05)) << id;
   EXPECT_GT(alarms.mean_p, 0.4);
@@ -94,8 +94,8 @@ TEST(Evidence, AnErrorThatFollowsTheRateIsFoundThere) {
     for (std::size_t i = 0; i < residual[k].size(); ++i) residual[k][i] += 0.01 * h.rate_kpa_per_s[i];
   }
   const ResidualEvidence evidence = examined(records, residual);
-  // The error is proportional to the rate of the pressure, so the rate must explain almost all of the error.
-  // While the pressure is constant, both are 0.
+  // The error is proportional to the rate of the pressure. The condition "rate" must therefore explain almost
+  // the whole error. While the pressure is constant, both the rate and the error are 0.
   EXPECT_EQ(evidence.conditions.front().condition.id, "rate");
   EXPECT_TRUE(evidence.conditions.front().clear);
   EXPECT_GT(evidence.conditions.front().share_percent, 90);

@@ -29,23 +29,23 @@ TEST(Advice, IsGivenForEveryPairThatNoWaveformTellsApart) {
 
 TEST(Advice, IsNotNeededWhereAWaveformTells) {
   EXPECT_TRUE(advice_for("backlash", "contact", {.separable = true}).empty());
-  // If the log has no pressure column, the advice must be to record the pressure. This is simpler than an
-  // experiment.
-  EXPECT_TRUE(says(advice_for("valve_lag", "sensor_lag", {.separable = true}), "record pressure_kpa"));
+  // If the log has no pressure column, the advice must be to record the pressure, because this is simpler
+  // than an experiment.
+  EXPECT_TRUE(says(advice_for("valve_lag", "sensor_lag", {.separable = true}), "Record pressure_kpa"));
   EXPECT_TRUE(advice_for("valve_lag", "sensor_lag", {.pressure_recorded = true, .separable = true}).empty());
 }
 
 TEST(Advice, IsOfWhatTheTwoHaveInCommon) {
-  EXPECT_TRUE(says(advice_for("stiffening", "contact", {}), "change the load"));
+  EXPECT_TRUE(says(advice_for("stiffening", "contact", {}), "Change the load"));
   EXPECT_TRUE(
-      says(advice_for("stiffening", "contact", {.gauge_made = true}), "the gauge check was not conclusive"));
+      says(advice_for("stiffening", "contact", {.gauge_made = true}), "The gauge check was not conclusive"));
   EXPECT_TRUE(says(advice_for("slow_creep", "ageing", {}), "vented for an hour"));
   EXPECT_TRUE(says(advice_for("stress_softening", "ageing", {}), "a different temperature"));
   EXPECT_FALSE(says(advice_for("stress_softening", "ageing", {.temperature_varies = true}),
                     "a different temperature"));
   EXPECT_TRUE(
       says(advice_for("thermal_gain", "contact", {.temperature_varies = true}), "a different temperature"));
-  EXPECT_TRUE(says(advice_for("inertia", "contact", {}), "no waveform"));
+  EXPECT_TRUE(says(advice_for("inertia", "contact", {}), "No waveform"));
 }
 
 }  // namespace

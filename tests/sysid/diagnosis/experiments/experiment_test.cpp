@@ -1,5 +1,5 @@
-// Tests the experiment that the diagnosis proposes. It must stay within the limits of the rig, the daemon
-// must be able to play it, and it must separate the causes as predicted.
+// Tests the experiment that a diagnosis proposes. The experiment must stay within the limits of the rig, and
+// softgripd must be able to execute it. It must also separate the causes as predicted.
 
 #include "sysid/diagnosis/experiments/experiment.h"
 
@@ -39,7 +39,7 @@ Record record_of(std::string name, std::vector<double> drive_kpa, double campaig
   return record;
 }
 
-/// Replaces the readings of a record by the prediction of a model with added noise.
+/// Replaces the readings of a record by the prediction of a model plus noise.
 void fill(Record& record, const model::Model& truth, std::uint64_t seed) {
   record.reading_mm = predict(truth, record, rest_starts(truth, {record}).front());
   for (std::size_t i = 0; i < record.size(); ++i) record.reading_mm[i] += noise_mm * normal_at(seed, i);
@@ -48,8 +48,8 @@ void fill(Record& record, const model::Model& truth, std::uint64_t seed) {
   record.readings = record.size();
 }
 
-/// Returns a command with two loads. The second load is larger than the first one, and no load is repeated.
-/// With this command, softening and creep have a similar effect.
+/// Returns a command that loads the finger twice. The second load is larger than the first one, and no load
+/// is repeated. Softening and creep therefore have similar effects.
 std::vector<double> poor_command() {
   const Waveform waveform{"poor", "", {{0, 0}, {1, 0}, {4, 30}, {7, 0}, {9, 0}, {13, 55}, {17, 0}, {20, 0}}};
   return sampled_kpa(waveform, interval_s);
@@ -60,8 +60,8 @@ model::Model softened() {
                            {find_cause("stress_softening")->forms.front().type, {0.004, 0}});
 }
 
-/// Returns a diagnosis that names softening and lists the given alternatives. Its record comes from a finger
-/// with softening.
+/// Returns a diagnosis that names softening and has the given alternatives. Its record is simulated with a
+/// softening finger.
 Diagnosis ambiguous(const std::vector<std::string>& alternatives) {
   const model::Model base = loaded("bench_twin");
   Record record = record_of("poor", poor_command(), 0);
@@ -176,8 +176,8 @@ TEST(Experiment, TellsSofteningFromCreepAsFarAsItPromises) {
   EXPECT_GE(next.predicted_separation_sigma, separation_needed_sigma);
   EXPECT_GT(next.best->minutes, next.best->waveform.duration_s() / 60);
 
-  // The simulated finger has softening and plays the proposed experiment. Then both causes are fitted to all
-  // records.
+  // The simulated finger has softening. It executes the proposed experiment. Then softening and the
+  // alternative cause are fitted to all records.
   Record played = record_of("played", sampled_kpa(next.best->waveform, interval_s), 20);
   played.largest_before_kpa = 55;
   fill(played, softened(), 12);

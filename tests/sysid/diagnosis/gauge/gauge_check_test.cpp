@@ -1,5 +1,5 @@
 // Tests which conclusions a gauge check draws about a sensor, and in which cases it draws no conclusion. The
-// test simulates the sensors with formulas of its own.
+// sensors are simulated with separate formulas, not with the blocks of the catalogue.
 
 #include "sysid/diagnosis/gauge/gauge_check.h"
 
@@ -38,8 +38,8 @@ SensorShape end_of_logs(double at_mm) {
   return {{{*model::find_block("sensor_saturation"), {-1e4, at_mm}}}, 0};
 }
 
-/// Returns the readings of gauge and sensor at given positions. `gauge_zero_mm` and `gauge_scale` are the
-/// zero offset and the scale of the gauge, which the gauge check does not know.
+/// Returns the readings of gauge and sensor at the given positions. `gauge_zero_mm` and `gauge_scale` are the
+/// zero offset and the scale of the gauge; the gauge check does not know them.
 std::vector<GaugeReading> read(const Sensor& sensor, double noise, std::vector<double> positions,
                                double gauge_zero_mm = 3, double gauge_scale = 1.01) {
   std::mt19937_64 random(5);
@@ -164,8 +164,8 @@ TEST(GaugeCheck, TellsABendFromAnEnd) {
   EXPECT_FALSE(of(check, "sensor_saturation").ruled_out);
 }
 
-/// One of the three hypotheses is implausible. The check must rule out this hypothesis. The decision between
-/// the other two must be the same as without it.
+/// The check gets three hypotheses. One of them is implausible and must be ruled out. The decision between
+/// the other two hypotheses must be the same as without the implausible one.
 TEST(GaugeCheck, AHypothesisThatIsFarOffMakesTheOthersNoBetter) {
   const std::vector<SensorShape> hypotheses{{}, bend_of_logs(0.4), end_of_logs(15)};
   const GaugeScales fine{0.01, -0.1, span_mm};
@@ -180,7 +180,7 @@ TEST(GaugeCheck, AHypothesisThatIsFarOffMakesTheOthersNoBetter) {
   EXPECT_TRUE(of(whole, "sensor_saturation").ruled_out);
 }
 
-/// The logs show a linear sensor, so this is the only hypothesis. The check must not reject it because of a
+/// The only hypothesis is a linear sensor. The check must not reject this hypothesis because of a
 /// nonlinearity that is too small to be visible in the logs.
 TEST(GaugeCheck, AStraightSensorMayBeBentByLessThanAnyLogCouldTell) {
   for (const double bow_mm : {0.02, 0.3}) {
@@ -200,7 +200,7 @@ TEST(GaugeCheck, AGaugeThatCountsTheOtherWayOrInInchesSaysTheSame) {
   }
 }
 
-/// Despite random noise, the check must almost never rule out the true hypothesis.
+/// In readings with random noise, the check must rule out the true hypothesis in at most 1 of 300 cases.
 TEST(GaugeCheck, RarelyRulesOutTheTruth) {
   int wrong = 0, decided = 0;
   for (int draw = 0; draw < 300; ++draw) {

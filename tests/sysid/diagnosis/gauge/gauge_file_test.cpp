@@ -1,5 +1,5 @@
-// Tests that the reader checks gauge files strictly. An error message must state the line, the column and a
-// correction.
+// Tests that the reader of gauge files rejects every invalid file. Each error message must state the line,
+// the column and a correction.
 
 #include "sysid/diagnosis/gauge/gauge_file.h"
 

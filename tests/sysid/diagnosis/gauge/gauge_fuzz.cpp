@@ -1,5 +1,5 @@
-// Fuzz target of the gauge file reader. The reader must either refuse the bytes, or return a gauge check that
-// can be written to a file and read back.
+// Fuzz target of the gauge file reader. The reader must either reject the bytes, or return readings that can
+// be written to a file and read back.
 //
 //   scripts/fuzz.sh gauge_fuzz 30
 

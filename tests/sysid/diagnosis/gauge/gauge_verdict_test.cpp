@@ -1,5 +1,5 @@
-// Tests a diagnosis from logs together with a gauge check. The gauge check rules out alternatives. It can
-// also replace the named cause or withdraw it.
+// Tests a diagnosis from logs with a gauge check of the sensor. The gauge check can rule out alternatives,
+// replace the named cause, or withdraw it.
 
 #include "sysid/diagnosis/gauge/gauge_verdict.h"
 
@@ -31,7 +31,7 @@ std::vector<Log> logs_of(const model::Model& truth) {
           simulated(truth, model::SignalName::sp2, 25, noise_mm, 2)};
 }
 
-/// Returns the readings of a sensor during a gauge check. `truth` is the model of this sensor.
+/// Returns the readings of a gauge check. The sensor is the one in the model `truth`.
 GaugeFile gauge_of(const model::Model& truth, double noise = 0.01) {
   const SensorShape sensor{static_sensor_blocks(truth), 0};
   GaugeFile file{"gauge.csv", "", {}};
@@ -59,8 +59,7 @@ void expect_found(const Diagnosis& d, const std::string& id) {
   ASSERT_EQ(d.causes.size(), 1U);
   EXPECT_EQ(d.causes[0].cause.id, id);
   EXPECT_TRUE(d.causes[0].alternatives.empty());
-  // The result contains an extended model, its parameters and its held-out errors. All of them must belong to
-  // the named cause.
+  // The extended model, its parameters and its held-out errors must belong to the named cause.
   EXPECT_TRUE(model::position_of(d.extended_model, id));
   ASSERT_EQ(d.extended.causes.size(), 1U);
   EXPECT_EQ(d.extended.causes[0].id, id);
@@ -76,7 +75,7 @@ double value_of(const NamedCause& named, const std::string& parameter) {
   return NAN;
 }
 
-/// Checks the part of the JSON of a diagnosis that describes the gauge check.
+/// Tests the content of the key `gauge` in diagnosis.json.
 void expect_gauge(const nlohmann::ordered_json& json, const GaugeFile& gauge) {
   EXPECT_EQ(json["file"], "gauge.csv");
   EXPECT_EQ(json["readings"].size(), gauge.readings.size());
@@ -85,7 +84,7 @@ void expect_gauge(const nlohmann::ordered_json& json, const GaugeFile& gauge) {
   EXPECT_EQ(json["hypotheses"].size(), 2U);
 }
 
-/// Checks that the diagnosis proposes a gauge check as the next experiment.
+/// Tests that the diagnosis proposes a gauge check and no other experiment.
 void expect_check_proposed(const Diagnosis& before) {
   const NextExperiment next = design_experiment(before, {});
   EXPECT_FALSE(next.best);
@@ -123,16 +122,16 @@ TEST(GaugeVerdict, AStraightSensorClearsItselfAndTheFingerIsNamed) {
   EXPECT_NE(verdict_sentence(d).find("not the sensor"), std::string::npos) << verdict_sentence(d);
 }
 
-/// The logs cannot distinguish the two causes, so the gauge check decides. In the first case, the logs come
-/// from a nonlinear sensor, and the gauge check from a linear sensor. In the second case, it is the other way
-/// round.
+/// The logs cannot separate a nonlinear sensor from a stiffening finger, so the gauge check decides. In the
+/// first case, the logs come from a nonlinear sensor and the gauge readings from a linear sensor. In the
+/// second case, the logs come from a stiffening finger and the gauge readings from a nonlinear sensor.
 TEST(GaugeVerdict, TheNamedCauseGivesItsPlaceToTheOneThatIsLeft) {
   const model::Model alike = hiding("stiffening", {4 * 0.6 / (25 * 25)});
   expect_found(diagnosed(bent_scale, gauge_of(alike)), "stiffening");
   expect_found(diagnosed(alike, gauge_of(bent_scale)), "sensor_nonlinearity");
 
-  // This finger stiffens more sharply than the stiffening model of the catalogue. The model of a nonlinear
-  // sensor therefore fits the logs better.
+  // This finger stiffens more sharply than the stiffening block of the catalogue. For this reason, the block
+  // of a nonlinear sensor fits the logs better.
   std::vector<Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
     Log& log = logs.emplace_back(simulated(loaded("bench_twin"), signal, 25, 0, 1));
@@ -157,8 +156,8 @@ TEST(GaugeVerdict, TheNamedCauseGivesItsPlaceToTheOneThatIsLeft) {
   EXPECT_TRUE(warned_of(after, "leaves an unexplained error of")) << after.unexplained_error.excess_mm;
 }
 
-/// The finger stiffens, and the sensor is slightly nonlinear. The diagnosis must name the stiffening of the
-/// finger as the cause. A warning must report the nonlinear sensor.
+/// The finger stiffens, and the sensor is slightly nonlinear. The diagnosis must name the stiffening as the
+/// cause, and a warning must report the nonlinear sensor.
 TEST(GaugeVerdict, AShareOfTheBendInTheSensorIsTold) {
   const model::Model a_little = hiding("sensor_nonlinearity", {0.3, 0, 25});
   const Diagnosis d = diagnosed(stiff_finger, gauge_of(a_little));
@@ -187,7 +186,8 @@ TEST(GaugeVerdict, ABendOfAnotherSizeLeavesTheVerdictOpenAndSaysSo) {
   EXPECT_EQ(d.verdict, Verdict::ambiguous);
   EXPECT_TRUE(d.gauge->ruled_out.empty());
   EXPECT_TRUE(warned_of(d, "fit no explanation"));
-  EXPECT_NE(verdict_sentence(d).find("but not in the form that the nonlinearity in these logs requires"),
+  EXPECT_NE(verdict_sentence(d).find(
+                "but the shape of this nonlinearity does not agree with the nonlinearity in these logs"),
             std::string::npos)
       << verdict_sentence(d);
 }
@@ -215,9 +215,9 @@ TEST(GaugeVerdict, ABendThatNoLogAsksForIsAWarningAndNoCause) {
   EXPECT_EQ(straight.verdict, d.verdict);
 }
 
-/// There is backlash between finger and sensor. In this case, the logs alone show that the finger stiffens
-/// and that the sensor is linear. A gauge check that shows a nonlinear sensor contradicts the logs, so the
-/// diagnosis must not name a cause.
+/// If there is backlash between finger and sensor, the logs alone show that the finger stiffens and that the
+/// sensor is linear. A gauge check that shows a nonlinear sensor contradicts the logs. In this case, the
+/// diagnosis must not name stiffening without alternatives.
 TEST(GaugeVerdict, AFingerThatWasNamedAloneDoesNotStandAgainstTheGauge) {
   const model::BlockSpec play{find_cause("backlash")->forms.front().type, {4}};
   const model::Model given = model::with_block(loaded("bench_twin"), play);

@@ -38,8 +38,8 @@ NamedCause named(const char* id, double gain_mm2) {
   return cause;
 }
 
-/// Returns a diagnosis that names a lag. @param given  model that gives bench_twin when it is extended by the
-/// lag.
+/// Returns a diagnosis that names a lag.
+/// @param given  given model; bench_twin is this model extended by the lag.
 Diagnosis a_diagnosis(const model::Model& given) {
   Diagnosis d;
   d.verdict = Verdict::ambiguous;
@@ -72,7 +72,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-/// Returns the texts that a line of the drawing crosses. Only left-aligned texts are checked.
+/// Returns the left-aligned texts of the drawing that a line crosses. Other texts are not tested.
 std::vector<std::string> crossed_words(const std::string& markup) {
   const std::regex words(R"re(<text x="([0-9.]+)" y="([0-9.]+)" text-anchor="start"[^>]*>([^<]+))re");
   const std::regex line(R"re(<path d="M(-?[0-9.]+) ?(-?[0-9.]+)l(-?[0-9.]+) ?(-?[0-9.]+)")re");
@@ -179,7 +179,7 @@ TEST_F(ReportTest, OpensWithTheVerdictAndEndsWithWhatOnlyThoseReadWhoCheck) {
   for (const char* part :
        {"The model lacks", "Results", "error budget", "error reduction by cause", "Parameters of the causes",
         "block diagram", "error over time", "loops log_", "Method and evidence", "class=\"appendix\"",
-        "Alternatives tested for", "name: &quot;zhang2025_extended"}) {
+        "Causes tested as alternatives to", "name: &quot;zhang2025_extended"}) {
     const std::size_t next = html.find(part, at);
     ASSERT_NE(next, std::string::npos) << part;
     at = next;
@@ -199,7 +199,7 @@ TEST_F(ReportTest, EveryFigureHasACaptionANumberAndData) {
   }
 }
 
-// Each model in the report must have a different name, so that a reader can assign each result to its model.
+// Each model in the report must have its own name, so that readers can assign each result to its model.
 TEST_F(ReportTest, TheModelsHaveNamesOfTheirOwn) {
   const std::string html = page().to_html();
   for (const char* name : {">given model<", ">recalibrated model<", ">extended model<", "zhang2025_extended"})
@@ -235,7 +235,8 @@ TEST_F(ReportTest, AClosedLoopWithoutAnyModelIsNotDrawn) {
   const std::string alone = diagnosis_page({diagnosis, logs, given, 1, {}, {}, curves}).to_html();
   EXPECT_EQ(alone.find("In closed loop, "), std::string::npos);
   EXPECT_NE(alone.find("the extended model has no usable feedforward"), std::string::npos);
-  EXPECT_NE(alone.find("The closed loop uses no model (13 ± 7 mm)"), std::string::npos);
+  EXPECT_NE(alone.find("No controller with a model was simulated in closed loop (13 ± 7 mm)"),
+            std::string::npos);
   curves.schemes.push_back({"extended model", 0.02, {13, 20, 13.01}});
   EXPECT_NE(diagnosis_page({diagnosis, logs, given, 1, {}, {}, curves}).to_html().find("In closed loop, "),
             std::string::npos);

@@ -9,8 +9,8 @@
 namespace softgrip::sysid::noise_test {
 namespace {
 
-/// Returns a record of a slow motion. The readings have noise of 0.02 mm, and only every `every`-th sample
-/// has a reading.
+/// Returns a record of a slow motion. The readings have a noise of 0.02 mm. Only every `every`-th sample has
+/// a reading.
 Record record_read_every(int every) {
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0, 0.02);

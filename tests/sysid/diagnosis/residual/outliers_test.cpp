@@ -16,7 +16,7 @@ namespace {
 
 constexpr double noise_mm = 0.04;
 
-/// Returns records whose readings are the original readings plus the residual `left`.
+/// Returns the records with the residual `left` added to their readings.
 std::vector<Record> with(std::vector<Record> records, const ByRecord& left) {
   for (std::size_t k = 0; k < records.size(); ++k) {
     for (std::size_t i = 0; i < records[k].size(); ++i) records[k].reading_mm[i] += left[k][i];
@@ -24,7 +24,7 @@ std::vector<Record> with(std::vector<Record> records, const ByRecord& left) {
   return records;
 }
 
-/// Returns the outliers that the search finds when the residual of the model is `left`.
+/// Returns the outliers that the search finds if the residual of the model is `left`.
 OutlierEvidence found_in(const ByRecord& left) {
   std::vector<Record> records = with(known_campaign(2), left);
   OutlierEvidence evidence;
@@ -56,7 +56,7 @@ TEST(Outliers, AreFoundInTheMidstOfAMotion) {
     }
   }
   const std::size_t more = hide_outliers_beside(records, left, noise_mm, evidence);
-  EXPECT_LT(before, put);  // during motion, a comparison with neighbouring readings would miss outliers
+  EXPECT_LT(before, put);  // a comparison of readings with their neighbours misses outliers during motion
   EXPECT_EQ(before + more, put);
   EXPECT_EQ(evidence.count, put);
   EXPECT_NEAR(evidence.size_mm, 0.8, 0.02);
@@ -69,8 +69,8 @@ TEST(Outliers, NoiseHasNone) {
     EXPECT_EQ(found_in(noise_for(known_campaign(2), noise_mm, 0, seed)).count, 0u) << "seed " << seed;
 }
 
-// A systematic residual must not be reported as an outlier, even if it is large. Examples are an oscillation
-// of any frequency, impacts, and a sawtooth. By chance, one of a thousand corners of the sawtooth may look
+// A systematic residual must not count as outliers, even if it is large. Examples are oscillations of any
+// frequency, impacts, and a sawtooth. By chance, up to one in a thousand corners of the sawtooth may look
 // isolated.
 TEST(Outliers, StructureIsNone) {
   const ByRecord noise = noise_for(known_campaign(2), noise_mm, 0, 7);
@@ -93,8 +93,8 @@ TEST(Outliers, StructureIsNone) {
   }
 }
 
-// The command jumps, and the model follows one sample late. The single large residual at each jump must not
-// be reported as an outlier.
+// The command jumps, and the model follows one sample too late. The large residual of this one sample must
+// not count as an outlier.
 TEST(Outliers, LatenessIsNone) {
   std::vector<Record> records = known_campaign(1);
   ByRecord left = noise_for(records, noise_mm, 0, 9);
@@ -105,7 +105,7 @@ TEST(Outliers, LatenessIsNone) {
   EXPECT_EQ(hide_outliers_beside(records, left, noise_mm, evidence), 0u);
 }
 
-/// Returns the log of a finger with a gain of 0.5 mm/kPa and with noise of 0.02 mm. The command consists of
+/// Returns the log of a finger with a gain of 0.5 mm/kPa and a noise of 0.02 mm. The command consists of
 /// triangles up to 40 kPa. Only every `every`-th sample has a reading.
 Log moving(int every = 1) {
   Log log;
@@ -123,8 +123,8 @@ Log moving(int every = 1) {
   return log;
 }
 
-/// Inserts the wrong readings into a log. Checks that the function under test removes exactly these readings
-/// and returns one sentence that contains `number`.
+/// Inserts wrong readings into a log. Tests that take_out_wrong_readings() removes exactly these readings and
+/// returns one sentence that contains `number`.
 void expect_taken_out(Log log, const std::map<std::size_t, double>& wrong, const std::string& number) {
   for (const auto& [sample, value] : wrong) log.displacement_mm[sample] = value;
   std::vector<Log> logs{moving(), log};

@@ -22,7 +22,7 @@ std::vector<Record> noisy_campaign() {
   return records;
 }
 
-/// Replaces the reading of each sample i by the reading of sample `sample(i)`.
+/// Replaces the reading of sample i by the reading of sample `sample(i)`, for each i.
 std::vector<Record> read_at(std::vector<Record> records,
                             const std::function<std::size_t(std::size_t)>& sample) {
   for (Record& record : records) {
@@ -67,8 +67,8 @@ TEST(HideRepeated, KeepsTheFirstOfEachSlowReading) {
 }
 
 TEST(HideRepeated, TakesTheClockOfTheSensorAsItComes) {
-  // The clock of the sensor is independent of the clock of the log. The sensor therefore gives a new reading
-  // after every 11 to 13 samples of the log.
+  // The sensor and the log have independent clocks. The sensor gives a new reading every 11.7 samples of the
+  // log on average, that is, after 11 to 13 samples.
   std::vector<Record> records = read_at(noisy_campaign(), [](std::size_t i) {
     return static_cast<std::size_t>(std::floor(std::floor(static_cast<double>(i) / 11.7) * 11.7));
   });

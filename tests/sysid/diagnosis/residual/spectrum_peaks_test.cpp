@@ -16,8 +16,8 @@ struct Campaign {
   std::vector<std::vector<double>> residual_mm;
 };
 
-/// Returns two records of 60 s with noise and an oscillation. The phase of the oscillation continues from the
-/// first record to the second.
+/// Returns two records of 60 s with an oscillation and noise. The phase of the oscillation is continuous from
+/// the first record to the second one.
 Campaign campaign(double frequency_hz, double amplitude_mm, double jitter_s) {
   Campaign c;
   std::mt19937_64 random(4);
@@ -49,7 +49,7 @@ TEST(SpectrumPeaks, FindsAWeakOscillationToAThirdOfWhatTheCampaignResolves) {
 }
 
 TEST(SpectrumPeaks, TheLineIsAStartNearTheLeastSquares) {
-  // After subtraction of the spectral line from the residual, most of the oscillation must have disappeared.
+  // If the spectral line is subtracted from the residual, at least 65 % of the mean square must disappear.
   Campaign c = campaign(3.21, 0.2, 0);
   const Line line = spectrum_peaks(c.records, c.residual_mm, 1).front();
   double before = 0, after = 0;

@@ -27,7 +27,8 @@ TEST(HeldOutLosses, AreAtMostTheSpansSquare) {
     EXPECT_DOUBLE_EQ(cut[b], std::min(losses[b], 0.25 * most)) << b;
 }
 
-/// A log is held out. A changed zero offset or a start in motion must not increase the error of this log.
+/// If a complete log is left out, a different zero offset or a start in motion must not increase the error of
+/// this log.
 TEST(LeftOutLosses, AreThoseOfAStartThatTheFirstReadingsTell) {
   const model::Model twin = loaded("bench_twin");
   std::vector<Log> logs{simulated(twin, model::SignalName::tp1, 25, 0.05, 3),
@@ -61,8 +62,8 @@ TEST(LinearHeldOutLosses, AreThoseOfRefitsWhereEveryPartShowsAllNumbers) {
   EXPECT_NEAR(rmse_mm(linear_held_out_losses(records, division, fit)), refitted_mm, 0.05 * refitted_mm);
 }
 
-/// The log contains one jump and long holds. If the block with the jump is held out, the other blocks contain
-/// almost no information about the time of the jump.
+/// The log contains one jump and long holds. If the block with the jump is held out, the remaining readings
+/// contain almost no information about the delay of the response.
 TEST(LinearHeldOutLosses, StayOfTheReadingsSizeWhereOneStretchAloneShowsANumber) {
   const model::Model model = loaded("bench_twin");
   Log log;

@@ -44,8 +44,8 @@ model::Model softening() {
   return model::with_block(finger(), model::block_of<model::StressSoftening>({{"softening_per_kpa", 0.001}}));
 }
 
-/// Compares the held-out losses of the linearised model with the losses of refitted models. For each held-out
-/// block, one model is fitted without this block.
+/// Compares the approximate held-out losses of the linearised model with exact losses. For the exact losses,
+/// the model is refitted without each held-out block.
 TEST(LinearHoldout, SaysWhatRefittingSays) {
   const Campaign c = campaign_of(softening());
   const BlockLosses refitted = held_out_losses(c.data.records, c.division, c.base);
@@ -55,8 +55,7 @@ TEST(LinearHoldout, SaysWhatRefittingSays) {
     EXPECT_NEAR(linear[b], refitted[b], 0.1 * refitted[b]) << "block " << b;
 }
 
-/// Compares the linear search with the full search. The full search varies all parameters of the model
-/// structure.
+/// Compares the linear search with the full search, which varies all parameters of the model structure.
 TEST(LinearSelection, FindsWhatTheFullSearchFinds) {
   const std::vector<model::BlockSpec> effects{
       model::block_of<model::Backlash>({{"gap_mm", 0.4}}),
@@ -96,8 +95,8 @@ TEST(LinearSelection, FindsBothOfTwo) {
   EXPECT_TRUE(position_of(found.extended.point.model, *find_cause("sensor_lag")));
 }
 
-/// The loop differs slightly from every loop that the model structure can describe. If this difference is
-/// smaller than the noise, it must not be named as a cause.
+/// The hysteresis loop differs slightly from every loop that the model structure can describe. If this
+/// difference is smaller than the noise, no cause may be named for it.
 TEST(LinearSelection, ARestOfTheLoopsFormIsNoCause) {
   for (const bool clear : {false, true}) {
     const Campaign c = campaign_of(model::with_block(
@@ -123,9 +122,9 @@ TEST(Weigh, IsTheGainOverTheStructureWithoutTheCause) {
   EXPECT_NEAR(alone.gain_mm2.value, 1, 1e-12);
 }
 
-/// With the measured pressure as the input, the residual contains no error of the valve. The search may then
-/// name a cause even if it explains only a small error in most blocks. With the command as the input, the
-/// stricter limits of the search reject this cause.
+/// If the input of the model is the measured pressure, the residual contains no error of the valve. A cause
+/// may then be named even if its error reduction is small, provided that the error decreases in most blocks.
+/// If the input is the command, the limits are stricter, and the same cause is rejected.
 TEST(LinearSelection, FromTheMeasuredPressureLessIsEnough) {
   const Campaign c =
       campaign_of(model::with_block(finger(), model::block_of<model::Backlash>({{"gap_mm", 0.1}})));

@@ -1,5 +1,5 @@
-// Tests the conditions under which a cause may be named. For each condition, one case violates this condition
-// and meets all others.
+// Tests the conditions under which a cause may be named. For each condition, one test violates this condition
+// and meets all other conditions.
 
 #include "sysid/diagnosis/search/named_claim.h"
 
@@ -16,17 +16,17 @@
 namespace softgrip::sysid::named_claim_test {
 namespace {
 
-/// A case for the tests: two runs of bench_twin, a cause that is fitted to these runs, and prescribed errors
-/// of the held-out runs.
+/// A test case with two runs of bench_twin, a cause that is fitted to the runs, and prescribed errors on
+/// held-out runs.
 struct Case {
   std::vector<Record> records = known_campaign(2);
   Cause cause;
   StructureFit without, with;
-  double error_without = 1, error_with = 0.5;  ///< error of every block of the held-out runs, without and
-                                               ///< with the cause
+  double error_without = 1, error_with = 0.5;  ///< error in every block of the held-out runs, without the
+                                               ///< cause and with the cause
   int asked = 0;
 
-  /// @param bend  function that distorts a reading [mm] at a campaign time [s].
+  /// @param bend  function that distorts a reading [mm] at a given time since the start of the campaign [s].
   template <class Bend>
   Case(const char* id, Bend bend) : cause(*find_cause(id)) {
     const model::Model twin = loaded("bench_twin");
@@ -79,8 +79,8 @@ TEST(NamedClaim, FailsWhereTheDataNeverShowIt) {
   Case drift("sensor_drift", [](double y_mm, double t_s) { return y_mm + 2 * t_s / 120; });
   ASSERT_FALSE(drift.with.causes.empty());
   EXPECT_EQ(drift.veto(), Veto::none);
-  // Change the pressure so that it never rests at 0 kPa. The diagnosis then cannot distinguish a drift of the
-  // zero offset from a motion of the finger.
+  // The pressure is changed so that it never rests at 0 kPa. A drift of the zero offset then cannot be
+  // separated from a motion of the finger.
   for (Record& record : drift.records) {
     for (double& p : record.drive_kpa)
       p += p < 1 ? 20 * normal_at(9, static_cast<std::uint64_t>(&p - record.drive_kpa.data())) : 0;
@@ -90,7 +90,7 @@ TEST(NamedClaim, FailsWhereTheDataNeverShowIt) {
 
 TEST(NamedClaim, FailsWhereItsEffectIsAbsent) {
   Case ageing("ageing", aged);
-  // In this case, the cause reduces the residual at small displacements only.
+  // The residuals are changed so that the cause reduces the residual only at small displacements.
   for (std::size_t r = 0; r < ageing.records.size(); ++r) {
     for (std::size_t i = 0; i < ageing.records[r].size(); ++i) {
       if (ageing.records[r].reading_mm[i] > 8)

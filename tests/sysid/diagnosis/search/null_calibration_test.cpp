@@ -1,5 +1,5 @@
-// Tests the search on data without a cause. False alarms must be rare. The error reductions must be smaller
-// than the error reduction of a true cause.
+// Tests the search on simulated data without a cause. False alarms must be rare, and their error reductions
+// must be smaller than the error reduction of a real cause.
 
 #include "sysid/diagnosis/search/null_calibration.h"
 
@@ -21,8 +21,8 @@ struct Searched {
   Division division;
 };
 
-/// Simulates two logs of zhang2025 with a backlash of `backlash_mm`. Returns the logs and the data that the
-/// search needs.
+/// Simulates two logs with the model zhang2025 and a backlash of `backlash_mm`. Returns the data that a
+/// search for causes needs.
 Searched searched(double backlash_mm) {
   const model::Model given = loaded("zhang2025");
   model::Model truth = given;

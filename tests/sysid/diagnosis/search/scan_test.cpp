@@ -1,6 +1,6 @@
-// Tests the scan of start values, which evaluates each start value with one linearised step. If the response
-// of the model structure is linear, the result must be exact. For data with a hidden cause, the start value
-// near the truth must be ranked first.
+// Tests the scan of start points. The scan evaluates each start point with one linearised step. If the model
+// structure responds linearly, the result must be exact. If the data contain a hidden cause, the start point
+// nearest to its true parameters must be ranked first.
 
 #include "sysid/diagnosis/search/scan.h"
 
@@ -59,8 +59,8 @@ TEST_F(Scanned, ASizeThatIsALittleOffIsMadeUpFor) {
 }
 
 TEST_F(Scanned, WhatTheBaseAbsorbsLinearlyCountsForNothing) {
-  // A refit of the model structure compensates a larger alpha. The remaining error must therefore not depend
-  // on alpha.
+  // A refit of the model structure compensates for a change of alpha. The predicted error must therefore not
+  // depend on alpha.
   const model::Model base = loaded("zhang2025");
   model::Model moved = base;
   moved.blocks[0].values[0] *= 1.001;
@@ -88,8 +88,8 @@ TEST(BestStarts, TheLatencyNearTheHiddenOneComesFirst) {
   EXPECT_NEAR(points.front().model.blocks[*at].values[0], 0.1, 1e-12);
 }
 
-// One model form of the cause has more parameters than the other, so it has the lower predicted error at
-// every start value. The search must try every model form and every start value nevertheless.
+// Of the forms of this cause, one has more parameters and therefore the smallest predicted error at every
+// start point. Nevertheless, the result must contain start points of every form and of every scan.
 TEST(BestStarts, ShowEveryFormOfACauseAndEveryPlace) {
   const model::Model given = loaded("zhang2025");
   const SearchData data = make_search_data(records_of(model::with_block(given, block("ageing", {4}))), given);

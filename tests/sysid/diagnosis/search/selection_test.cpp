@@ -1,5 +1,6 @@
-// Tests the number of named causes. The fit of the first cause leaves a small error, which must not be named
-// as a second cause. However, a small effect of a different kind must be named.
+// Tests the number of causes that a search selects. If the equation of the first cause is inexact, a small
+// error remains. This error must not lead to a second cause. A small effect of a different type must lead to
+// a second cause.
 
 #include "sysid/diagnosis/search/selection.h"
 
@@ -22,8 +23,8 @@ namespace {
 
 constexpr double noise_mm = 0.03;
 
-/// Distorts the readings of bench_twin with `bend(y, t)`. Here y is the reading and t the campaign time.
-/// Returns the causes that the search selects for the distorted readings.
+/// Replaces each reading y of bench_twin by `bend(y, t)`, where t is the time since the start of the
+/// campaign. Returns the causes that the search selects for these readings.
 Selection select(const std::function<double(double y_mm, double t_s)>& bend,
                  const SelectionOptions& options = {}) {
   const model::Model given = loaded("bench_twin");
@@ -49,7 +50,7 @@ std::vector<std::string> names(const Selection& selection) {
   return ids;
 }
 
-/// Returns the reading of a nonlinear sensor. The nonlinearity is not a polynomial, so the sensor model of
+/// Returns the reading of a nonlinear sensor. The nonlinearity is not a polynomial, so the sensor block of
 /// the catalogue leaves a few percent of it unexplained.
 double bent(double y_mm) {
   return y_mm + 1.2 * std::sin(1.3 * std::numbers::pi * y_mm / 20);
@@ -68,14 +69,14 @@ TEST(Selection, ASmallEffectThatExplainsTheRestIsNamed) {
     return y_mm * (1 + 0.15 * t_s / 120) + 0.09 * std::sin(2 * std::numbers::pi * 3.1 * t_s);
   });
   EXPECT_EQ(names(selection), (std::vector<std::string>{"ageing", "periodic_disturbance"}));
-  // The disturbance explains less than 5 % of the error. The inexact model form of a large cause may leave a
-  // larger error than that.
+  // The disturbance explains less than 5 % of the error. The inexact equation of a cause with a large effect
+  // could leave a larger error than this.
   const double excess = selection.base_unexplained.excess_mm;
   EXPECT_LT(0.09 * 0.09 / 2, 0.05 * excess * excess);
 }
 
-/// The disturbance has a different size in each run. A fit to all blocks therefore gives a size that neither
-/// run has.
+/// The disturbance has a different amplitude in each run. A fit to all runs leads to an amplitude that does
+/// not occur in any run, so it does not predict a left-out run.
 TEST(Selection, WhatEachRunShowsInAnotherSizeIsNotNamed) {
   SelectionOptions one;
   one.most_causes = 1;

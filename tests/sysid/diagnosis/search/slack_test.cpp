@@ -23,8 +23,8 @@ TEST(Slack, TheElasticShareIsThatOfTheOperatorWithoutAThreshold) {
   EXPECT_DOUBLE_EQ(elastic_share(model::Model{}), 1);
 }
 
-/// Two models have the same output for every input: a play operator with a threshold, and a spring in series
-/// with a backlash.
+/// A play operator with a threshold has the same output for every input as a spring in series with a
+/// backlash.
 TEST(Slack, OfOneOperatorTheBacklashIsTheSame) {
   const model::Model slack = plays({0, 0, 0, 0, 3, 0.2});
   const auto with_backlash = with_slack_as_backlash(slack);

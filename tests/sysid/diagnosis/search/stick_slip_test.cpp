@@ -20,8 +20,7 @@ namespace {
 constexpr double noise_mm = 0.03;
 constexpr int substeps = 50;
 
-// Returns a model with a gain and one Kelvin-Voigt branch. This model is sufficient for the finger that the
-// valve drives.
+// Returns a model with a gain and one Kelvin-Voigt branch. It describes the finger behind the valve exactly.
 model::Model plain_model() {
   model::Model model;
   model.name = "plain";
@@ -31,8 +30,8 @@ model::Model plain_model() {
   return model::with_block(model, branch);
 }
 
-// Integrates the equations of this finger with Euler's method. Each sample has 50 steps. Shares no code with
-// the function under test.
+// Computes the readings of this finger behind a valve. Uses Euler's method with 50 steps per sample. The
+// computation shares no code with the function under test.
 template <class Valve>
 std::vector<Record> answered(std::vector<Record> records, Valve&& valve, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -72,17 +71,19 @@ TEST(StickSlip, FindsTheBandOfAValveThatSticksAndJumps) {
     EXPECT_LT(found->band_ci95.lower, found->band_kpa);
     EXPECT_LT(found->band_ci95.upper - found->band_ci95.lower, 0.05 * band_kpa);
     EXPECT_GE(found->jumps, limits::fewest_events);
-    // With the positions of the valve that the search has found, the residual contains only the noise of the
-    // readings.
+    // The input of the fit is the valve position that the search has found. The residual must then contain
+    // almost only the noise of the readings.
     EXPECT_LT(std::sqrt(found->fit.mean_square_mm2), 1.2 * noise_mm);
   }
 }
 
-// A jump of the valve becomes visible in the readings after the delay, which is 17.5 samples.
+// The delay is 17.5 samples long, so a jump of the valve is visible in the readings only after 17 or 18
+// samples.
 TEST(StickSlip, IsFoundBehindALongDelay) {
   constexpr double band_kpa = 3.1, delay_s = 0.35;
   std::vector<Record> early = known_campaign(2);
-  for (Record& r : early) {  // delays the command by `delay_s`; the delayed command drives the valve
+  for (Record& r : early) {  // delays the command by `delay_s`; the valve in the simulation follows the
+                             // delayed command
     const std::vector<double> sent = r.drive_kpa;
     const auto samples = static_cast<std::size_t>(std::floor(delay_s / r.sample_time_s));
     const double rest = delay_s / r.sample_time_s - static_cast<double>(samples);
@@ -137,8 +138,8 @@ TEST(StickSlip, SeesThatJumpsComeOverAnyDistance) {
   EXPECT_FALSE(find_stick_slip(records, behind(records), noise_mm, 2));
 }
 
-// Returns the distances of 80 jumps of a valve with a stick band of 1 kPa. The distances have an error of 1
-// %. Every fifth distance is too short.
+// Returns 80 jump distances of a valve with a dead band of 1 kPa. Each distance has an error of 1 %, and
+// every fifth distance is too short.
 std::vector<double> partly_short(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> read(1.0, 0.01);
@@ -153,8 +154,8 @@ TEST(StickSlip, JumpsThatWereTakenForShortOnesDoNotMoveTheBand) {
   double sum_kpa = 0;
   constexpr int seeds = 200;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) sum_kpa += band_of_jumps(partly_short(seed)).value_kpa;
-  // The 20 % of distances that are too short must not shift the estimate. The mean of the central 90 % of the
-  // distances would be 2.3 % too low.
+  // 20 % of the distances are too short, but they must not change the estimate of the band. The mean of the
+  // central 90 % of the distances would be too small by 2.3 %.
   EXPECT_NEAR(sum_kpa / seeds, 1.0, 0.006);
 }
 

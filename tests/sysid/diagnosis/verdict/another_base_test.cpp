@@ -9,7 +9,8 @@ namespace {
 
 constexpr double noise_mm = 0.04;
 
-/// Returns a selection with one cause. The cause reduces the unexplained error from `before_mm` to `left_mm`.
+/// Returns a selection with one cause. The unexplained error is `before_mm` without the cause and `left_mm`
+/// with the cause.
 Selection left_of(double left_mm, double before_mm) {
   Selection selection;
   selection.left = {.excess_mm = left_mm, .present = true};
@@ -25,11 +26,11 @@ TEST(MayLackABase, NotWhereOneCauseLeavesNothingThatMatters) {
 }
 
 TEST(MayLackABase, NotWhereItsFormIsALittleOffWhatThereWas) {
-  // The cause leaves 0.9 % of the mean square error unexplained. Softening leaves a similar part in simulated
-  // test cases.
+  // The cause leaves 0.9 % of the mean square error. In simulated test cases, the cause "softening" leaves a
+  // share of this size although it is the true cause.
   EXPECT_FALSE(may_lack_a_base(left_of(0.3 * noise_mm, 0.3 * noise_mm / std::sqrt(0.009)), noise_mm));
-  // The cause leaves 10 % of the mean square error unexplained. A wrong cause leaves such a part if it
-  // describes a loop of a different shape incompletely.
+  // The cause leaves 10 % of the mean square error. A wrong cause leaves a share of this size if it only
+  // imitates a loop of a different shape.
   EXPECT_TRUE(may_lack_a_base(left_of(0.3 * noise_mm, 0.3 * noise_mm / std::sqrt(0.1)), noise_mm));
 }
 

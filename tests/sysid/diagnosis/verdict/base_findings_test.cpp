@@ -26,13 +26,13 @@ using model::SignalName;
 
 constexpr double noise_mm = 0.03;
 
-/// Returns the model structure without a valve.
+/// Returns the model bench_twin without its valve blocks.
 model::Model published() {
   return model::only(loaded("bench_twin"),
                      [](const model::BlockInfo& info) { return info.station != model::Station::valve; });
 }
 
-/// Returns a finger of play operators. No Bouc-Wen element can fit the hysteresis loops of this finger.
+/// Returns a finger that consists of play operators. No Bouc-Wen element can fit its hysteresis loops.
 model::Model plays() {
   model::Model m = model::without_block(published(), model::block_type<model::BoucWen>());
   return model::with_block(std::move(m), {model::block_type<model::PrandtlIshlinskii>(),
@@ -42,7 +42,7 @@ model::Model plays() {
 struct Found {
   SearchData data;
   BaseQuestion question;
-  Selection plain;  ///< selection of the causes for the given model structure
+  Selection plain;  ///< result of a search on the given model structure; it contains no causes
   std::optional<BaseFindings> base;
 };
 
@@ -79,8 +79,8 @@ TEST(BaseFindings, LoopsOfAnotherFormAreNamed) {
   EXPECT_TRUE(has_lower_loss(*found.base, found.plain, noise_mm, true));
 }
 
-/// After a reversal, play operators without an elastic operator at first do not move, which looks like a
-/// backlash. With an elastic operator, they move immediately.
+/// A set of play operators without an elastic operator does not move at first after a reversal. This looks
+/// like a backlash. With an elastic operator, the set moves at once.
 TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
   const auto has_backlash = [](const Found& found) {
     const auto shape = std::find_if(found.base->named.begin(), found.base->named.end(),
@@ -98,8 +98,8 @@ TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
                                    << elastic_share(slack.base->fit.point.model);
 }
 
-/// With the given structure, a large part of the error remains unexplained and no cause is named. In this
-/// case, a small reduction of the loss suffices to prefer the alternative structure.
+/// On the given structure, the error is too large to name a cause. In this case, a slightly smaller loss is
+/// sufficient to prefer the alternative structure.
 TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
   Found found = found_in(plays());
   ASSERT_TRUE(found.base);
@@ -113,9 +113,9 @@ TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
   EXPECT_FALSE(has_lower_loss(*found.base, plain, noise_mm, false));
 }
 
-/// With the given structure, two causes are necessary to explain the data. With the alternative structure,
-/// one of these causes suffices, because the hysteresis loops of the alternative structure explain the rest
-/// of the error.
+/// On the given structure, two causes are necessary to explain the data. On the alternative structure, one of
+/// them is sufficient, because its hysteresis loops explain the remaining error. The loss of the alternative
+/// structure may then be slightly larger.
 TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore) {
   Found found = found_in(plays());
   ASSERT_TRUE(found.base);
@@ -137,8 +137,8 @@ TEST(BaseFindings, TheOtherBaseThatNeedsFewerOfTheSameCausesMayLeaveALittleMore)
       << "the unexplained error of the alternative structure is much larger than that of the given structure";
 }
 
-/// For slow commands, a delay and a lag have the same effect. If the model contains one of them, it
-/// compensates for the missing one. If the model contains neither of them, it responds too early.
+/// For slow commands, a delay and a lag have nearly the same effect, so each of them can compensate for the
+/// other. If the model contains neither a delay nor a lag, it responds too early.
 TEST(BaseFindings, ALatencyIsNamedThoughNobodyCanSayOfWhichKind) {
   const model::Model late =
       model::with_block(plays(), model::block_of<model::ValveLag>({{"time_constant_s", 0.08}}));
@@ -159,7 +159,7 @@ TEST(BaseFindings, ALatencyIsNamedThoughNobodyCanSayOfWhichKind) {
   EXPECT_GE(latency->inclusion, 0.95);
 }
 
-/// The search must find a cause even if it selects the alternative structure.
+/// A cause must be found even if the alternative structure is selected.
 TEST(BaseFindings, ACauseUponAnotherBaseIsNamed) {
   model::Model finger = plays();
   finger =

@@ -1,6 +1,6 @@
-// Runs softgrip diagnose as a user runs it. One test has a published model that lacks a lag. Another test has
-// logs that do not contain enough information for a diagnosis; the test computes these logs with formulas of
-// its own.
+// Runs softgrip diagnose with the arguments that a user would give. In one test, the given model lacks a
+// delay and a lag. In another test, the logs contain too little information for a diagnosis. These logs are
+// computed with separate formulas.
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,8 @@ using Json = nlohmann::json;
 
 constexpr double rate_hz = 50;
 
-/// Returns triangles with a period of 10 s. Every second triangle has half the height of the others.
+/// Returns a command that consists of triangles with a period of 10 s. Their heights are 50 kPa and 25 kPa in
+/// turn.
 double triangles_kpa(double t) {
   const double phase = std::fmod(t, 10) / 5;
   const double top = std::fmod(t, 20) < 10 ? 50 : 25;
@@ -42,7 +43,7 @@ class DiagnoseCommand : public CommandInFolder {
     });
   }
 
-  /// Writes a log of `seconds` seconds with noise of 0.04 mm.
+  /// Writes a log with a duration of `seconds` and a noise of 0.04 mm.
   void write_log(const std::string& name, double seconds, const std::function<double(double)>& command_kpa,
                  const std::function<double(double)>& displacement_mm) {
     std::mt19937_64 random(17);
@@ -83,13 +84,14 @@ TEST_F(DiagnoseCommand, TheLatencyBehindThePublishedModelIsNamedAndTheExtensionI
   ASSERT_FALSE(json["closed_loop"].is_null());
   const double recalibrated_mm = json["closed_loop"]["recalibrated_rmse_mm"];
   const double extended_mm = json["closed_loop"]["extended_rmse_mm"];
-  // The refitted model has no causal inverse, so its feedforward must be planned in advance.
+  // The refitted model has no causal inverse. Its feedforward must therefore be planned before the run, and
+  // its tracking error must be more than twice that of the extended model.
   EXPECT_GT(recalibrated_mm, 2 * extended_mm);
   EXPECT_EQ(run("check result/model.yaml"), 0) << read("out.txt") << read("err.txt");
 }
 
-/// Simulates a technician who runs a diagnosis, enters gauge readings in the file, and runs the diagnosis a
-/// second time.
+/// Simulates a technician: runs a diagnosis, enters gauge readings into the proposed file, and repeats the
+/// diagnosis.
 TEST_F(DiagnoseCommand, FilledInPositionsTellTheFingerFromTheSensor) {
   const std::string twin = SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml";
   write("finger.yaml", read_file(twin, 100'000).value() + "  - stiffening:\n      stiffening_per_mm: 0.01\n");
@@ -129,7 +131,7 @@ TEST_F(DiagnoseCommand, FilledInPositionsTellTheFingerFromTheSensor) {
   EXPECT_TRUE(json["gauge_check"].is_null());
   EXPECT_EQ(read("result/gauge_positions.csv"), filled)
       << "the readings that the operator entered must remain in the gauge file";
-  EXPECT_NE(read("out.txt").find("The gauge check shows a linear sensor"), std::string::npos);
+  EXPECT_NE(read("out.txt").find("The gauge check shows that the sensor is linear"), std::string::npos);
   EXPECT_NE(read("result/report.html").find("Gauge check of the sensor"), std::string::npos);
 }
 

@@ -33,7 +33,8 @@ std::vector<std::string> ids(const std::vector<NamedCause>& causes) {
   return list;
 }
 
-/// Returns logs whose command oscillates about 20 kPa. @param rest_s  time [s] without pressure at the start.
+/// Returns one log whose command oscillates around 20 kPa.
+/// @param rest_s  time without pressure at the start of the log [s].
 std::vector<Log> planned(double rest_s) {
   Log log;
   log.name = "planned";
@@ -46,8 +47,9 @@ std::vector<Log> planned(double rest_s) {
   return {log};
 }
 
-/// Returns logs of a control loop in which a valve keeps a flow constant. @param band  change of the command
-/// that the valve ignores. @param wave  amplitude of a disturbance.
+/// Returns one log of a control loop in which a valve keeps a flow constant.
+/// @param band  change of the command to which the valve does not respond.
+/// @param wave  amplitude of a disturbance of the flow.
 std::vector<Log> loop(double band, double wave) {
   std::mt19937 random(4);
   std::normal_distribution<double> noise(0, 0.01);

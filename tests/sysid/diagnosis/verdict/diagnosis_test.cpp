@@ -29,8 +29,8 @@ model::Model without_valve() {
                      [](const model::BlockInfo& info) { return info.station != model::Station::valve; });
 }
 
-// The first cause explains nearly all of the error. The small remaining error must not start the search for
-// an alternative structure.
+// The first cause explains nearly the whole error. The small remaining error must not start a search for an
+// alternative structure.
 TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   const model::Model given = without_valve();
   const model::Model truth =
@@ -38,7 +38,7 @@ TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   std::vector<Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
     logs.push_back(simulated(truth, signal, 25, noise_mm, 17));
-    // Adds a ripple. No cause of the registry describes this ripple.
+    // Adds an oscillation that no cause of the registry describes.
     for (double& y : logs.back().displacement_mm)
       y += 0.9 * noise_mm * std::sin(2 * std::numbers::pi * y / 5);
   }
@@ -61,8 +61,8 @@ TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   }
 }
 
-// If a model has generated a log, this model must explain the log. This must hold for every zero offset of
-// the sensor and for every state of the model at the start of the log.
+// The log is simulated with the given model, so the model must explain the log. This must hold for every zero
+// offset of the sensor and for a log that starts in motion.
 TEST(Diagnosis, AsGivenEstimatesTheOffsetAndTheStart) {
   const model::Model truth = loaded("bench_twin");
   const Log log = simulated(truth, model::SignalName::tp1, 25, noise_mm, 5);
@@ -81,8 +81,8 @@ TEST(Diagnosis, AsGivenEstimatesTheOffsetAndTheStart) {
   EXPECT_LT(as_given_mm(in_motion, 5), of_30_mm);
 }
 
-// The diagnosis finds a cause before it fits an alternative structure. The result for the alternative
-// structure must contain this cause as well.
+// The outliers are found before an alternative structure is fitted. The result with the alternative structure
+// must still contain the outliers as a cause.
 TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
   const model::Model given = without_valve();
   model::Model plays = model::without_block(given, model::block_type<model::BoucWen>());
@@ -107,7 +107,7 @@ TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
   EXPECT_NEAR(static_cast<double>(diagnosis->outliers.count), static_cast<double>(wrong), 2);
 }
 
-/// Returns two logs. In both logs, the reading of sample i is replaced by the reading of sample `sample(i)`.
+/// Returns two logs in which the reading of sample i is replaced by the reading of sample `sample(i)`.
 std::vector<Log> read_at(const model::Model& truth, const std::function<std::size_t(std::size_t)>& sample) {
   std::vector<Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
@@ -146,7 +146,7 @@ TEST(Diagnosis, AReadingThatLeadsItsCommandIsAClockOffset) {
   EXPECT_GT(diagnosis->recalibrated_rmse_mm, 1.2 * diagnosis->extended_rmse_mm);
 }
 
-/// Returns a log of a finger that was under pressure before the recording began.
+/// Returns a log whose finger was under pressure before the log begins and is still moving.
 Log begun_unsettled(const model::Model& truth, model::SignalName signal, double pulse_kpa,
                     std::uint64_t seed) {
   constexpr double rate_hz = 25;
@@ -167,8 +167,8 @@ Log begun_unsettled(const model::Model& truth, model::SignalName signal, double 
   return slice(log, pressed + rested, log.size());
 }
 
-/// At the start of a log, the pressure may be 0 while the finger still creeps. This creep must not be named
-/// as a cause.
+/// When a log starts, the finger may still creep although the pressure is 0. This creep must not be named as
+/// a cause.
 TEST(Diagnosis, AStartBeforeTheFingerHasSettledIsNoCause) {
   const model::Model truth = without_valve();
   const std::vector<Log> logs{begun_unsettled(truth, model::SignalName::tp1, 45, 3),

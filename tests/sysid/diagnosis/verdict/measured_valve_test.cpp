@@ -14,7 +14,8 @@ namespace {
 constexpr double sample_s = 0.01, gain = 1.05, zero_kpa = 2.0, noise_kpa = 0.2;
 constexpr std::size_t block_samples = 800;  // block length of 8 s
 
-// Returns the log of a valve without dynamics. The pressure reading is a linear function of the command.
+// Returns the log of a valve without dynamics. The measured pressure is a linear function of the command,
+// plus noise and an offset that is constant within each block.
 Log straight_log(std::size_t blocks, double offset_kpa, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
@@ -32,8 +33,8 @@ Log straight_log(std::size_t blocks, double offset_kpa, std::uint32_t seed) {
   return log;
 }
 
-/// Returns the index of the block that contains a sample. Samples after the end of the last whole block count
-/// as part of it.
+/// Returns the index of the block that contains a sample. Samples after the last complete block belong to the
+/// last block.
 std::size_t block_of(const Log& log, std::size_t sample) {
   return std::min(sample / block_samples, log.size() / block_samples - 2);
 }
@@ -41,7 +42,7 @@ std::size_t block_of(const Log& log, std::size_t sample) {
 struct Line {
   double slope, zero;
 };
-/// Returns the regression line through the samples of every second block, computed in closed form.
+/// Returns the regression line through the samples of every second block. It is computed in closed form.
 Line line_through(const Log& log, bool even) {
   double n = 0, su = 0, sp = 0, suu = 0, sup = 0;
   for (std::size_t i = 0; i < log.size(); ++i) {
@@ -58,8 +59,8 @@ TEST(MeasuredValve, WhatIsLeftOfABlockIsOfAFitToTheOthers) {
   const MeasuredValve valve(logs, false);
   const BlockLosses losses = valve.held_out_losses({}, valve.fit({}, {ValveStage{}}));
   ASSERT_EQ(losses.size(), 7U);
-  // Skip the first block. Its first sample is a measured pressure, which already contains the gauge error,
-  // and the model adds the gauge error a second time.
+  // The first block is left out. The simulation of the valve starts at the first measured pressure. The model
+  // then applies the gain and the zero offset of the sensor to this pressure a second time.
   for (std::size_t block = 1; block < 6; ++block) {
     const Line line = line_through(logs[0], block % 2 == 1);
     double sum_kpa2 = 0;
@@ -84,7 +85,7 @@ TEST(MeasuredValve, StandardErrorsOfAGaugeAreThoseOfAStraightLine) {
   const double of_zero = noise_kpa * std::sqrt(suu / (n * about_mean));
   EXPECT_NEAR(stage.gauge_gain, gain, 4 * of_gain);
   EXPECT_NEAR(stage.gauge_zero_kpa, zero_kpa, 4 * of_zero);
-  // The standard errors must not be smaller than those for white noise. Each standard error is estimated from
+  // The standard errors must be at least 97 % of those for white noise. Each standard error is estimated from
   // 40 blocks, so it is uncertain by about 10 %.
   EXPECT_GT(errors[0], 0.97 * of_gain);
   EXPECT_LT(errors[0], 1.4 * of_gain);
@@ -99,16 +100,15 @@ TEST(MeasuredValve, ALastingErrorCountsOncePerBlock) {
     return valve.standard_errors(valve.fit({}, {ValveStage{}}, 1e-12),
                                  {&ValveStage::gauge_gain, &ValveStage::gauge_zero_kpa})[1];
   };
-  // Each of the 40 blocks has its own offset. The offsets are as large as the noise, so the log has the
-  // information of 40 readings, not of 32,000.
+  // Each of the 40 blocks has its own random offset, which is as large as the noise. The log therefore
+  // contains as much information about the zero offset as 40 readings, not as 32,000 readings.
   EXPECT_GT(error_of(lasting), 10 * error_of(white));
   EXPECT_LT(error_of(lasting), 60 * error_of(white));
 }
 
 constexpr double low_noise_kpa = 0.05;
 
-/// Returns logs of a valve without dynamics: the pressure at each sample is a function of the command at this
-/// sample.
+/// Returns one log of a valve without dynamics. The pressure depends only on the command at the same sample.
 std::vector<Log> logs_of(const std::function<double(double)>& pressure_kpa) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
@@ -148,9 +148,9 @@ TEST(FindLostPressure, IsNothingWhereAConstantIsMissing) {
   EXPECT_FALSE(lost_of(logs_of([](double u) { return u - 3; })));
 }
 
-// The pressure never exceeds 52 kPa, even if the command exceeds this value. A scale error of the gauge
-// explains half of the difference. A leak explains less, because the curve of a leak bends in the opposite
-// direction.
+// The measured pressure does not exceed 52 kPa, even if the command does. A scale error of the pressure
+// sensor explains half of the difference. A leak explains less of it, because its curve bends in the opposite
+// direction. Therefore no leak may be reported.
 TEST(FindLostPressure, IsNothingWhereTheHighestPressuresAloneAreMissing) {
   const std::vector<Log> logs = logs_of([](double u) { return std::min(u, 52.0); });
   const MeasuredValve valve(logs, false);

@@ -44,7 +44,8 @@ TEST(BlockNumbers, HaveNoIntervalsBelowWhatANumberMayBe) {
   model::Model truth = loaded("bench_twin");
   const std::size_t delay = model::block_type<model::TransportDelay>();
   truth.blocks[*model::position_of(truth, delay)].values[0] = 0.001;
-  // With few readings and large noise, the symmetric interval of the delay would extend below 0.
+  // The log has few readings with large noise. The symmetric interval of the delay would therefore extend
+  // below 0.
   const std::vector<Record> records = make_records({simulated(truth, SignalName::tp1, 5, 1.0, 5)}, {});
   const FitPoint point{truth, rest_starts(truth, records)};
   const FitSpace space = structure_space(records, truth, {*find_cause(causes::TransportDelay::id)});
@@ -103,12 +104,12 @@ constexpr double true_delay_s = 0.130;
 
 struct Named {
   std::vector<NamedCause> causes;
-  Interval alone;  ///< interval of the delay from a fit of a model without the lag
+  Interval alone;  ///< interval of the delay if the model contains no lag
   std::vector<std::string> sentences;
 };
 
-/// Returns a diagnosis that names the delay but not the lag. The logs were simulated with the model
-/// bench_twin, the delay and the lag.
+/// Simulates a log of bench_twin, which has a delay and a lag. Returns the delay as the only named cause,
+/// with its intervals without and with the lag.
 Named delay_of(SignalName signal, const model::Model& twin) {
   const model::Model without_valve =
       model::only(twin, [](const model::BlockInfo& info) { return info.station != model::Station::valve; });

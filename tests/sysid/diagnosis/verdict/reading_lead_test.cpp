@@ -11,7 +11,7 @@ namespace {
 
 TEST(WithDriveAhead, TheDriveComesEarlierAndTheStartStays) {
   const std::vector<Record> before = known_campaign(1);
-  // 0.05 s are 2.5 samples. Between two samples, the command is linear.
+  // The lead of 0.05 s is 2.5 samples long. Between two samples, the command is linear.
   const Record after = with_drive_ahead(before, 0.05).front();
   EXPECT_EQ(after.drive_kpa[0], before[0].drive_kpa[0]);
   for (std::size_t i = 1; i + 3 < after.size(); ++i)

@@ -25,29 +25,28 @@ namespace {
 
 constexpr double noise_kpa = 0.05, noise_mm = 0.04, sample_s = 0.01;
 
-/// A valve that this test simulates with Euler steps of 50 us. The simulation uses none of the blocks of
-/// model/.
+/// A valve that this test simulates with Euler steps of 50 us. The simulation shares no blocks with model/.
 struct OwnValve {
   double delay_s = 0.05;
   double band_kpa = 0;
   double filling_s = 0.06;
   double venting_s = 0.06;
-  double second_s = 0;  ///< time constant [s] of a second lag in series
+  double second_s = 0;  ///< time constant of a second lag in series; 0: no second lag
   double limit_kpa = 1e9;
   double coupling = 0;
   double leak = 0;   ///< conductance of the leak, divided by the conductance of the line
   double scale = 1;  ///< scale factor of the pressure sensor
 };
 
-/// Returns the mass flow of ISO 6358-1, divided by the conductance. The arguments are absolute pressures. The
-/// critical pressure ratio is 0.3.
+/// Returns the mass flow divided by the conductance, according to ISO 6358-1 with a critical pressure ratio
+/// of 0.3. The arguments are absolute pressures [kPa].
 double flow(double from_kpa, double to_kpa) {
   const double ratio = std::max(to_kpa / from_kpa, 0.3);
   return from_kpa * std::sqrt(1 - std::pow((ratio - 0.3) / 0.7, 2));
 }
 
-/// Returns the pressure downstream of a line at which the flow through the leak equals the inflow. Finds this
-/// pressure by bisection.
+/// Returns the pressure behind a line [kPa] for which the inflow equals the flow through the leak. The
+/// pressure is found by bisection.
 double behind_leak(double kpa, double leak) {
   if (!(leak > 0) || !(kpa > 0)) return kpa;
   constexpr double open_kpa = 101.325;
@@ -89,7 +88,7 @@ Log own_log(const OwnValve& valve, int number, std::uint32_t seed) {
     log.pressure_kpa.push_back(valve.scale * p + noise_kpa * normal(random));
     log.displacement_mm.push_back(0.5 * p + noise_mm * normal(random));
     for (int k = 0; k < parts; ++k) {
-      // The command is linear between two samples, as in a log.
+      // The command is linear between two samples. The diagnosis makes the same assumption for logs.
       const double share = static_cast<double>(k) / parts;
       late.push_back((1 - share) * command_kpa(t, number) + share * command_kpa(sample_s * (i + 1), number));
       const double u = late.front();
@@ -117,7 +116,7 @@ ValveFindings found_in(const std::vector<Log>& logs, const model::Model& given) 
   return found.value_or(ValveFindings{});
 }
 
-/// Returns a parameter of a cause if the diagnosis names this cause. Otherwise returns nullptr.
+/// Returns a parameter of a named cause. Returns nullptr if the cause is not named.
 const CauseParameter* find(const ValveFindings& found, std::string_view cause, std::string_view parameter) {
   for (const NamedCause& named : found.named) {
     if (named.cause.id != cause) continue;
@@ -133,8 +132,8 @@ void expect_holds(const ValveFindings& found, std::string_view cause, std::strin
   const CauseParameter* p = find(found, cause, parameter);
   ASSERT_NE(p, nullptr) << cause << " is not named";
   ASSERT_TRUE(p->has_interval);
-  // A 95 % interval misses the true value in 1 of 20 cases. This would be too often for a test. An interval
-  // that is 1.5 times as wide misses the true value in 1 of 300 cases.
+  // A 95 % interval does not contain the true value in 1 of 20 cases, which is too often for a test. An
+  // interval of 1.5 times the width does not contain it in 1 of 300 cases.
   const double half = (p->ci95.upper - p->ci95.lower) / 2;
   EXPECT_NEAR(p->value, truth, 1.5 * half) << parameter;
   EXPECT_LT(half, 0.1 * truth) << parameter;
@@ -186,8 +185,8 @@ bool names(const ValveFindings& found, std::string_view cause) {
 
 TEST(FindInValve, NamesALeakAndThatAScaleMayPassForOne) {
   const ValveFindings found = found_in(own_logs({.leak = 0.2}, 91), without_a_valve());
-  // The true value of the parameter `share` is the square of 0.2. The tolerance is necessary because
-  // simulation and model use different critical pressure ratios.
+  // The true value of `share` is 0.2 squared. The tolerance is necessary because the simulation and the model
+  // have different critical pressure ratios.
   const CauseParameter* const share = find(found, "leak", "share");
   ASSERT_NE(share, nullptr);
   EXPECT_NEAR(share->value, 0.04, 0.008);
@@ -237,7 +236,8 @@ TEST(FindInValve, NamesNothingInAValveThatGoesItsOwnWay) {
   OwnValve valve;
   valve.limit_kpa = 35;
   std::vector<Log> logs = own_logs(valve, 81);
-  // Adds the pressure that a second controller of the regulator would cause.
+  // Adds a pressure oscillation that the valve model cannot describe. A second controller in the regulator
+  // could cause such an oscillation.
   for (Log& log : logs) {
     for (std::size_t i = 0; i < log.size(); ++i) log.pressure_kpa[i] += 6 * std::sin(1.7 * log.time_s[i]);
   }
@@ -267,7 +267,7 @@ TEST(FindInValve, NeedsTheMeasuredPressureOfEveryLog) {
   EXPECT_FALSE(find_in_valve(logs, {given, false, noise_mm, 1})) << "the measured pressure is constant";
 }
 
-/// Applies the measured pressure of a log to the model. Returns the displacement that the model predicts.
+/// Returns the displacement that the model predicts for the measured pressure of a log.
 std::vector<double> displacement_mm(const model::Model& finger, Log log) {
   std::fill(log.displacement_mm.begin(), log.displacement_mm.end(), 0.0);
   RecordOptions options;
@@ -299,8 +299,8 @@ TEST(Diagnose, AFingerThatIsExplainedFromTheMeasuredPressureStillHasAValveThatIg
   ASSERT_TRUE(diagnosis->in_valve);
   EXPECT_NE(find(*diagnosis->in_valve, "valve_deadband", "band_kpa"), nullptr);
   EXPECT_NE(verdict_sentence(*diagnosis).find("valve dead band"), std::string::npos);
-  // The daemon sends commands to the valve, so the model of the daemon must include the valve. This holds
-  // even if the measured pressure was the input of the diagnosis.
+  // The daemon commands the valve, so the models for the daemon must contain the valve. This also holds if
+  // the input of the diagnosis was the measured pressure.
   for (const model::Model& model : {diagnosis->recalibrated_model, diagnosis->extended_model}) {
     EXPECT_TRUE(model::position_of<model::TransportDelay>(model)) << model.name;
     EXPECT_TRUE(model::position_of<model::ValveDeadband>(model)) << model.name;
